@@ -30,17 +30,18 @@ pub use likelihood::Errors;
 /// Settings of a calibration from collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Factor that bounds every parameter relative to its value in the scenario; the prior is uniform in its logarithm.
+    /// Largest factor, up or down, between a parameter and its value in the scenario; the prior is uniform in the
+    /// logarithm of the parameter.
     pub within: f64,
     /// Standard deviation (m) of the position of each rack and each barrel when a stack is built.
     pub placement: f64,
-    /// Errors of observations relative to correct simulations.
+    /// Assumed errors of the observations relative to a correct simulation.
     pub errors: Errors,
     /// Number of parameter sets, each simulated once for every test.
     pub simulations: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Vector unit of the simulations; the widest of the machine if `None`. The result does not depend on it.
+    /// Vector width of the simulations; `None` for the widest of the machine. The result does not depend on it.
     pub lanes: Option<Width>,
 }
 
@@ -57,16 +58,16 @@ impl Default for Settings {
     }
 }
 
-/// Fraction by which an interval must be narrower than the prior for a test to be informative.
+/// Fraction by which an interval must be narrower than that of the prior for the test to count as informative.
 const INFORMATIVE: f64 = 0.15;
 
-/// Correlation above which two parameters are inseparable.
+/// Correlation above which two parameters are reported as inseparable.
 const ALIKE: f64 = 0.9;
 
-/// Weight of the simulations that agree with an observation, below which the model does not reproduce it.
+/// Posterior weight of the simulations with the observed mode below which a warning is given.
 const UNSEEN: f64 = 0.2;
 
-/// Observations of collapses, one row of a table per test.
+/// Observed collapses, read from a table with one row per test.
 ///
 /// | column | content |
 /// |---|---|
@@ -75,9 +76,9 @@ const UNSEEN: f64 = 0.2;
 /// | `first fall (s)`, `first barrel` | the same for the first barrel, if others were not observed |
 /// | `loss of seat (s)` | time at which the first body left its seat |
 /// | `until (s)` | duration of observation; required if anything stands |
-/// | `scenario` | scenario of the test, if tests differ |
+/// | `scenario` | scenario of the test, if the tests have different ones |
 ///
-/// An empty cell was not observed. Times count from the start of the motion.
+/// An empty cell means that the quantity was not observed. Times count from the start of the motion.
 #[derive(Clone, Debug)]
 pub struct Observations {
     file: String,
@@ -86,16 +87,16 @@ pub struct Observations {
 }
 
 impl Observations {
-    /// Reads a table.
+    /// Reads the observations from a table.
     ///
     /// # Errors
-    /// At the first invalid cell.
+    /// If a cell is invalid; the error names the first one.
     pub fn read(table: &Table, errors: &Errors) -> Result<Self, CalibrateError> {
         let (tests, warnings) = Observed::read(table, 5.0 * errors.reading)?;
         Ok(Self { file: table.file().to_owned(), tests, warnings })
     }
 
-    /// Returns the scenario that each test names, if any.
+    /// Returns the scenario that each test names; `None` for a test that names none.
     pub fn scenarios(&self) -> impl Iterator<Item = Option<&str>> {
         self.tests.iter().map(|test| test.scenario.as_deref())
     }
@@ -105,32 +106,32 @@ impl Observations {
 struct Trial<'a> {
     observed: &'a Observed,
     tunable: Tunable,
-    /// Scenario that runs until the end of observation.
+    /// Scenario of the test, with the duration of the observation.
     scenario: Scenario,
     /// Ground motion.
     ground: Arc<Ground>,
-    /// Standard deviation (m at full scale) of positions.
+    /// Standard deviation of the positions of racks and barrels (m at full scale).
     scatter: f64,
 }
 
-/// Estimates parameters of a stack from observed collapses, `scenarios` being those of the tests.
+/// Estimates parameters of a stack from observed collapses; `scenarios` holds one scenario per test, in order.
 ///
 /// Collapse is chaotic: the course of one stack cannot be fitted, but its probability can.
 /// Each set of parameters is simulated with random offsets of racks and barrels, since no two
 /// stacks are built alike, and weighted by the likelihood of the observations given that course
 /// ([`Errors`]). Sampling is iterated around likely parameters; the intervals hold the central
 /// 95 % of the weight. If too few courses agree, the likelihood is raised to a power below one,
-/// which widens the intervals and is stated.
+/// which widens the intervals; the result states the power.
 /// Constants of the rack–ground and barrel–rack interfaces keep their ratio, as in
 /// [`super::response`].
 ///
 /// The result is a function of the observations, the scenarios and the settings, independent of the number of
-/// threads. `report` is called with the numbers of completed and of all simulations, from several threads, and may stop
-/// them.
+/// threads. `report` is called from several threads with the number of completed simulations and the total, and may
+/// cancel the calibration.
 ///
 /// # Errors
 /// If a scenario is not a stack of linear laws, cannot be simulated or does not match the observations,
-/// or if nothing within the range agrees with them; and if it was stopped.
+/// or if no simulation within the range runs to its end; [`CalibrateError::Stopped`] if `report` canceled it.
 pub fn collapse(
     observations: &Observations,
     scenarios: &[Scenario],
@@ -150,7 +151,7 @@ pub fn collapse(
         let batch: Vec<Prepared> = draws
             .iter()
             .flat_map(|draw| {
-                // One generator for all tests of a sample: each stack is built anew.
+                // One generator for all tests of a sample, so that every stack has its own placement.
                 let mut random = Random::new(draw.seed);
                 let built = |trial: &Trial<'_>| {
                     let scenario = trial.tunable.at(&trial.scenario, &point(draw));
@@ -185,7 +186,8 @@ pub fn collapse(
     }
     let posterior = posterior.ok_or_else(|| TableError::Unsuited {
         file: observations.file.clone(),
-        reason: "no simulation within the range runs to its end: start from a sounder scenario"
+        reason: "no simulation within the range runs to its end from a stack that stands at rest: start from \
+                 other values"
             .to_owned(),
     })?;
     let estimates = estimates(&lead.tunable, &posterior, reach);
@@ -211,8 +213,8 @@ pub fn collapse(
             ));
             if share < UNSEEN {
                 warnings.push(format!(
-                    "test {}: the model hardly shows what was observed ({name} in {:.0} % of the weight): see \
-                     whether motion, geometry and the definition of the mode are those of the test",
+                    "test {}: the model hardly reproduces the observation ({name} in {:.0} % of the weight): check \
+                     that motion, geometry and the definition of the mode are those of the test",
                     at + 1,
                     100.0 * share
                 ));
@@ -221,7 +223,7 @@ pub fn collapse(
     }
     Ok(Calibration {
         title: format!(
-            "collapse {}: simulated with stacks built anew each time",
+            "collapse {}: simulated with random placements of racks and barrels",
             observations.file
         ),
         scenario: lead.tunable.scenario_lines(&medians),
@@ -234,7 +236,7 @@ pub fn collapse(
     })
 }
 
-/// Combines the tests with their scenarios and checks their consistency.
+/// Pairs the tests with their scenarios and checks that they are consistent.
 fn trials<'a>(
     observations: &'a Observations,
     scenarios: &[Scenario],
@@ -243,7 +245,7 @@ fn trials<'a>(
 ) -> Result<Vec<Trial<'a>>, CalibrateError> {
     if scenarios.len() != observations.tests.len() {
         return Err(CalibrateError::Scenario(format!(
-            "{} scenarios do not go with {} tests: give one for each, in their order",
+            "there are {} scenarios for {} tests: give one scenario per test, in the same order",
             scenarios.len(),
             observations.tests.len()
         )));
@@ -259,8 +261,8 @@ fn trials<'a>(
             let differs = |p: &&Parameter| lead.tunable.start(**p) != tunable.start(**p);
             if let Some(parameter) = parameters.iter().find(differs) {
                 return Err(CalibrateError::Scenario(format!(
-                    "the scenarios of test 1 and test {} state another {}: one value is looked for, so \
-                     state the same, or do not fit it",
+                    "the scenarios of tests 1 and {} differ in {}, and a fit gives one value for all tests: \
+                     state the same value in both, or do not fit it",
                     at + 1,
                     parameter.name()
                 )));
@@ -274,7 +276,7 @@ fn trials<'a>(
     Ok(trials)
 }
 
-/// Runs a test briefly with its own scenario: it must be possible, and contain the observed barrels.
+/// Runs the scenario of a test for a millisecond, to check that it can be simulated and has the observed barrels.
 fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);
@@ -296,7 +298,7 @@ fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), Cali
     }
     if observed.until > 120.0 {
         return Err(CalibrateError::Run(RunFailure::Duration(format!(
-            "test {}: {} s are too long to simulate over and over: end the watch at 120 s",
+            "test {}: the observation lasts {} s, too long to simulate many times: shorten it to 120 s at most",
             at + 1,
             observed.until
         ))));
@@ -320,7 +322,7 @@ fn estimates(tunable: &Tunable, posterior: &Posterior, reach: f64) -> Vec<Estima
     tunable.parameters().iter().enumerate().map(estimate).collect()
 }
 
-/// Describes what the tests do not determine, one sentence each.
+/// Returns one sentence for each quantity that the tests do not determine.
 fn identifiability(
     estimates: &[Estimate],
     correlation: &[Vec<f64>],
@@ -333,13 +335,13 @@ fn identifiability(
         let width = posterior.quantile(at, 0.975) - posterior.quantile(at, 0.025);
         if width > (1.0 - INFORMATIVE) * 1.9 {
             warnings.push(format!(
-                "what was observed says nothing about {}: its interval is the range that was tried, not a \
-                 measurement; test it on its own, or do not fit it",
+                "the observations do not determine {}: its interval is the range that was tried, not a \
+                 measurement; determine it by a test of its own, or do not fit it",
                 estimate.name
             ));
         } else if posterior.quantile(at, 0.975) > 0.98 || posterior.quantile(at, 0.025) < -0.98 {
             warnings.push(format!(
-                "the interval of {} reaches the end of what was tried (a factor of {within}): widen it",
+                "the interval of {} reaches the end of the range that was tried (a factor of {within}): widen the range",
                 estimate.name
             ));
         }
@@ -347,8 +349,8 @@ fn identifiability(
     warnings.extend(inseparable(estimates, correlation, ALIKE));
     if posterior.power < 1.0 {
         warnings.push(format!(
-            "too few simulations came near to what was observed, so its likelihood counts to the power {} and \
-             the intervals are wider than they need be: run more simulations",
+            "too few simulations agree with the observations, so the likelihood is raised to the power {} and \
+             the intervals are wider than necessary: run more simulations",
             short(posterior.power)
         ));
     }

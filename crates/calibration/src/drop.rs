@@ -1,4 +1,4 @@
-//! Restitution and damping `c` from drop tests: heights, or times of impact.
+//! Restitution and damping `c` from drop tests, given as heights or as times of impact.
 
 use barrelstack::scenario::Dimension;
 use barrelstack_dynamics::contact::restitution;
@@ -19,7 +19,7 @@ pub struct Striker {
     pub mass: f64,
     /// Stiffness `k` (N/m) of one contact node.
     pub stiffness: f64,
-    /// Number of nodes that it hits at once.
+    /// Number of contact nodes that the mass hits at once.
     pub nodes: u32,
     /// Acceleration of gravity (m/s²).
     pub gravity: f64,
@@ -28,20 +28,22 @@ pub struct Striker {
 /// Standard gravity (m/s²).
 pub const GRAVITY: f64 = 9.80665;
 
-/// Fits from a start; parameters are about 1, with small finite differences and a small last step.
+/// Fits parameters of about 1, with small finite differences and a small last step.
 fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
     let parameters = start.to_vec();
     least_squares::fit(Start { parameters, slopes: None, width: 1e-4, share: 0.01 }, evaluate)
 }
 
-/// Estimates restitution, and with a striker the damping, from a table with the columns `drop height` and
-/// `rebound height`, or `time` of the impacts of one bounce sequence.
+/// Estimates the restitution from a drop test, and the damping if the striker is given.
+///
+/// The table has the columns `drop height` and `rebound height`, or the column `time` with the impacts of one bounce
+/// sequence.
 ///
 /// With a striker, the impact is solved with gravity and with its duration, and ζ is fitted to
 /// the rebounds or the times: gravity presses the mass into the contact and reduces the
 /// rebound of slow impacts.
-/// Without one the impact is taken as instantaneous.
-/// The scatter is attributed to restitution from drop to drop, or to the times.
+/// Without a striker the impact is taken as instantaneous.
+/// The scatter is attributed to the restitution, which differs from drop to drop, or to the times.
 ///
 /// # Errors
 /// If the table lacks its columns or rows, or a rebound does not match its drop.
@@ -80,13 +82,13 @@ pub fn drop(
         ));
     } else {
         warnings.push(
-            "gravity during the impact is left out, so slow impacts show too little restitution: give the \
-             mass and the stiffness for the damping c"
+            "gravity during the impact is neglected, so slow impacts give too low a restitution: state the \
+             mass and the stiffness to include it and to obtain the damping c"
                 .to_owned(),
         );
         scenario = format!(
-            "[interface.{interface}]\nrestitution = {}\n# restitution needs reference_mass, what falls on one node, and \
-             stiffness beside it\n",
+            "[interface.{interface}]\nrestitution = {}\n# restitution needs stiffness and reference_mass (the mass \
+             that falls on one node) beside it\n",
             rounded(e)
         );
     }
@@ -102,13 +104,13 @@ pub fn drop(
     })
 }
 
-/// Results of either form of the test.
+/// Result of a drop test, from heights or from times.
 struct Found {
     restitution: Estimate,
-    /// ln ζ and half its interval.
+    /// ln ζ, with ζ the damping ratio, and half the width of its interval.
     log_ratio: Option<(f64, f64)>,
     impacts: usize,
-    /// Measured rebounds, and those of the fit.
+    /// Figure of the measured and the fitted rebounds.
     figure: Figure,
     warnings: Vec<String>,
 }
@@ -132,11 +134,13 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
     if let Some(row) = from.iter().zip(&to).position(|(from, to)| to >= from) {
         let expected = format!("less than the drop height {}", table.cell(row, "drop height"));
         let found = table.cell(row, "rebound height");
-        let remedy = "nothing rebounds higher than it fell; correct the row or remove it";
+        let remedy = "a mass cannot rebound higher than it fell; correct the row or remove it";
         return Err(table.at(row, "rebound height", &expected, &found, remedy).into());
     }
     if from.len() < 2 {
-        return Err(table.unsuited("one drop shows no scatter: at least two are needed").into());
+        return Err(table
+            .unsuited("one drop does not show the scatter: at least two are needed")
+            .into());
     }
     let shown: Vec<f64> = from.iter().zip(&to).map(|(from, to)| (to / from).sqrt()).collect();
     let (e, half) = mean(&shown);
@@ -172,15 +176,14 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
 /// Draws rebounds (m) over drops (m), measured and fitted.
 fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     let centimeters = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
-    // Only between the measured drops: after slower ones the mass may not rebound.
+    // The curve spans the measured drops only: after a lower drop the mass may not rebound.
     let lowest = from.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = from.iter().copied().fold(0.0, f64::max);
     let series = vec![
         curve("fitted", [100.0 * lowest, 100.0 * highest], |x| 100.0 * rebound(0.01 * x)),
         measured("measured", centimeters(from), centimeters(to), 1),
     ];
-    let caption =
-        "The drops: how high it rebounds against how high it falls from, and what the fit gives.";
+    let caption = "Drop test: rebound height against drop height, measured and fitted.";
     let axes = [Axis::new("drop height", "cm"), Axis::new("rebound height", "cm")];
     figure("drops", caption, axes, series)
 }
@@ -195,8 +198,7 @@ fn bounces(times: &[f64], residuals: &[f64], unit: f64) -> Figure {
         fitted("fitted", number.clone(), between(&found), 0),
         measured("measured", number, between(times), 1),
     ];
-    let caption =
-        "The bounces: how long each flight lasts between two impacts, and what the fit gives.";
+    let caption = "Bounces: duration of each flight between two impacts, measured and fitted.";
     let axes = [Axis::new("flight", ""), Axis::new("duration", "s")];
     figure("bounces", caption, axes, series)
 }
@@ -215,8 +217,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     }
     if times.len() < 4 {
         return Err(table.unsuited(format!(
-            "{} impacts do not show restitution and its scatter: at least four of one bounce sequence \
-             are needed",
+            "{} impacts do not determine the restitution and its scatter: at least four of one bounce \
+             sequence are needed",
             times.len()
         )).into());
     }
@@ -227,7 +229,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
             "the flights between impacts do not grow shorter: are these the impacts of one bounce?",
         ).into());
     }
-    // Times in units of the first flight, speeds in units of that of the first one: all about 1.
+    // Times are in units of the first flight and speeds in units of the first speed, so that all are about 1.
     let (origin, unit) = (times[0], flights[0]);
     let instant = |e: f64, at: usize| (1.0 - math::pow(e, at as f64)) / (1.0 - e);
     let bounce = |point: &Vec<f64>| -> Option<Vec<f64>> {
@@ -248,7 +250,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
         let (figure, impacts) = (picture(plain), times.len());
         return Ok(Found { restitution, log_ratio: None, impacts, figure, warnings });
     };
-    // The speed before the first impact from the first flight, which starts with the speed after it.
+    // The first flight gives the speed after the first impact; dividing by the restitution gives that before it.
     let first_speed = 0.5 * striker.gravity * unit / restitution.value;
     let solved = |point: &Vec<f64>| -> Option<Vec<f64>> {
         let (mut time, mut speed) = (point[0], first_speed * math::exp(point[1]));
@@ -271,7 +273,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// Returns ln ζ without gravity, the start of the fit with gravity.
+/// Returns ln ζ for a restitution without gravity, from which the fit with gravity starts.
 fn start_ratio(e: f64) -> f64 {
     let ratio = restitution::speed_gap_damping_ratio(e).unwrap_or(0.1);
     math::log(ratio.clamp(1e-3, 1e3))
@@ -286,7 +288,7 @@ fn log_interval(fit: Option<&Fit>, at: usize) -> Option<(f64, f64)> {
 
 fn no_rebound(striker: &Striker) -> String {
     format!(
-        "no damping shows these rebounds for {} kg on {} nodes of {} N/m under gravity: check mass, \
+        "no damping gives these rebounds for {} kg on {} nodes of {} N/m under gravity: check mass, \
          stiffness and their units",
         short(striker.mass),
         striker.nodes,
@@ -294,14 +296,14 @@ fn no_rebound(striker: &Striker) -> String {
     )
 }
 
-/// Warns of slow impacts, which sink in under gravity before they rebound and hardly depend on the damper.
+/// Returns a warning if impacts are so slow that gravity, rather than the damper, determines the rebound.
 fn gravity_warning(striker: &Striker, log_ratio: f64, speed: f64) -> Option<String> {
     let ideal = restitution::speed_gap(math::exp(log_ratio));
     let shown = striker.strike(log_ratio, speed).speed / speed;
     (shown < 0.9 * ideal).then(|| {
         format!(
-            "gravity takes {:.0} % of the slowest rebound ({} m/s): c then leans on k; drop from higher, \
-             or leave out the last bounces",
+            "gravity takes {:.0} % of the slowest rebound ({} m/s), so c depends strongly on the given k: drop from \
+             higher, or leave out the last bounces",
             100.0 * (1.0 - shown / ideal),
             short(speed)
         )

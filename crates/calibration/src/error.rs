@@ -3,10 +3,10 @@
 use barrelstack::run::RunFailure;
 use barrelstack_input::measured::TableError;
 
-/// The reason why a test gives no parameters.
+/// Reason why a test gives no parameters.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
-    /// The table cannot be used, or determines no parameter.
+    /// The table is invalid, or does not determine the parameters.
     #[error(transparent)]
     Table(#[from] TableError),
     /// The scenario does not match the fit.
@@ -15,7 +15,7 @@ pub enum CalibrateError {
     /// The first simulation of the fit fails.
     #[error(transparent)]
     Run(#[from] RunFailure),
-    /// It was stopped: a part of the simulations gives no estimate.
+    /// The calibration was canceled; a part of the simulations gives no estimate.
     #[error("the simulations were stopped")]
     Stopped,
 }

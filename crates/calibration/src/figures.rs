@@ -4,7 +4,7 @@ use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
 use super::Estimate;
 
-/// Number of intervals of a fitted curve.
+/// Number of intervals into which a fitted curve is divided for drawing.
 const PLACES: usize = 60;
 
 /// Creates a series of single measurements.
@@ -19,7 +19,7 @@ pub(super) fn fitted(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Ser
     Series { style, ..Series::new(label, x, y) }
 }
 
-/// Creates a fitted curve between two abscissas.
+/// Creates a fitted curve `y = of(x)` between two values of `x`.
 pub(super) fn curve(label: &str, [from, to]: [f64; 2], of: impl Fn(f64) -> f64) -> Series {
     let place = |k: usize| from + (to - from) * k as f64 / PLACES as f64;
     let x: Vec<f64> = (0..=PLACES).map(place).collect();
@@ -27,7 +27,7 @@ pub(super) fn curve(label: &str, [from, to]: [f64; 2], of: impl Fn(f64) -> f64) 
     fitted(label, x, y, 0)
 }
 
-/// Creates the line of an estimate between two abscissas, with its interval.
+/// Creates a horizontal line at an estimate between two values of `x`, with the interval of the estimate.
 pub(super) fn level(estimate: &Estimate, [from, to]: [f64; 2], index: usize) -> Series {
     let label = format!("{}, 95 % interval", estimate.name);
     let range = vec![[estimate.low, estimate.high]; 2];
@@ -44,7 +44,7 @@ pub(super) fn span(values: &[f64]) -> [f64; 2] {
 
 /// Creates a figure of a test.
 pub(super) fn figure(id: &str, caption: &str, [x, y]: [Axis; 2], series: Vec<Series>) -> Figure {
-    // Time series are interactive, for closer inspection.
+    // Time series are interactive, so that a reader can zoom in.
     let interactive = series.iter().all(|one| one.range.is_empty() && !one.style.points);
     Figure::new(id, caption, Plot { x, y, series, interactive, ..Plot::default() })
 }

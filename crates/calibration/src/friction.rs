@@ -44,7 +44,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     };
     if rest.len() < 2 {
         return Err(table
-            .unsuited("one row shows no scatter: repeat the test at least once")
+            .unsuited("one row does not show the scatter: repeat the test at least once")
             .into());
     }
     let coefficient = |name: &str, values: &[f64]| {
@@ -71,8 +71,8 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
             let _ = writeln!(scenario, "static_coefficient = {}", rounded(at_rest));
         } else {
             warnings.push(
-                "sliding takes no less than breaking away: static_coefficient is left out, so that both \
-                 are the kinetic one"
+                "the kinetic coefficient is not below the static one: static_coefficient is left out, and the kinetic \
+                 coefficient stands for both"
                     .to_owned(),
             );
         }
@@ -80,8 +80,8 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     } else {
         let _ = writeln!(scenario, "coefficient = {}", rounded(at_rest));
         warnings.push(
-            "there is no test of sliding: the kinetic coefficient is taken as the static one, which is \
-             the larger of the two"
+            "sliding was not tested: the kinetic coefficient is set to the static one, although it is usually \
+             smaller"
                 .to_owned(),
         );
     }
@@ -109,7 +109,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     })
 }
 
-/// Draws the coefficient of every test, over the load if measured, and the means.
+/// Draws the coefficient of every test and the means, against the load if it was measured.
 fn picture(
     table: &Table,
     coefficients: &[Option<Vec<f64>>; 2],
@@ -128,8 +128,7 @@ fn picture(
         let label = format!("{}, single tests", estimate.name);
         series.push(measured(&label, x.clone(), values.clone(), index));
     }
-    let caption =
-        "The coefficient of friction that every test gives, and their mean with its 95 % interval.";
+    let caption = "Coefficient of friction of every test, and the mean with its 95 % interval.";
     Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
 }
 
@@ -175,7 +174,7 @@ fn tilt(table: &Table) -> Result<Coefficients, CalibrateError> {
     Ok((rest, Some(slide.collect())))
 }
 
-/// Warns of a coefficient that depends on the load, and so is no constant (a slope outside its 99 % interval).
+/// Returns a warning if the coefficient depends on the load: the 99 % interval of the slope excludes zero.
 fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, CalibrateError> {
     if !table.has("normal force") || table.has("angle") {
         return Ok(None);
@@ -189,7 +188,7 @@ fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, Calibrate
     let at = |force: f64| short(found.intercept + found.slope * force);
     Ok(clear.then(|| {
         format!(
-            "the coefficient goes with the load, from {} at {} N to {} at {} N: test near the load that \
+            "the coefficient changes with the load, from {} at {} N to {} at {} N: test near the load that \
              the stack puts on the interface",
             at(low),
             short(low),

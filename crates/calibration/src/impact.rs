@@ -2,25 +2,26 @@
 
 use barrelstack_dynamics::{NormalLaw, math};
 
-/// One impact.
+/// Result of one impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Rebound speed (m/s); zero if the mass stays.
+    /// Rebound speed (m/s); zero if the mass does not rebound.
     pub speed: f64,
-    /// Time (s) from touch to release; zero if the mass stays.
+    /// Time (s) from first touch to release; zero if the mass does not rebound.
     pub duration: f64,
     /// Largest penetration (m).
     pub depth: f64,
 }
 
-/// Steps of the approach per radian of the undamped oscillation.
+/// Integration steps of the approach per radian of the undamped oscillation.
 const STEPS: f64 = 100.0;
 
-/// Ratio of speed to depth × frequency below which the mass is at rest.
+/// Ratio of speed to depth × frequency below which the mass counts as at rest.
 const CREEP: f64 = 1e-9;
 
-/// Computes the impact of `mass` (kg) on the speed-gap law of `stiffness` (N/m) and `damping` (N·s/m) at `speed`
-/// (m/s) under `gravity` (m/s²).
+/// Computes the impact of a mass on a contact of the speed-gap law under gravity.
+///
+/// `mass` is in kg, `stiffness` in N/m, `damping` in N·s/m, `gravity` in m/s² and the impact speed `speed` in m/s.
 ///
 /// The approach, on which the damper acts, is integrated by the classical Runge–Kutta method to the
 /// deepest point `x`; the rebound is elastic, so the mass leaves at `√(ω² x² − 2 g x)`, if at all.
@@ -29,7 +30,7 @@ const CREEP: f64 = 1e-9;
 /// use barrelstack_calibration::impact;
 /// use barrelstack_dynamics::contact::restitution;
 ///
-/// // Without gravity it has the restitution of the closed form.
+/// // Without gravity, the restitution is that of the closed form.
 /// let found = impact(100.0, 1e6, 2000.0, 0.0, 1.0);
 /// let e = restitution::speed_gap(restitution::damping_ratio(1e6, 2000.0, 100.0));
 /// assert!((found.speed - e).abs() < 1e-8); // measured 2e-11
@@ -45,18 +46,18 @@ pub fn impact(mass: f64, stiffness: f64, damping: f64, gravity: f64, speed: f64)
         (x + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4), v + h / 6.0 * (l1 + 2.0 * (l2 + l3) + l4))
     };
     let omega = (stiffness / mass).sqrt();
-    // A strong damper is faster than the spring.
+    // A strong damper acts faster than the spring, so the step shrinks with the damping.
     let step = 1.0 / (STEPS * omega * (1.0 + damping / (stiffness * mass).sqrt()));
     let (mut state, mut time) = ((0.0, speed), 0.0);
     loop {
         let next = advance(state, step);
-        // NaN ends the approach as well, and so does creep into a strong damper, whose speed never quite vanishes.
+        // NaN ends the approach as well; so does creep, since under a strong damper the speed never reaches zero.
         if next.1.is_nan() || next.1 <= CREEP * omega * next.0 {
             break;
         }
         (state, time) = (next, time + step);
     }
-    // The deepest point lies within the last step; the law's kink at zero speed is not crossed.
+    // The deepest point lies within the last step; bisection finds it without stepping across the kink at zero speed.
     let (mut low, mut high) = (0.0, step);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);

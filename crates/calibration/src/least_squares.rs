@@ -1,49 +1,49 @@
-//! Nonlinear least squares by Levenberg and Marquardt, for a handful of parameters.
+//! Nonlinear least squares for a few parameters, by the method of Levenberg and Marquardt.
 //!
-//! Differences are central and evaluated in one batch, so that simulations run in parallel.
+//! Derivatives are central differences that are evaluated in one batch, so that simulations run in parallel.
 //! With at most four parameters the linear algebra is a Cholesky factorization of a 4 × 4 matrix; a library
 //! for it would be larger than the whole of calibration.
 
-/// Returns the residuals for each of a batch of parameter sets; `None` if the model has no result.
+/// Function that returns the residuals for each of a batch of parameter sets; `None` if the model has no result there.
 pub type Evaluate<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + 'a;
 
 /// Largest number of steps before a fit counts as not converged.
 const MOST_STEPS: usize = 30;
 
-/// Largest change of a parameter in one step, in its own units: parameters are logarithms or scaled to be about 1.
+/// Largest change of a parameter in one step. Parameters are logarithms, or scaled to be about 1.
 const LONGEST: f64 = 0.5;
 
 /// Result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// Parameters.
+    /// Fitted parameters.
     pub parameters: Vec<f64>,
-    /// Residuals there.
+    /// Residuals at the fitted parameters.
     pub residuals: Vec<f64>,
-    /// Sensitivities of the residuals to every parameter, at most one last step away.
+    /// Derivatives of the residuals with respect to every parameter, taken at most one final step away from the fit.
     pub slopes: Vec<Vec<f64>>,
-    /// `true` for each parameter on which any residual depends.
+    /// `true` for each parameter on which at least one residual depends.
     pub matters: Vec<bool>,
     /// Covariance of the parameters that matter, in their order; `None` if they are inseparable.
     pub covariance: Option<Vec<Vec<f64>>>,
-    /// Sum of squared sensitivities between the parameters that matter, in their order.
+    /// Matrix `JᵀJ` of the derivatives with respect to the parameters that matter, in their order.
     pub information: Vec<Vec<f64>>,
     /// Degrees of freedom: residuals minus parameters that matter.
     pub freedom: usize,
-    /// `true` if the last step was short enough.
+    /// `true` if the fit converged: its last step was short enough.
     pub converged: bool,
 }
 
 /// Start and settings of a fit.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// Parameters.
+    /// Parameters at which the fit starts.
     pub parameters: Vec<f64>,
-    /// Sensitivities there, if known.
+    /// Derivatives of the residuals at the start, if known.
     pub slopes: Option<Vec<Vec<f64>>>,
-    /// Step of finite differences to either side.
+    /// Step of the finite differences to either side.
     pub width: f64,
-    /// A step shorter than this fraction of the standard error is the last one.
+    /// Fraction of the standard error; a step shorter than this ends the fit.
     pub share: f64,
 }
 
@@ -118,7 +118,7 @@ fn finish(
     Fit { parameters, residuals, slopes, matters, covariance, information, freedom, converged }
 }
 
-/// Computes the sensitivities: the derivatives of all residuals with respect to every parameter.
+/// Computes the derivatives of all residuals with respect to every parameter.
 fn jacobian(at: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Vec<Vec<f64>>> {
     let moved = |which: usize, by: f64| {
         let mut point = at.to_vec();
@@ -135,13 +135,13 @@ fn jacobian(at: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Vec<Vec<f
     Some(found.chunks_exact(2).map(slope).collect())
 }
 
-/// Solves `(JᵀJ + λ diag JᵀJ) δ = −Jᵀr`; parameters without sensitivity do not change.
+/// Solves `(JᵀJ + λ diag JᵀJ) δ = −Jᵀr`; parameters that affect no residual do not change.
 fn damped_step(normal: &[Vec<f64>], gradient: &[f64], lambda: f64) -> Option<Vec<f64>> {
     let mut matrix = normal.to_vec();
     for (at, row) in matrix.iter_mut().enumerate() {
         row[at] = if normal[at][at] > 0.0 { row[at] * (1.0 + lambda) } else { 1.0 };
     }
-    // A tiny λ may leave a singular matrix indefinite by rounding.
+    // With a tiny λ, rounding may make a singular matrix indefinite.
     let factor = cholesky(&matrix).or_else(|| {
         for (at, row) in matrix.iter_mut().enumerate() {
             row[at] *= 1.0 + 1e-6;
@@ -218,8 +218,10 @@ pub fn normalized(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..matrix.len()).map(row).collect()
 }
 
-/// Returns the ratio of the largest to the smallest eigenvalue of a positive definite matrix, by the power
-/// method on it and on its inverse; infinite if it is singular.
+/// Returns the ratio of the largest to the smallest eigenvalue of a positive definite matrix; infinite if it is
+/// singular.
+///
+/// The power method is applied to the matrix and to its inverse.
 pub fn condition(matrix: &[Vec<f64>]) -> f64 {
     let largest = |matrix: &[Vec<f64>]| {
         let mut vector: Vec<f64> = (0..matrix.len()).map(|at| 1.0 + 0.3 * at as f64).collect();

@@ -1,16 +1,16 @@
-//! The page of a calibration: the parameters, and measurements compared with the fit.
+//! Report page of a calibration: the parameters, and the measurements compared with the fit.
 
 use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, significant};
 
 use super::{Calibration, Estimate};
 
 impl Calibration {
-    /// Builds the page.
+    /// Builds the report page.
     pub fn document(&self) -> Document {
         let heading = |text: &str| Block::heading(2, text);
         let mut blocks = Vec::new();
         if !self.figures.is_empty() {
-            blocks.push(heading("What was measured, and the fit"));
+            blocks.push(heading("Measurements and fit"));
             blocks.extend(self.figures.iter().cloned().map(Block::Figure));
         }
         blocks.push(heading("Parameters"));
@@ -20,7 +20,7 @@ impl Calibration {
         }
         if !self.facts.is_empty() {
             blocks.push(Block::Table(Table::of(
-                "What they rest on.",
+                "Data of the test and of the fit.",
                 &self.facts,
                 &[
                     ("fact", "", &|(name, _)| Cell::text(name)),
@@ -29,7 +29,7 @@ impl Calibration {
             )));
         }
         if !self.scenario.is_empty() {
-            blocks.push(heading("For a scenario"));
+            blocks.push(heading("Lines for a scenario"));
             blocks.push(Block::Table(Table::of(
                 "Lines to paste into a scenario.",
                 self.scenario.lines(),
@@ -41,8 +41,8 @@ impl Calibration {
             verdict: Verdict {
                 headline: self.headline(),
                 sentences: vec![
-                    "Intervals are of 95 % and hold what scatters in the test; the model, and what was given \
-                     as exact, are not in them."
+                    "The 95 % intervals cover the scatter of the test. They do not cover errors of the model, or of \
+                     values that were given as exact."
                         .to_owned(),
                 ],
                 ..Verdict::default()
@@ -57,7 +57,7 @@ impl Calibration {
         }
     }
 
-    /// States every parameter in a few words.
+    /// Returns a sentence with the value of every parameter.
     fn headline(&self) -> String {
         let stated = |estimate: &Estimate| {
             let unit = estimate.unit();
@@ -71,7 +71,7 @@ impl Calibration {
     fn parameters(&self) -> Table {
         let bound = |value: f64| Cell::number(Some(value).filter(|value| value.is_finite()), 4);
         Table::of(
-            "What the test gives, with 95 % intervals.",
+            "Parameters from the test, with 95 % intervals.",
             &self.estimates,
             &[
                 ("parameter", "", &|of| Cell::text(&of.name)),

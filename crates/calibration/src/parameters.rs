@@ -1,4 +1,4 @@
-//! The contact parameters that a test of a whole stack can determine, and scenarios with other values of them.
+//! Contact parameters that a test of a whole stack can determine, and scenarios with changed values of them.
 
 use std::fmt::Write as _;
 
@@ -14,13 +14,13 @@ use super::result::{quoted, rounded};
 /// A parameter that a response or a collapse can determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// Stiffness of barrel–rack; that of rack–ground keeps its ratio to it.
+    /// Stiffness of barrel–rack contacts; the ratio of rack–ground stiffness to it is kept.
     Stiffness,
-    /// Damping of barrel–rack; that of rack–ground keeps its ratio to it.
+    /// Damping of barrel–rack contacts; the ratio of rack–ground damping to it is kept.
     Damping,
-    /// Friction of barrel–rack; static and kinetic keep their ratio.
+    /// Friction of barrel–rack contacts; the ratio of static to kinetic friction is kept.
     FrictionBarrelRack,
-    /// Friction of rack–ground; static and kinetic keep their ratio.
+    /// Friction of rack–ground contacts; the ratio of static to kinetic friction is kept.
     FrictionRackGround,
 }
 
@@ -33,7 +33,7 @@ impl Parameter {
         ("mu-rg", Self::FrictionRackGround),
     ];
 
-    /// Returns the name in tables.
+    /// Returns the name of the parameter in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stiffness => "stiffness k",
@@ -44,7 +44,7 @@ impl Parameter {
     }
 }
 
-/// Constants of one interface.
+/// Contact constants of one interface.
 #[derive(Clone, Copy)]
 struct Constants {
     stiffness: f64,
@@ -53,9 +53,9 @@ struct Constants {
     rest: f64,
 }
 
-/// The parameters to be estimated, with their values in a scenario.
+/// Parameters to be estimated, with their values in a scenario.
 ///
-/// A point holds the logarithm of a factor on each of them, in their order.
+/// A point of the search holds one number per parameter: the logarithm of the factor on its value in the scenario.
 pub(super) struct Tunable {
     parameters: Vec<Parameter>,
     barrel_rack: Constants,
@@ -64,7 +64,7 @@ pub(super) struct Tunable {
 }
 
 impl Tunable {
-    /// Creates the parameters of a scenario.
+    /// Reads the values of parameters from a scenario.
     ///
     /// # Errors
     /// If the scenario is not a stack of linear laws with friction.
@@ -75,7 +75,7 @@ impl Tunable {
         let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
         let Scene::Stack { stack, .. } = &scenario.scene else {
             return Err(refuse(
-                "k, c and μ are fitted to a stack, and this scenario is a free scene",
+                "k, c and μ can be fitted to a stack only, and this is a free scene: use the scenario of a stack",
             ));
         };
         let interfaces = &stack.interfaces;
@@ -84,7 +84,7 @@ impl Tunable {
         let basis = interfaces.barrel_rack.basis;
         if interfaces.rack_ground.basis != basis {
             return Err(refuse(
-                "interface barrel-rack and rack-ground differ in `basis`: state both per seat, both per \
+                "the interfaces barrel-rack and rack-ground differ in `basis`: state both per seat, both per \
                  node or both per length",
             ));
         }
@@ -117,7 +117,7 @@ impl Tunable {
         }
     }
 
-    /// Returns a scenario with the values of a point.
+    /// Returns a copy of a scenario with the parameter values of a point.
     pub(super) fn at(&self, scenario: &Scenario, point: &[f64]) -> Scenario {
         let mut scenario = scenario.clone();
         if let Scene::Stack { stack, .. } = &mut scenario.scene {
@@ -146,7 +146,7 @@ impl Tunable {
         constants
     }
 
-    /// Writes the lines for a scenario: each interface with all its fitted constants.
+    /// Returns the lines to paste into a scenario: each interface with its fitted constants.
     pub(super) fn scenario_lines(&self, point: &[f64]) -> String {
         let mut text = String::new();
         let has = |parameter| self.parameters.contains(&parameter);
@@ -178,7 +178,7 @@ impl Tunable {
     }
 }
 
-/// Returns the constants of an interface, which must be positive so that a factor can change them.
+/// Returns the constants of an interface; an error if one of them is not positive, since a factor could not change it.
 fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
     let refuse =
         |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
@@ -186,10 +186,10 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
     | NormalLaw::KelvinVoigt { stiffness, damping }) = interface.normal
     else {
         return refuse(
-            "k and c are those of a linear law: law = \"speed-gap\" or \"kelvin-voigt\"",
+            "k and c are constants of a linear law: set law = \"speed-gap\" or law = \"kelvin-voigt\"",
         );
     };
-    // A fit that varies k and c separately starts from the c that a stated restitution gives.
+    // The fit varies k and c separately, so a restitution is first converted to a c.
     let damping = match damping {
         Damping::Coefficient(damping) => damping,
         Damping::Restitution { restitution: ratio, reference: mass } => {
@@ -206,10 +206,10 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
             (coefficient, static_coefficient)
         }
         Friction::Regularized { coefficient, .. } => (coefficient, coefficient),
-        Friction::None => return refuse("a fit needs a law of friction: law = \"coulomb\""),
+        Friction::None => return refuse("a fit needs a law of friction: set law = \"coulomb\""),
     };
     if [stiffness, damping, kinetic].iter().any(|value| *value <= 0.0) {
-        return refuse("a fit needs stiffness, damping and friction above zero to start from");
+        return refuse("a fit needs starting values of stiffness, damping and friction above zero");
     }
     Ok(Constants { stiffness, damping, kinetic, rest })
 }

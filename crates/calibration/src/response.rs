@@ -14,23 +14,23 @@ use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::{inseparable, short};
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 
-/// Step of the logarithms of the parameters for sensitivities: wide enough
+/// Finite-difference step in the logarithms of the parameters: wide enough
 /// that the effects of single nodes coming into contact average out.
 const WIDTH: f64 = 0.01;
 
-/// Length of the last step of a fit over the standard error; it adds 0.3 % to an interval.
+/// Longest last step of a fit, relative to the standard error; it adds 0.3 % to an interval.
 const SHARE: f64 = 0.05;
 
-/// The same length in the first fit, which only estimates the scatter of the channels.
+/// Longest last step of the first fit, which only estimates the scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
-/// Fraction of a channel's magnitude below which residuals count as rounding.
+/// Fraction of the root mean square of a channel below which residuals count as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Correlation above which two parameters are inseparable.
+/// Correlation above which two parameters are reported as inseparable.
 const ALIKE: f64 = 0.95;
 
-/// Largest ratio of eigenvalues of a well-conditioned test.
+/// Largest condition number of a well-conditioned test.
 const ILL: f64 = 1e3;
 
 /// Fits parameters of a stack to its recorded histories.
@@ -43,18 +43,18 @@ const ILL: f64 = 1e3;
 /// minimized over the logarithms of the parameters; the scatter is that of a first fit.
 /// The covariance follows from the last sensitivities and residuals. If residuals are correlated in time
 /// (lag-one correlation ρ), it is widened by (1 + ρ)/(1 − ρ).
-/// The nominal 95 % intervals covered the truth in about 90 of 100 simulated records (89 to 94), for a reason
-/// that is not known; the result warns of it.
+/// The nominal 95 % intervals covered the true values in about 90 of 100 simulated records (89 to 94). The reason is
+/// not known; the result contains a warning.
 ///
-/// `report` is called with the number of simulations started, from several threads, and may stop them.
+/// `report` is called from several threads with the number of simulations started, and may cancel the calibration.
 ///
 /// The fit starts from the scenario and finds the minimum next to it.
-/// Impacts, slips and falls make responses chaotic within seconds: short windows of mild shaking that
-/// still slide a little keep the response smooth.
+/// Impacts, slips and falls make responses chaotic within seconds. The response stays smooth in short windows of mild
+/// shaking with a little sliding.
 ///
 /// # Errors
-/// If the scenario is not a stack of linear laws, the table does not match it, or the first
-/// simulation fails; and if it was stopped.
+/// If the scenario is not a stack of linear laws, the table does not match the scenario, or the first
+/// simulation fails; [`CalibrateError::Stopped`] if `report` canceled it.
 pub fn response(
     scenario: &Scenario,
     table: &Table,
@@ -70,7 +70,7 @@ pub fn response(
     if values <= parameters.len() + 1 {
         return Err(table
             .unsuited(format!(
-                "{values} recorded values do not determine {} parameters and their scatter",
+                "{values} recorded values are too few to determine {} parameters and the scatter: lengthen the window",
                 parameters.len()
             ))
             .into());
@@ -100,7 +100,7 @@ pub fn response(
         for (scatter, factor) in scatter.iter_mut().zip(&factors) {
             *scatter *= factor;
         }
-        // Other weights only scale the sensitivities; no new simulations are needed.
+        // The new weights only scale the derivatives, so no new simulations are needed.
         let scaled = |slope: &Vec<f64>| -> Vec<f64> {
             let channels = by_channel(slope, rows).zip(&factors);
             channels.flat_map(|(values, factor)| values.iter().map(move |v| v / factor)).collect()
@@ -115,23 +115,23 @@ pub fn response(
     }
 
     warnings.push(
-        "the 95 % intervals of a recorded response are somewhat too narrow: they have held the truth in about 90 % of \
-         made records"
+        "the 95 % intervals of a fit to a recorded response are somewhat too narrow: they covered the true values in \
+         about 90 % of simulated records"
             .to_owned(),
     );
     if !found.converged {
         warnings.push(
-            "the fit did not settle: start closer, shorten the window or fit fewer parameters"
+            "the fit did not converge: start from closer values, shorten the window or fit fewer parameters"
                 .to_owned(),
         );
     }
     let follow = correlation_in_time(&found.residuals, rows);
-    // Chance alone gives a correlation of 2/√n.
+    // Independent residuals have a correlation of up to 2/√n by chance.
     let widening = if follow > 2.0 / (values as f64).sqrt() {
         let follow = follow.min(0.999);
         warnings.push(format!(
-            "residuals follow one another (correlation {follow:.2} from sample to sample): the model does \
-             not show all that was recorded, or it was filtered; the intervals are widened for it"
+            "residuals are correlated in time ({follow:.2} from sample to sample): the model does not \
+             reproduce the whole recording, or the recording was filtered; the intervals are widened accordingly"
         ));
         ((1.0 + follow) / (1.0 - follow)).sqrt()
     } else {
@@ -185,14 +185,14 @@ fn weighted(
     }
     found.ok_or_else(|| {
         CalibrateError::Run(RunFailure::Duration(
-            "the stack does not stand for values 1 % from those of the scenario: start from a sounder \
-             scenario"
+            "the stack does not stand with values that differ by 1 % from those of the scenario: start from \
+             other values"
                 .to_owned(),
         ))
     })
 }
 
-/// Draws every channel as recorded and as fitted.
+/// Draws every channel as recorded and as simulated with the fitted parameters.
 fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figure> {
     let fits = by_channel(residuals, measured.times.len()).zip(scatter);
     let mut figures = Vec::new();
@@ -205,8 +205,7 @@ fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figu
         };
         let simulated = recorded.iter().zip(residuals).map(|(r, off)| r + scatter * off).collect();
         let series = vec![line("fitted", simulated, 0), line("recorded", recorded.clone(), 1)];
-        let caption =
-            format!("{name}: as recorded, and as the stack moves with the fitted values.");
+        let caption = format!("{name}: recorded, and simulated with the fitted values.");
         let what = name.split_once(' ').map_or(name.as_str(), |(_, what)| what);
         let axes = [Axis::new("time", "s"), Axis::new(what, unit)];
         figures.push(figure(&format!("response-{name}"), &caption, axes, series));
@@ -244,7 +243,7 @@ fn estimates(
     (estimates, rows)
 }
 
-/// Describes what the test does not determine, one sentence each.
+/// Returns one sentence for each quantity that the test does not determine.
 fn identifiability(
     estimates: &[Estimate],
     correlation: &[Vec<f64>],
@@ -255,13 +254,13 @@ fn identifiability(
     for (estimate, matters) in estimates.iter().zip(matters) {
         if !matters {
             warnings.push(format!(
-                "{} leaves no trace in this test and keeps the value of the scenario: nothing depends on \
-                 it here",
+                "the response in this test does not depend on {}, which keeps its value in the \
+                 scenario",
                 estimate.name
             ));
         } else if estimate.high > 4.0 * estimate.low {
             warnings.push(format!(
-                "this test hardly determines {}: its interval spans a factor of {}",
+                "this test hardly determines {}: the interval spans a factor of {}",
                 estimate.name,
                 short(estimate.high / estimate.low)
             ));

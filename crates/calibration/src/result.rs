@@ -16,29 +16,29 @@ pub struct Estimate {
     pub low: f64,
     /// Upper end of the interval (SI); infinite if the test does not bound it.
     pub high: f64,
-    /// Dimension.
+    /// Physical dimension of the value.
     pub dimension: Dimension,
 }
 
-/// Result of a test.
+/// Result of a calibration from one test or several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
     /// The test, in one line.
     pub title: String,
     /// Parameters.
     pub estimates: Vec<Estimate>,
-    /// Correlations between the estimates, in their order; empty if they are not fitted together.
+    /// Correlations between the estimates, in their order; empty if the parameters are not fitted together.
     pub correlation: Vec<Vec<f64>>,
-    /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities; `None`
-    /// if parameters are not fitted together.
+    /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the correlation matrix of the
+    /// sensitivities; `None` if parameters are not fitted together.
     pub condition: Option<f64>,
     /// Measurements compared with the fit.
     pub figures: Vec<Figure>,
-    /// Further numbers for the reader, name and value.
+    /// Names and values of further numbers for the reader.
     pub facts: Vec<(String, String)>,
     /// Lines to paste into a scenario.
     pub scenario: String,
-    /// Limits that the reader must know, one sentence each.
+    /// Warnings, such as of limits of the test, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ impl Estimate {
         Self { name: name.to_owned(), value, low, high, dimension }
     }
 
-    /// Creates an estimate that is a function of a logarithm with a symmetric interval.
+    /// Creates an estimate that is a function of a logarithm; the logarithm has a symmetric interval.
     pub(super) fn of_log(
         name: &str,
         log: f64,
@@ -66,24 +66,24 @@ impl Estimate {
         self.low <= value && value <= self.high
     }
 
-    /// Returns the unit; empty for a plain number.
+    /// Returns the SI unit of the value; empty for a plain number.
     pub(super) fn unit(&self) -> String {
         if self.dimension == Dimension::NONE { String::new() } else { self.dimension.si_unit() }
     }
 
-    /// Returns half the width of the interval over the value.
+    /// Returns half the width of the interval, relative to the value.
     pub fn relative(&self) -> f64 {
         0.5 * (self.high - self.low) / self.value.abs()
     }
 }
 
 impl Calibration {
-    /// Returns the estimate of a name.
+    /// Returns the estimate with a name; `None` if there is none.
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.name == name)
     }
 
-    /// Formats the result for a terminal: a table, further figures, the lines for a scenario.
+    /// Formats the result for a terminal: a table of the estimates, further numbers, and the lines for a scenario.
     pub fn lines(&self) -> Vec<String> {
         let head = ["parameter", "value", "95 % interval", "unit"].map(str::to_owned);
         let cells = |estimate: &Estimate| {
@@ -141,11 +141,11 @@ described! {
         pub confidence: f64 as "1" = 0.95,
         /// The parameters.
         pub estimates: Vec<EstimateRow> = found.estimates.iter().map(EstimateRow::of).collect(),
-        /// Correlations between the estimates, in their order; empty where they are not fitted together.
+        /// Correlations between the estimates, in their order; empty if the parameters are not fitted together.
         pub correlation: Vec<Vec<f64>> as "1" = found.correlation.clone(),
         /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities.
         pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
-        /// Further figures for display, by name.
+        /// Further numbers for display, by name.
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
         /// Lines to paste into a scenario.
         pub scenario: String = found.scenario.clone(),
@@ -153,17 +153,17 @@ described! {
         pub warnings: Vec<String> = found.warnings.clone(),
     }
 
-    /// A parameter.
+    /// One estimated parameter.
     pub struct EstimateRow of estimate: &Estimate {
         /// Name of the parameter.
         pub name: String = estimate.name.clone(),
-        /// Its value.
+        /// Value of the parameter.
         pub value: f64 as "as `unit` says" = estimate.value,
-        /// Lower end of its interval.
+        /// Lower end of the 95 % interval; null if unbounded.
         pub low: Option<f64> as "as `unit` says" = bounded(estimate.low),
-        /// Upper end of its interval.
+        /// Upper end of the 95 % interval; null if unbounded.
         pub high: Option<f64> as "as `unit` says" = bounded(estimate.high),
-        /// SI unit of its value.
+        /// SI unit of the value and of the interval.
         pub unit: String = estimate.dimension.si_unit(),
     }
 }
@@ -178,8 +178,8 @@ pub(super) fn inseparable(
     for (i, row) in correlation.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > limit) {
             warnings.push(format!(
-                "{} and {} cannot be separated by the measurements: correlation {value:.3}; state one \
-                 of them from a test of its own and fit the other",
+                "the measurements do not separate {} from {} (correlation {value:.3}): determine one \
+                 of them by a test of its own and fit the other",
                 estimates[i].name, estimates[j].name
             ));
         }
@@ -191,7 +191,7 @@ fn bounded(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Aligns the columns of rows.
+/// Pads the cells of rows so that their columns align.
 fn aligned<R: AsRef<[String]>>(rows: &[R]) -> Vec<String> {
     let columns = rows.iter().map(|row| row.as_ref().len()).max().unwrap_or(0);
     let width = |column: usize| {
@@ -208,7 +208,7 @@ fn aligned<R: AsRef<[String]>>(rows: &[R]) -> Vec<String> {
     rows.iter().map(padded).collect()
 }
 
-/// Rounds to four significant digits: three to read and one to compute with.
+/// Rounds to four significant digits: three are shown, and one more is kept for further computation.
 pub(super) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

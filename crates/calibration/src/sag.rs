@@ -14,15 +14,15 @@ use super::{CalibrateError, Calibration, Estimate, Table};
 /// Columns of the test.
 const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
 
-/// Fits the stiffness of a seat to the sag of what lies on several of them.
+/// Fits the stiffness of a seat to the sag of a body that rests on several seats.
 ///
-/// The columns are `load`, a mass that was set down on the seats, and `sag`, by how much they deflected under it;
-/// `angle`, where there is one, is how far from upright the seats press, such as that of a cradle.
-/// `seats` are those that share the load, so `sag = load g / (seats k cos² angle)`.
+/// The column `load` holds the mass that was set down on the seats, and `sag` the deflection under it. The optional
+/// column `angle` holds the angle between the contact normal and the vertical, such as that of a cradle.
+/// `seats` is the number of seats that share the load, so `sag = load g / (seats k cos² angle)`.
 /// The interval is that of the slope of sag over load, through zero, by Student's t.
 ///
 /// # Errors
-/// When the table lacks a column, has less than two rows, or the sag does not grow with the load.
+/// If the table lacks a column, has fewer than two rows, or the sag does not grow with the load.
 pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, CalibrateError> {
     let load = table.required("load", Dimension::MASS)?;
     let sag = table.required("sag", Dimension::LENGTH)?;
@@ -33,10 +33,10 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     };
     if load.len() < 2 {
         return Err(table
-            .unsuited("one row shows no scatter: repeat the test at least once")
+            .unsuited("one row does not show the scatter: repeat the test at least once")
             .into());
     }
-    // The force (N) that a seat alone would have to bear to sag as much.
+    // Vertical force (N) on one seat that gives the same sag.
     let press: Vec<f64> = load
         .iter()
         .zip(&angle)
@@ -49,7 +49,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     let give = press.iter().zip(&sag).map(|(x, y)| x * y).sum::<f64>() / squares;
     if !(give > 0.0 && give.is_finite()) {
         return Err(table
-            .unsuited("the sag does not grow with the load: count loads from the unloaded rack and sag as positive downward")
+            .unsuited("the sag does not grow with the load: measure loads from the unloaded rack, and sag as positive downward")
             .into());
     }
     let freedom = load.len() - 1;
@@ -65,20 +65,22 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     };
     let mut warnings = table.unused(&COLUMNS);
     if let Some(found) = line(&press, &sag) {
-        // How far it sags before it bears.
+        // Sag (m) at zero load of the line that need not pass through the origin.
         let hollow = found.intercept;
         let variance = found.center_variance + found.center * found.center * found.slope_variance;
         if hollow.abs() > student_quantile(0.95, found.freedom) * variance.sqrt() {
             warnings.push(format!(
-                "the sag does not start at zero load but at {} mm, as where seats lie hollow: read the gauge from a first, light \
-                 load on, and count both load and sag from there",
+                "the line through the readings has a sag of {} mm at zero load, as if seats did not touch at first: apply a light \
+                 load first, and measure both load and sag from there",
                 short(1e3 * hollow)
             ));
         }
     }
     if high.is_infinite() {
-        warnings
-            .push("the interval of k has no upper end: load more, or read more often".to_owned());
+        warnings.push(
+            "the interval of k has no upper end: apply higher loads, or take more readings"
+                .to_owned(),
+        );
     }
     let scatter = (left / freedom as f64).sqrt();
     let depths: Vec<f64> = sag.iter().map(|sag| 1e3 * sag).collect();
@@ -101,11 +103,11 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     })
 }
 
-/// The readings and the line through them.
+/// Draws the readings and the fitted line.
 fn picture(sag: Vec<f64>, force: Vec<f64>, give: f64) -> Figure {
     let fit = curve("sag in proportion to load", span(&force), |force| 1e6 * give * force);
     let series = vec![fit, measured("measured", force, sag, 1)];
-    let caption = "The sag test: sag against the load of one seat, and the straight line of least squares through zero, whose \
+    let caption = "Sag test: sag against the force on one seat, and the least-squares line through the origin, whose \
                    slope is one over the stiffness.";
     figure(
         "sag-test",

@@ -2,7 +2,7 @@
 
 use barrelstack_fragility::student_quantile;
 
-/// Returns the mean, and half the width of its 95 % interval, of at least two values.
+/// Returns the mean of at least two values, and half the width of its 95 % interval by Student's t.
 pub fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -11,18 +11,18 @@ pub fn mean(values: &[f64]) -> (f64, f64) {
     (mean, student_quantile(0.95, values.len() - 1) * error)
 }
 
-/// A least-squares line `y = intercept + slope x`.
+/// Least-squares line `y = intercept + slope x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     /// `y` at `x = 0`.
     pub intercept: f64,
-    /// Slope.
+    /// Change of `y` per unit of `x`.
     pub slope: f64,
     /// Variance of the slope.
     pub slope_variance: f64,
-    /// Variance of `y` at the mean of `x`.
+    /// Variance of the fitted `y` at the mean of `x`.
     pub center_variance: f64,
-    /// The mean of `x`.
+    /// Mean of `x`.
     pub center: f64,
     /// Sum of squared residuals.
     pub squares: f64,

@@ -9,8 +9,8 @@ use super::result::{quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// Smallest difference of the information criteria by which the other law is mentioned; a
-/// difference of ten leaves the worse of two models essentially no support (Burnham and Anderson 2002).
+/// Difference of the information criteria above which Hertz's law is suggested: the worse of two models
+/// that differ by ten has essentially no support (Burnham and Anderson 2002).
 const CLEARLY: f64 = 10.0;
 
 /// Fits `F = k (δ − δ₀)` to a press test with the columns `penetration` and `force`.
@@ -18,7 +18,7 @@ const CLEARLY: f64 = 10.0;
 /// δ₀ is the seating offset: the reading at which the surfaces first touch.
 /// The scatter is attributed to the force, equally in every row.
 /// `nodes` is the number of contact nodes that share the force; `k` is that of one.
-/// `interface` names the pair in the lines for a scenario, such as "barrel-rack".
+/// `interface` is the name of the interface in the lines for a scenario, such as "barrel-rack".
 ///
 /// # Errors
 /// If the table lacks a column, has fewer than three rows, or its force does not grow with penetration.
@@ -31,14 +31,14 @@ pub fn stiffness(
     let force = table.required("force", Dimension::FORCE)?;
     let found = line(&penetration, &force).ok_or_else(|| {
         table.unsuited(
-            "a slope and its scatter need at least three rows, at more than one penetration",
+            "a slope and its scatter need at least three rows with at least two different penetrations",
         )
     })?;
     let (slope, t) = (found.slope, student_quantile(0.95, found.freedom));
     if slope <= 0.0 {
         return Err(table.unsuited(format!(
-            "the force falls with penetration ({} N/m): keep the rows of pressing, and count both \
-             positive into the surface",
+            "the force decreases with penetration ({} N/m): keep only the rows of the loading, and state both \
+             as positive into the surface",
             short(slope)
         )).into());
     }
@@ -62,7 +62,7 @@ pub fn stiffness(
     let outside = force.iter().filter(|force| **force <= 0.0).count();
     if outside > 0 {
         warnings.push(format!(
-            "{outside} of {} rows carry no force: remove the rows before the surfaces touch, they \
+            "{outside} of {} rows have no force: remove the rows before the surfaces touch, since they \
              lower k",
             force.len()
         ));
@@ -71,8 +71,8 @@ pub fn stiffness(
         && difference > CLEARLY
     {
         warnings.push(format!(
-            "force grows as penetration to the power 1.5 rather than in proportion (its information \
-             criterion is lower by {difference:.0}): the straight line holds between these loads only; \
+            "force grows as penetration to the power 1.5 rather than in proportion (the information \
+             criterion is lower by {difference:.0}): the straight line is valid between these loads only; \
              law = \"hertz\" with stiffness = {} fits better",
             quoted(hertz / f64::from(nodes), Dimension::HERTZ_STIFFNESS)
         ));
@@ -87,7 +87,7 @@ pub fn stiffness(
         ("scatter of the force".to_owned(), format!("{} N", short(scatter))),
     ];
     let scenario = format!(
-        "[interface.{interface}]\nstiffness = {}\n# a stiffness needs its damping beside it, which a drop test \
+        "[interface.{interface}]\nstiffness = {}\n# the law also needs a damping, which a drop test \
          gives\n",
         quoted(per_node, Dimension::STIFFNESS)
     );
@@ -111,14 +111,14 @@ fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figur
         curve("force in proportion to penetration", span(&depth), line),
         measured("measured", depth, scaled(force, 1e-3), 1),
     ];
-    let caption = "The press test: force against penetration, and the straight line of least squares, whose slope is the \
+    let caption = "Press test: force against penetration, and the least-squares line, whose slope is the \
                    stiffness.";
     let axes = [Axis::new("penetration", "mm"), Axis::new("force", "kN")];
     figure("press-test", caption, axes, series)
 }
 
 /// Returns `k` (N/m^1.5) of `F = k (δ − δ₀)^1.5`, and the amount by which its information criterion (Akaike 1974) is
-/// below that of the straight line; both laws have two parameters.
+/// lower than that of the straight line; both laws have two parameters.
 ///
 /// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched: on a grid over the span of
 /// the readings to either side of the first one, then finer around the best.

@@ -1,4 +1,4 @@
-//! Stiffness of seats from a tap test: the period at which a stack sways that was pushed lightly.
+//! Stiffness of seats from a tap test: the period at which a stack sways after a light push.
 
 use std::fmt::Write as _;
 
@@ -13,31 +13,34 @@ use super::result::quoted;
 use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// Natural logarithm of the greatest factor on the stiffness of the scenario that is tried, and how often it is halved.
+/// Natural logarithm of the largest factor on the stiffness of the scenario that is tried.
 const WIDEST: f64 = 7.0;
+
+/// Number of bisection steps of that logarithm.
 const HALVINGS: u32 = 24;
 
 /// Fits the stiffness of all seats of a stack to the period of its sway.
 ///
-/// The column is `period`, one row for each tap.
-/// `scenario` is the stack that was tapped, in the plane in which it swayed; its seats keep the ratios of their stiffness.
+/// The table has the column `period`, with one row per tap.
+/// `scenario` is the stack that was tapped, in the plane in which it swayed; the stiffnesses of its seats keep their
+/// ratios.
 /// The interval is that of the mean period by Student's t.
 ///
 /// # Errors
-/// When the table lacks its column or has less than two rows, when the scenario is no stack of linear laws in one plane, or
-/// when no stiffness gives the period.
+/// If the table lacks its column or has fewer than two rows, the scenario is not a stack of linear laws in one plane, or
+/// no stiffness gives the period.
 pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, CalibrateError> {
     let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).ok_or_else(|| {
         refuse(
-            "a tap test is about a stack in one plane, the one in which it swayed: set stack.view to \"transverse\" or \
+            "a tap test needs a stack in one plane, that in which it swayed: set stack.view to \"transverse\" or \
              \"longitudinal\"",
         )
     })?;
     if stack.across().is_some() {
         return Err(refuse(
-            "stack.view = \"both\" is two planes, and a tap sways the stack in one: set stack.view to \"transverse\" or \
-             \"longitudinal\"",
+            "stack.view = \"both\" has two planes, and a tap test needs the one in which the stack swayed: set stack.view to \
+             \"transverse\" or \"longitudinal\"",
         ));
     }
     let seats = [
@@ -50,7 +53,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let own = seats.iter().map(|(name, law)| {
         stiffness(law).ok_or_else(|| {
             refuse(&format!(
-                "a tap test needs linear laws with constants per seat or per node; interface.{name} has another"
+                "a tap test needs linear laws with constants per seat or per node; that of interface.{name} is different"
             ))
         })
     });
@@ -58,15 +61,15 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let periods = table.required("period", Dimension::TIME)?;
     if periods.len() < 2 {
         return Err(table
-            .unsuited("one row shows no scatter: repeat the test at least once")
+            .unsuited("one row does not show the scatter: repeat the test at least once")
             .into());
     }
     let (period, half) = mean(&periods);
     let factor = |period: f64| factor(scenario, period);
     let outside = || {
         table.unsuited(
-            "no stiffness within a factor of 1000 of the scenario's gives this period: check that the scenario is the stack that \
-             was tapped, in the plane in which it swayed, and that times are of whole cycles",
+            "no stiffness within a factor of 1000 of that in the scenario gives this period: check that the scenario is the stack \
+             that was tapped, in the plane in which it swayed, and that each period is a whole cycle",
         )
     };
     let of = |factor: f64| factor * own[0];
@@ -88,7 +91,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
             basis(law)
         );
         if let Some(damping) = damping(law) {
-            // The damping ratio stays.
+            // Scaled so that the damping ratio stays the same.
             let damping = quoted(value.sqrt() * damping, Dimension::DAMPING);
             let _ = writeln!(lines, "damping = {damping}");
         }
@@ -105,7 +108,8 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     })
 }
 
-/// The factor on the stiffness of all seats with which the stack of a scenario sways at a period (s); none where there is none.
+/// Returns the factor on the stiffness of all seats at which the stack sways with a period (s); `None` if no factor
+/// within the range gives that period.
 fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateError> {
     let slower = |log: f64| -> Result<bool, CalibrateError> {
         let mut changed = scenario.clone();
@@ -117,7 +121,7 @@ fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateErro
         }
         match sway_period(&changed) {
             Ok(found) => Ok(found.is_none_or(|found| found > period)),
-            // What is too soft to stand takes longer than any period.
+            // A stack too soft to stand counts as slower than any period.
             Err(RunFailure::Settle(_)) => Ok(true),
             Err(failure) => Err(failure.into()),
         }
@@ -137,7 +141,7 @@ fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateErro
     Ok(Some(math::exp(0.5 * (soft + stiff))))
 }
 
-/// The stiffness (N/m) of a linear law whose constants are of a seat or a node.
+/// Returns the stiffness (N/m) of a linear law with constants per seat or per node; `None` for other laws.
 fn stiffness(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { stiffness, .. } | NormalLaw::KelvinVoigt { stiffness, .. }) =
         law.normal
@@ -147,12 +151,12 @@ fn stiffness(law: &Interface) -> Option<f64> {
     (law.basis != Basis::Length).then_some(stiffness)
 }
 
-/// The word for the basis of a law whose constants are of a seat or a node.
+/// Returns the name of the basis, per seat or per node, of a law.
 fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }
 
-/// The damping (N·s/m) of a linear law that states it rather than a restitution.
+/// Returns the damping (N·s/m) of a linear law; `None` if the law states a restitution instead.
 fn damping(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { damping, .. } | NormalLaw::KelvinVoigt { damping, .. }) = law.normal
     else {
@@ -161,12 +165,11 @@ fn damping(law: &Interface) -> Option<f64> {
     if let Damping::Coefficient(damping) = damping { Some(damping) } else { None }
 }
 
-/// The period of every tap, and their mean.
+/// Draws the period of every tap, and the mean.
 fn picture(periods: &[f64], mean: &Estimate) -> Figure {
     let taps: Vec<f64> = (1..=periods.len()).map(|tap| tap as f64).collect();
     let ends = [0.5, periods.len() as f64 + 0.5];
     let series = vec![level(mean, ends, 0), measured("measured", taps, periods.to_vec(), 1)];
-    let caption =
-        "The tap test: the period of sway after every tap, and their mean with its interval.";
+    let caption = "Tap test: the period of sway after every tap, and the mean with its interval.";
     figure("tap-test", caption, [Axis::new("tap", ""), Axis::new("period", "s")], series)
 }

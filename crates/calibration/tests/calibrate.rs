@@ -21,7 +21,8 @@ use barrelstack_report::FigureKind;
 
 /// Returns in how many of 100 campaigns the interval covers each true value.
 ///
-/// Seeds are 1 to 100; a 95 % interval covers 95 on average, and 90 or more with a probability of 0.99.
+/// Seeds are 1 to 100. A 95 % interval covers the value in 95 campaigns on average, and in at least 90 with a probability
+/// of 0.99.
 fn coverage(
     truth: &[(&str, f64)],
     mut campaign: impl FnMut(&mut Random) -> Calibration,
@@ -46,7 +47,7 @@ fn assert_covered(covered: &[u32]) {
 
 #[test]
 fn stiffness_and_seating_lie_within_their_intervals() {
-    // Twelve rows up to 3 mm, on two nodes of 9.8 kN/cm, read from 0.4 mm on, ±60 N.
+    // Twelve rows from 0.4 mm to 3 mm, on two nodes of 9.8 kN/cm, with a scatter of 60 N.
     let covered = coverage(&[("stiffness k", 9.8e5), ("seating offset", 4e-4)], |random| {
         let mut text = String::from("penetration (mm),force (kN)\n");
         for row in 0..12 {
@@ -59,7 +60,7 @@ fn stiffness_and_seating_lie_within_their_intervals() {
     assert_covered(&covered); // measured 95 and 94
 }
 
-/// A scenario with the lines of a calibration, which must parse.
+/// Returns a scenario with the lines of a calibration pasted in, which must parse.
 fn pasted(base: &str, found: &Calibration) -> Scenario {
     let text = format!("schema = 1\nextends = \"demo-napa\"\n{base}\n{}", found.scenario);
     Scenario::from_str(&text).unwrap()
@@ -94,11 +95,11 @@ fn rounded(value: f64) -> f64 {
 #[test]
 fn hollow_seats_and_bad_sags_are_reported() {
     let table = |text: &str| Table::parse("sag.csv", text).unwrap();
-    // Half a millimeter of play.
+    // The rack has half a millimeter of play.
     let play = "load (kg),sag (mm)\n100,0.6\n200,0.7\n300,0.801\n400,0.9\n";
     let found = sag(&table(play), 4, "barrel-rack").unwrap();
     assert!(
-        found.warnings.iter().any(|warning| warning.contains("hollow")),
+        found.warnings.iter().any(|warning| warning.contains("did not touch")),
         "{:?}",
         found.warnings
     );
@@ -161,12 +162,12 @@ fn an_impact_with_gravity_agrees_with_the_closed_form() {
         let found = impact(1.0, 1.0, 2.0 * ratio, gamma, 1.0);
         assert!((found.speed - e).abs() < 1e-5, "{ratio} {gamma}: {found:?}"); // measured 4.7e-6
     }
-    // Beyond Γ = 0.555 the mass does not leave at ζ = 0.3.
+    // Beyond Γ = 0.555 the mass does not rebound at ζ = 0.3.
     assert_eq!(impact(1.0, 1.0, 0.6, 0.56, 1.0).speed, 0.0);
     assert!(impact(1.0, 1.0, 0.6, 0.55, 1.0).speed > 0.0);
 }
 
-/// 275 kg on two nodes of 9.8 kN/cm.
+/// Striker of 275 kg on two nodes of 9.8 kN/cm.
 const STRIKER: Striker = Striker { mass: 275.0, stiffness: 9.8e5, nodes: 2, gravity: GRAVITY };
 
 /// Damping (N·s/m) of one node.
@@ -174,7 +175,7 @@ const DAMPING: f64 = 2200.0;
 
 #[test]
 fn a_mass_that_creeps_into_a_strong_damper_comes_to_rest() {
-    // Laid down, or dropped slowly: no rebound, and the approach ends.
+    // A mass that is laid down or dropped slowly does not rebound, and the approach ends.
     for speed in [0.0, 1e-6, 1e-3] {
         let found = impact(275.0, 3.92e6, 1e6, GRAVITY, speed);
         assert_eq!((found.speed, found.duration), (0.0, 0.0));
@@ -203,7 +204,7 @@ fn what_was_measured_is_drawn_beside_the_fit() {
     let fitted = found.estimate("stiffness k").unwrap().value;
     assert!((1e6 * slope / fitted - 1.0).abs() < 1e-9, "{slope} {fitted}");
 
-    // Heights that the law itself gives: the curve passes through them.
+    // The heights follow from the law itself, so the curve passes through them.
     let striker = Striker { mass: 275.0, stiffness: 9.8e5, nodes: 4, gravity: GRAVITY };
     let mut heights = String::from("drop height (m),rebound height (m)\n");
     for height in [0.1_f64, 0.2, 0.3] {
@@ -325,7 +326,10 @@ fn a_table_is_refused_at_its_place() {
         ),
         ("penetration (mm),force (kN)\n", "t.csv: it has a header and no measurements"),
         ("", "t.csv: it is empty"),
-        ("penetration (mm),force (kN)\n1,2\n2,1\n3,0\n", "t.csv: the force falls with penetration"),
+        (
+            "penetration (mm),force (kN)\n1,2\n2,1\n3,0\n",
+            "t.csv: the force decreases with penetration",
+        ),
         ("penetration (mm),force (kN)\n1,2\n1,1\n1,0\n", "t.csv: a slope and its scatter need"),
         ("penetration (mm),force (kN)\n1,nan\n1,1\n1,0\n", "expected a number, found \"nan\""),
         ("penetration (mm),force (kN)\n1,1e400\n1,1\n1,0\n", "expected a number, found \"1e400\""),
@@ -349,8 +353,8 @@ fn a_table_is_refused_at_its_place() {
     assert!(error.starts_with(words), "{error}");
 }
 
-/// Two barrels on one rack, shaken for 0.3 s at 7 Hz so that they roll and slide in their
-/// cradles and the rack slides on the ground.
+/// Returns two barrels on one rack, shaken for 0.3 s at 7 Hz so that the barrels roll and slide in their cradles and the
+/// rack slides on the ground.
 fn shaken() -> Scenario {
     let changes = [
         "stack.levels=1",
@@ -387,7 +391,7 @@ fn noisy((times, channels): &(Vec<f64>, Vec<Vec<f64>>), noise: f64, random: &mut
     Table::parse("histories.csv", &text).unwrap()
 }
 
-/// Every parameter of a response.
+/// All parameters that a response can determine.
 const ALL: [Parameter; 4] = [
     Parameter::Stiffness,
     Parameter::Damping,
@@ -428,7 +432,7 @@ fn a_response_gives_its_parameters_back_within_their_intervals() {
 
 #[test]
 fn a_response_states_what_it_cannot_determine() {
-    // Shaken so mildly that the rack sticks to the ground: its friction leaves no trace.
+    // The shaking is so mild that the rack sticks to the ground, and the response does not depend on its friction.
     let mut scenario = shaken();
     scenario.motion = Scenario::builtin(
         "candia-8-barrels",
@@ -503,10 +507,10 @@ fn two_collapses_determine_little_and_say_so() {
     let friction = found.estimate("friction barrel-rack").unwrap();
     assert!(stiffness.covers(1.2e6), "{stiffness:?}");
     assert!(friction.covers(0.18), "{friction:?}");
-    // Measured: 5 % and 9 % off, within intervals of a factor of three.
+    // Measured: errors of 5 % and 9 %, with intervals that span a factor of three.
     assert!((stiffness.value / 1.2e6 - 1.0).abs() < 0.15, "{stiffness:?}");
     assert!((friction.value / 0.18 - 1.0).abs() < 0.15, "{friction:?}");
-    // Weight of the observed mode of each test, and times: a row with a name for each.
+    // One figure has the weight of the observed mode of each test, the other the times; each row has a name.
     for figure in &found.figures {
         let FigureKind::Plot(plot) = &figure.kind else { panic!("no plot") };
         let bars = plot.series[0].x.iter().filter(|x| x.is_nan()).count();
@@ -515,7 +519,7 @@ fn two_collapses_determine_little_and_say_so() {
     }
     let ids: Vec<&str> = found.figures.iter().map(|figure| figure.id.as_str()).collect();
     assert_eq!(ids, ["collapse-modes", "collapse-times"]);
-    let few = "too few simulations came near";
+    let few = "too few simulations agree";
     assert!(found.warnings.iter().any(|warning| warning.contains(few)), "{:?}", found.warnings);
 }
 
@@ -523,8 +527,8 @@ fn two_collapses_determine_little_and_say_so() {
 fn a_collapse_states_what_it_cannot_determine_and_the_same_every_time() {
     let found = from_film(1, 50, &[Parameter::Damping]);
     let warned = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
-    assert!(warned("says nothing about damping c"), "{:?}", found.warnings);
-    // Compared as texts, since NaN gaps in figures equal nothing.
+    assert!(warned("do not determine damping c"), "{:?}", found.warnings);
+    // Results are compared as text, since NaN gaps in figures are not equal to themselves.
     let again = from_film(1, 50, &[Parameter::Damping]);
     assert_eq!(format!("{found:?}"), format!("{again:?}"));
 }
@@ -542,7 +546,7 @@ fn observations_are_refused_at_their_place() {
         ("mode,B4.1 fell (s)\nejection,stands\n", "column \"until\": expected how long the test"),
         (
             "mode,B4.1 fell (s),until (s)\n,3,2\n",
-            "expected a time up to the end of the watch at 2 s",
+            "expected a time up to the end of the observation at 2 s",
         ),
         (
             "mode,B4.1 fell (s)\n,\n",

@@ -1,4 +1,4 @@
-//! A study in memory: a stack of each height under one motion at three strengths.
+//! Runs a study in memory: stacks of several heights under one motion at three intensities.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use barrelstack_campaign::Study;

@@ -1,4 +1,4 @@
-//! From the cases of a study to decisions: probability of collapse with its uncertainty, losses, annual rates.
+//! Evaluation of a study for decisions: probability of collapse with its uncertainty, losses, and annual rates.
 //!
 //! ```text
 //! StudyTable ─▶ Cases ─ limit state × measure ─▶ LimitCurve (raw fractions, fit, bands, warnings)
@@ -7,7 +7,7 @@
 //!                                        └─▶ Decision ─▶ page (HTML, Markdown), JSON
 //! ```
 //!
-//! Raw fractions stand beside every fit, and a fit that the data do not support is replaced by the reason.
+//! Every fit is shown with the raw fractions. Where the data support no fit, the reason is given instead.
 
 mod cases;
 mod curve;
@@ -51,7 +51,7 @@ pub use measures::MeasureRow;
 pub use modes::ModeIncidence;
 pub use sensitivity::{Effect, Group, Level};
 
-/// Further inputs of a decision.
+/// Inputs of a decision besides the study.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// Hazard curve of the site.
@@ -60,29 +60,30 @@ pub struct Request {
     pub years: Option<f64>,
 }
 
-/// Results of a study.
+/// Evaluation of a study: curves, losses, rates, and the report page.
 #[derive(Clone, Debug)]
 pub struct Decision {
-    /// The cases.
+    /// Cases with a verdict.
     pub cases: Cases,
-    /// One fragility curve per limit state, over the measure of the study; the first is the loss of the first seat.
+    /// Fragility curve of each limit state against the measure of the study; the first limit state is the loss of the
+    /// first seat.
     pub curves: Vec<LimitCurve>,
-    /// Cumulative incidence of each collapse mode over the measure of the study, the most frequent first.
+    /// Cumulative incidence of each collapse mode against the measure of the study, the most frequent mode first.
     pub modes: Vec<ModeIncidence>,
-    /// Every measure, the most efficient first.
+    /// Comparison of all intensity measures, the best predictor of collapse first.
     pub measures: Vec<MeasureRow>,
     /// Barrels and wine lost at each level, or the reason why they are unknown.
     pub losses: Result<Losses, String>,
-    /// Sobol' indices of varied quantities on collapse and on the demands; empty unless the design is made for
-    /// them.
+    /// Sobol' indices of the varied quantities for collapse and for the demands; empty for other designs than
+    /// "saltelli".
     pub sensitivities: Vec<Sensitivity>,
-    /// Effects of varied factors on collapse, the largest first.
+    /// Effects of the varied factors on collapse, the largest first.
     pub effects: Vec<Effect>,
     /// Annual rates at the site.
     pub site: Option<Site>,
     /// Warnings for the reader.
     pub warnings: Vec<String>,
-    /// The page.
+    /// Report page.
     pub document: Document,
 }
 
@@ -93,32 +94,32 @@ impl Decision {
     }
 }
 
-/// Error of a decision.
+/// Reason why a study cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum DecisionError {
     /// No case has a verdict.
     #[error(
-        "none of the {rows} cases of the study has a verdict, so there is nothing to decide from; look at the column \
+        "none of the {rows} cases of the study has a verdict, so it cannot be evaluated; see the column \
          `error` of its table"
     )]
     NoCases {
-        /// Rows of the table.
+        /// Number of rows of the table.
         rows: usize,
     },
-    /// The table is not one of a study.
+    /// The table lacks a column that the table of a study has.
     #[error(
         "the table of the study has no column `{0}`; it was written by another version of the program"
     )]
     Column(&'static str),
-    /// A cell of a list of numbers holds anything else.
+    /// A cell does not hold a list of numbers as its column requires.
     #[error(
-        "the table of the study has \"{found}\" in a row of its column `{column}`, where numbers with semicolons between \
-         them are expected; run its chunk again"
+        "the column `{column}` of the table of the study has a cell \"{found}\" where numbers separated by semicolons \
+         are expected; run the chunk of that row again"
     )]
     List {
-        /// The column.
+        /// Name of the column.
         column: &'static str,
-        /// The text found there.
+        /// Text of the cell.
         found: String,
     },
     /// The hazard curve cannot be used.
@@ -129,12 +130,12 @@ pub enum DecisionError {
     Study(#[from] StudyError),
 }
 
-/// Accumulates the inputs of a decision from the rows of a study part by part, so that a table of a million cases
+/// Accumulator of the inputs of a decision, fed with the rows of a study in parts, so that a table of a million cases
 /// need not be in memory.
 struct Gathering {
     made: Provenance,
     cases: cases::Reading,
-    /// The values of the factors.
+    /// Values of the factors, one column each.
     factors: Vec<Column>,
     results: indices::Results,
 }
@@ -159,7 +160,7 @@ impl Gathering {
         self.cases.add(table)
     }
 
-    /// Computes the decision when all rows were added; `made` is their provenance, which now includes their number.
+    /// Computes the decision after all rows were added; `made` is their provenance with the final number of rows.
     fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
         let cases = self.cases.finish()?;
         let effects = sensitivity::effects(&self.factors, made, &cases);
@@ -202,15 +203,17 @@ impl Gathering {
 /// Resampling starts from the seed of the study, so that the same study gives the same page.
 ///
 /// # Errors
-/// When the table is not one of a study, no case has a verdict, or the hazard is over a measure that the study does not
-/// have.
+/// If the table is not that of a study, no case has a verdict, or the hazard curve is for another measure than the
+/// study.
 pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, DecisionError> {
     let mut gathering = Gathering::new(&collected.provenance)?;
     gathering.add(&collected.table)?;
     gathering.decide(&collected.provenance, request)
 }
 
-/// Computes the decision of the study in a folder, finished or not, and its provenance; the table is read part by part.
+/// Computes the decision of the study in a folder, finished or not, and returns it with the provenance of its rows.
+///
+/// The table is read in parts, so that it need not fit into memory.
 ///
 /// # Errors
 /// As [`decide`] and [`read_shards`].

@@ -1,7 +1,8 @@
-//! Safe heights: collapse of stacks of two levels and more, in both directions, against the strength of shaking.
+//! Safe heights: probability of collapse of stacks by height, direction and strength of shaking.
 //!
-//! Stacks on one kind of rack are shaken by the bundled record of South Napa, by synthetic motions and by the
-//! user's own records, all scaled to the same levels of peak ground velocity; friction is drawn anew for each run.
+//! Stacks of two levels and more on one kind of rack are shaken by the bundled record of South Napa, by synthetic
+//! motions and by the user's own records. All are scaled to the same levels of peak ground velocity, and friction is
+//! drawn for each run.
 
 mod field;
 mod json;
@@ -30,17 +31,17 @@ pub(crate) use plan::{quoted, synthetic};
 /// Request for a study of heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// Name of a rack of the catalog.
+    /// Name of the rack in the catalog.
     pub rack: String,
-    /// Name of a barrel of the catalog.
+    /// Name of the barrel in the catalog.
     pub barrel: String,
-    /// Files of further motions.
+    /// Files of further records.
     pub records: Vec<PathBuf>,
     /// Number of synthetic motions, in addition to the bundled record.
     pub synthetic: u32,
-    /// Seed of everything that is drawn.
+    /// Seed of all random numbers.
     pub seed: u32,
-    /// Levels of the highest stacks, from [`LOWEST`] to [`HIGHEST`].
+    /// Number of levels of the highest stacks, from [`LOWEST`] to [`HIGHEST`].
     pub highest: u32,
 }
 
@@ -58,50 +59,51 @@ impl Default for Request {
 }
 
 impl Request {
-    /// Returns the levels of the stacks, from two on.
+    /// Returns the numbers of levels of the stacks, from [`LOWEST`] to `highest`.
     pub fn heights(&self) -> impl Iterator<Item = u32> + use<> {
         LOWEST..=self.highest
     }
 }
 
-/// Stacks of one height in one direction.
+/// Results of stacks of one height in one direction of shaking.
 #[derive(Clone, Debug)]
 pub struct Height {
-    /// Levels of the stack.
+    /// Number of levels of the stack.
     pub levels: u32,
     /// Direction of the shaking.
     pub view: View,
-    /// Collapse against PGV.
+    /// Fragility of collapse against peak ground velocity (PGV).
     pub by_velocity: LimitCurve,
-    /// Collapse against PGA.
+    /// Fragility of collapse against peak ground acceleration (PGA).
     pub by_acceleration: LimitCurve,
-    /// Share of the barrels that fall, one for each stripe of `by_velocity`.
+    /// Mean share of the barrels that fall, for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
-    /// Static margin (m/s²): the steady horizontal acceleration that it bears at most, with the friction and the seats of
-    /// the catalog; none where it bears 1 g.
+    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the friction and the
+    /// seats of the catalog; `None` if it bears 1 g.
     pub static_margin: Option<f64>,
 }
 
-/// Results of stacks of one height in one direction at one level of PGV.
+/// Results of stacks of one height in one direction of shaking at one level of PGV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtLevel {
-    /// Counts of collapse.
+    /// Number of runs and of collapses.
     pub stripe: Stripe,
-    /// Ends of the probability of collapse, each of which holds with 95 % confidence (Clopper and Pearson).
+    /// Bounds of the probability of collapse; each holds with 95 % confidence (Clopper and Pearson).
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
 }
 
-/// Returns bounds of the probability of collapse from counts: each end holds with 95 % confidence for any probability,
-/// so that the upper one is the bound that a headline states.
+/// Returns the lower and upper bound of the probability of collapse, each with 95 % confidence.
+///
+/// The bounds are one-sided, so that a headline can state the upper one by itself.
 fn known(stripe: &Stripe) -> Interval {
     clopper_pearson(stripe.failures, stripe.cases, 0.90)
 }
 
 impl Height {
-    /// Returns the results at a level of PGV (m/s), such as one of [`VELOCITIES`]; `None` where no run of that level
-    /// has a verdict.
+    /// Returns the results at a level of PGV (m/s), such as one of [`VELOCITIES`]; `None` if no run at that level has a
+    /// verdict.
     pub fn at(&self, velocity: f64) -> Option<AtLevel> {
         let curve = &self.by_velocity;
         // Levels are rounded when written as text in cm/s.
@@ -115,52 +117,52 @@ impl Height {
     }
 }
 
-/// One run under the bundled record as it was recorded.
+/// Run of a stack under the bundled record, unscaled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AsRecorded {
-    /// Levels of the stack.
+    /// Number of levels of the stack.
     pub levels: u32,
     /// Direction of the shaking.
     pub view: View,
-    /// The component.
+    /// Name of the horizontal component.
     pub motion: String,
-    /// `true` if it collapsed.
+    /// `true` if the stack collapsed.
     pub collapsed: bool,
-    /// Share of its barrels that fell.
+    /// Share of the barrels that fell.
     pub fallen: f64,
-    /// PGV (m/s).
+    /// Peak ground velocity (m/s).
     pub velocity: f64,
-    /// PGA (m/s²).
+    /// Peak ground acceleration (m/s²).
     pub acceleration: f64,
 }
 
 /// Results of a study of heights.
 #[derive(Clone, Debug)]
 pub struct Heights {
-    /// The request.
+    /// Request for the study.
     pub request: Request,
-    /// Every height in every direction.
+    /// Results of every height in every direction.
     pub heights: Vec<Height>,
-    /// The bundled record, unscaled.
+    /// Runs under the bundled record, unscaled.
     pub recorded: Vec<AsRecorded>,
-    /// Motions that shook every stack.
+    /// Number of motions under which every stack was run.
     pub motions: usize,
-    /// Runs in all.
+    /// Number of all runs.
     pub runs: usize,
-    /// Runs without a verdict.
+    /// Number of runs without a verdict.
     pub left_out: usize,
-    /// Runs whose stack fell under its own weight, before it was shaken.
+    /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
     /// Notes on runs that were not simulated until nothing moved.
     pub ends: Vec<String>,
     /// Warnings for the reader.
     pub warnings: Vec<String>,
-    /// The page.
+    /// Report page.
     pub document: Document,
 }
 
 impl Heights {
-    /// Returns the stacks of a height in a direction.
+    /// Returns the results of stacks of a height in a direction; `None` if they were not run.
     pub fn of(&self, levels: u32, view: View) -> Option<&Height> {
         self.heights.iter().find(|height| height.levels == levels && height.view == view)
     }
@@ -171,14 +173,14 @@ impl Heights {
     }
 }
 
-/// Error of a study of heights.
+/// Reason why a study of heights fails.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightsError {
     /// The rack is not in the catalog.
-    #[error("there is no rack `{0}`; those are {1}")]
+    #[error("there is no rack `{0}`; use one of {1}")]
     Rack(String, String),
     /// The barrel is not in the catalog.
-    #[error("there is no barrel `{0}`; those are {1}")]
+    #[error("there is no barrel `{0}`; use one of {1}")]
     Barrel(String, String),
     /// The highest stack has too few levels, or too many.
     #[error("the highest stack cannot have {0} levels; state {LOWEST} to {HIGHEST}")]
@@ -189,17 +191,18 @@ pub enum HeightsError {
     /// A stack cannot be built, or does not come to rest.
     #[error(transparent)]
     Stack(RunFailure),
-    /// Its cases do not support a decision.
+    /// The cases of a study cannot be evaluated.
     #[error(transparent)]
     Decision(#[from] DecisionError),
 }
 
-/// Runs every height in both directions, in folders below `folder`, and resumes earlier runs.
+/// Runs the studies of every height in both directions and evaluates them.
 ///
-/// `report` receives the numbers of finished and of all runs, and may cancel.
+/// The studies are stored in folders below `folder`, from which an interrupted run resumes.
+/// `report` receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
-/// When the rack or the height is unknown, a record cannot be read, or a folder cannot be written.
+/// If the rack, the barrel or the height is unknown, a record cannot be read, or a folder cannot be written.
 pub fn heights(
     request: &Request,
     folder: &Path,
@@ -244,7 +247,7 @@ pub fn heights(
     Ok(found)
 }
 
-/// Gathers the results from the tables.
+/// Evaluates the tables of the studies.
 fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Heights, HeightsError> {
     let (mut heights, mut recorded) = (Vec::new(), Vec::new());
     let (mut runs, mut left_out, mut fallen_at_rest, mut motions) = (0, 0, 0, 0);

@@ -1,4 +1,4 @@
-//! Many runs of stacks: studies, decisions, safe heights, rankings of protections, and scores of racks.
+//! Studies of many runs of stacks, and their evaluation: decisions, safe heights, rankings of protections, scores.
 //!
 //! ```text
 //! STUDY.toml ─▶ study ─▶ table of cases ─▶ decision (fragility, losses, annual rates) ─▶ page
@@ -16,7 +16,7 @@
 //!
 //! A [`Study`] runs in memory ([`Study::table`]) or in a folder that many processes share ([`Study::run`]).
 
-// Results have the same bits on every machine, so transcendental functions are those of `libm`.
+// Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod decision;
@@ -28,6 +28,6 @@ mod unknown;
 
 pub use study::Study;
 
-// The domain's modules, under the names that they have there.
+// Modules of other crates, under their names there.
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};
 use barrelstack_input::{measured, system};

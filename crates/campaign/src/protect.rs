@@ -1,9 +1,10 @@
-//! Ranking of protections by benefit and cost: fewer levels, other racks, devices, single and in pairs.
+//! Ranking of protections of a stack by benefit and cost.
 //!
-//! All are shaken by the same motions with the same quantiles of friction, so that differences are those of the
-//! protections and not of sampling.
-//! The first round tries everything, later ones only the contenders, under further motions.
-//! A round of a protection in one direction is a study in a folder of its own, so that an interrupted ranking resumes.
+//! A protection is a lower stack, another rack, a device, or a pair of these.
+//! All protections are run under the same motions with the same quantiles of friction, so that they differ by their effect
+//! and not by sampling.
+//! The first round tries all protections; later rounds try only the contenders, under further motions.
+//! Each round of a protection in one direction is a study in its own folder, from which an interrupted ranking resumes.
 
 mod json;
 mod options;
@@ -37,15 +38,15 @@ use search::{Search, Trial};
 /// Default levels of peak ground velocity (m/s).
 pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
 
-/// Default levels where a hazard curve weights them.
+/// Default levels of peak ground velocity (m/s) if a hazard curve weights them.
 const SITE_VELOCITIES: [f64; 4] = [0.15, 0.30, 0.60, 1.20];
 
-/// Strength of shaking.
+/// Levels of shaking, and their weights.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shaking {
-    /// These levels of peak ground velocity (m/s), equally weighted.
+    /// Levels of peak ground velocity (m/s), equally weighted.
     Levels(Vec<f64>),
-    /// The hazard of a site, over peak ground velocity.
+    /// Hazard curve of a site, for peak ground velocity, which weights the levels.
     Site(SiteHazard),
 }
 
@@ -69,102 +70,104 @@ impl Shaking {
 /// Request for a ranking.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The stack.
+    /// Scenario of the stack.
     pub scenario: Scenario,
-    /// Strength of its shaking.
+    /// Levels of shaking, or hazard of the site.
     pub shaking: Shaking,
-    /// Files of the motions, in place of the bundled and synthetic ones.
+    /// Files of records that replace the bundled record and the synthetic motions.
     pub records: Vec<PathBuf>,
-    /// A folder of such files.
+    /// Folder of such files.
     pub folder: Option<PathBuf>,
-    /// Number of motions of a round where none are named.
+    /// Number of motions of a round if no records are given.
     pub motions: u32,
     /// Number of rounds.
     pub rounds: u32,
-    /// Upper limit of the cost of a protection for a stack (US$, the middle of its range).
+    /// Largest cost (US$) of a protection of one stack; the middle of its range of cost counts.
     pub budget: Option<f64>,
-    /// Seed of everything that is drawn.
+    /// Seed of all random numbers.
     pub seed: u32,
 }
 
-/// Results of a protection.
+/// Results of one protection.
 #[derive(Clone, Debug)]
 pub struct Ranked {
-    /// The protection.
+    /// Protection to which the results belong.
     pub protection: Protection,
-    /// Share of the runs that collapse, over equally weighted levels of shaking; at a site, the number of collapses per
-    /// year.
+    /// Probability of collapse, averaged over the levels of shaking; for a site, the number of collapses per year.
     pub collapse: Estimate,
-    /// Barrels of a stack that fall, likewise.
+    /// Number of barrels that fall, averaged over the levels of shaking; for a site, per year.
     pub fallen: Estimate,
-    /// Barrels of a stack that burst under the central assumption, likewise.
+    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a site, per year.
     pub burst: Estimate,
-    /// Reduction of fallen barrels against the stack as it is, under the same motions; `None` for itself.
+    /// Reduction of fallen barrels compared with the stack as it is, under the same motions; `None` for the stack as it is.
     pub saved: Option<Estimate>,
-    /// The same reduction with an interval that holds for all tried protections simultaneously, since the best of many
-    /// is reported.
+    /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since the best of
+    /// many is reported.
     pub saved_together: Option<Estimate>,
-    /// The direction of shaking in which more barrels fall.
+    /// Direction of shaking in which more barrels fall.
     pub direction: View,
-    /// Motions under which it was run.
+    /// Number of motions under which the protection was run.
     pub motions: usize,
-    /// Runs in both directions.
+    /// Number of runs, in both directions.
     pub runs: usize,
-    /// Runs without a verdict.
+    /// Number of runs without a verdict.
     pub left_out: usize,
-    /// Runs whose stack fell under its own weight, before it was shaken.
+    /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
-    /// The last round in which it was run, counted from 1.
+    /// Last round in which the protection was run, counted from 1.
     pub round: u32,
-    /// `true` if no tried protection costs no more and loses less.
+    /// `true` if the protection is on the Pareto front: no other that was run in all rounds costs at most as much and loses
+    /// fewer barrels.
     pub on_front: bool,
-    /// Its worst state of maintenance, and the barrels that then fall; `None` where not tried.
+    /// Worst state of maintenance, and the number of barrels that fall in it; `None` if not tried.
     pub worn: Option<(String, Estimate)>,
 }
 
 impl Ranked {
-    /// Returns the middle of its cost for a stack (US$).
+    /// Returns the middle of the range of cost for one stack (US$).
     pub fn cost(&self) -> f64 {
         middle(&self.protection)
     }
 }
 
-/// Ranking of protections.
+/// Ranking of all protections of a stack.
 #[derive(Clone, Debug)]
 pub struct Ranking {
-    /// The request.
+    /// Request for the ranking.
     pub request: Request,
-    /// Every protection that was tried, sorted by its last round, the latest first, then by the mean number of fallen
-    /// barrels.
+    /// Results of every protection that was tried, sorted by last round (the latest first) and then by the mean number of
+    /// fallen barrels.
     pub all: Vec<Ranked>,
-    /// Protections that were not tried, with reasons.
+    /// Names of the protections that were not tried, with the reasons.
     pub not_tried: Vec<(String, String)>,
-    /// Runs in all.
+    /// Number of all runs.
     pub runs: usize,
-    /// The page.
+    /// Report page.
     pub document: Document,
 }
 
 impl Ranking {
-    /// Returns the stack as it is.
+    /// Returns the results of the stack as it is.
     pub fn as_it_is(&self) -> Option<&Ranked> {
         self.all.iter().find(|one| one.protection.kind == Kind::AsItIs)
     }
 
-    /// Returns the number of protections tried, besides the stack as it is.
+    /// Returns the number of protections that were tried, not counting the stack as it is.
     pub fn tries(&self) -> usize {
         self.all.len().saturating_sub(1)
     }
 
-    /// Returns the protection that saves most barrels for its cost, of those that went through all rounds and whose
-    /// saving is significant by an interval that holds for all tried protections simultaneously.
+    /// Returns the protection that saves most barrels for its cost; `None` if none helps significantly.
+    ///
+    /// Only protections that were run in all rounds are considered, and a saving counts as significant by the interval
+    /// that holds for all tried protections simultaneously.
     pub fn best(&self) -> Option<&Ranked> {
         let last = self.all.iter().map(|one| one.round).max();
         let worth = |one: &Ranked| one.saved.map_or(0.0, |saved| saved.mean / one.cost());
         let helps = self.all.iter().filter(|one| {
             Some(one.round) == last && one.saved_together.is_some_and(|saved| saved.low > 0.0)
         });
-        // Of equals the first, under which fewer fall.
+        // Of equally good protections the first is kept, with which fewer barrels fall.
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
@@ -173,11 +176,13 @@ impl Ranking {
         ProtectDocument::of(self)
     }
 
-    /// Runs the stack as it is and with the best protection under the motion of the scenario, and shows them side by
-    /// side on the page; returns `true` if these runs finished.
+    /// Runs the stack as it is and with the best protection under the motion of the scenario, and shows both runs side by
+    /// side on the page.
+    ///
+    /// Returns `true` if both runs finished.
     ///
     /// # Errors
-    /// When one of them cannot be run.
+    /// If one of the two stacks cannot be run.
     pub fn show_before_and_after(
         &mut self,
         report: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
@@ -204,58 +209,59 @@ impl Ranking {
     }
 }
 
-/// Error of a ranking.
+/// Reason why a ranking fails.
 #[derive(Debug, thiserror::Error)]
 pub enum ProtectError {
-    /// A free scene has no levels, racks or devices.
+    /// The scenario is a free scene, which has no levels, racks or devices.
     #[error(
-        "\"{0}\" is a free scene, and protections are those of stacks of barrels on racks: take the scenario of a stack"
+        "\"{0}\" is a free scene, but protections are for stacks of barrels on racks: use the scenario of a stack"
     )]
     NoStack(String),
-    /// The hazard is over another measure.
+    /// The hazard curve is for another measure than peak ground velocity.
     #[error(
-        "the hazard in {file} is over {measure}, but motions are scaled by peak ground velocity; give the hazard over pgv"
+        "the hazard curve in {file} is for {measure}, but motions are scaled by peak ground velocity; give a hazard curve for pgv"
     )]
     Hazard {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// The measure of the hazard.
+        /// Intensity measure of the hazard curve.
         measure: String,
     },
-    /// The scenario does not read back.
+    /// The scenario with changes cannot be read.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// Its motion cannot be read.
+    /// The motion of the scenario cannot be read.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// A protected stack cannot be built, or does not stand.
+    /// A stack cannot be built, or does not stand.
     #[error(transparent)]
     Stack(#[from] RunFailure),
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// Its cases do not support a decision.
+    /// The cases of a study cannot be evaluated.
     #[error(transparent)]
     Decision(#[from] DecisionError),
 }
 
-/// Progress: runs of a round.
+/// Progress of a ranking: runs of the current round.
 #[derive(Clone, Copy, Debug)]
 pub struct Reached {
-    /// The round, counted from 1; worn devices are tried in one more.
+    /// Current round, counted from 1.
     pub round: u32,
-    /// Number of finished runs.
+    /// Number of finished runs of the round.
     pub done: u64,
-    /// Number of all runs.
+    /// Number of runs of the round.
     pub of: u64,
 }
 
-/// Tries all protections of a stack, in folders below `folder`, and resumes earlier runs.
+/// Tries all protections of a stack and ranks them.
 ///
-/// `report` receives the progress, from several threads, and may cancel.
+/// The studies are stored in folders below `folder`, from which an interrupted ranking resumes.
+/// `report` is called with the progress from several threads, and may cancel.
 ///
 /// # Errors
-/// When the scenario has no stack, a record cannot be read, or a folder cannot be written.
+/// If the scenario has no stack, a record cannot be read, or a folder cannot be written.
 pub fn protect(
     request: &Request,
     folder: &Path,
@@ -271,14 +277,14 @@ pub fn protect(
         let (file, measure) = (site.file.clone(), site.measure.clone());
         return Err(ProtectError::Hazard { file, measure });
     }
-    // The studies set the motions.
+    // The motion of the scenario is removed, since the studies set their own.
     let mut base = request.scenario.clone();
     base.motion.source = MotionSource::None;
     let (levels, weights) = (request.shaking.levels(), request.shaking.weights());
     let mut search =
         Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
     let mut singles = options::singles(&base);
-    // The stack as it is has to stand before anything else is tried.
+    // The stack as it is must stand; otherwise nothing else is tried.
     let mut trials = vec![Trial::new(&base, singles.remove(0))?];
     trials.extend(search.trials(singles));
     let mut open: Vec<usize> = (0..trials.len()).collect();
@@ -290,7 +296,7 @@ pub fn protect(
             let first = trials.len();
             trials.extend(search.trials(pairs));
             let added: Vec<usize> = (first..trials.len()).collect();
-            // They run under the motions of the first round, as the others did, and half of all continue.
+            // Pairs run under the motions of the first round, as the single protections did, and half of all continue.
             search.round(&mut trials, &added, 0)?;
             open.extend(added);
             open = contenders(&trials, &open, &weights);
@@ -301,7 +307,7 @@ pub fn protect(
         trials.iter().map(|trial| ranked(trial, &trials[0], &weights, tries)).collect();
     mark_front(&mut all);
     search.worn(&trials, &mut all, &weights)?;
-    // Trials that were dropped early have run under fewer motions, so that their means do not compare.
+    // Trials that were dropped early ran under fewer motions, so that their means cannot be compared with the others.
     all.sort_by(|a, b| {
         let by_mean = a.fallen.mean.total_cmp(&b.fallen.mean).then(a.cost().total_cmp(&b.cost()));
         b.round.cmp(&a.round).then(by_mean)
@@ -314,7 +320,7 @@ pub fn protect(
     Ok(ranking)
 }
 
-/// Returns the open trials that continue.
+/// Returns the indices of the open trials that continue in the next round.
 fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
         let trial = &trials[*at];
@@ -326,7 +332,7 @@ fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     kept.into_iter().map(|at| open[at]).collect()
 }
 
-/// Returns the two protections of each kind under which fewest barrels fall.
+/// Returns the two protections of each kind with which fewest barrels fall.
 fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Vec<&'a Protection> {
     let fallen =
         |trial: &Trial| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
@@ -341,7 +347,7 @@ fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Ve
     best
 }
 
-/// Returns all pairs of some protections.
+/// Returns all pairs of the given protections that can be combined.
 fn pairs(base: &Scenario, of: &[&Protection]) -> Vec<Protection> {
     let all = of.iter().enumerate();
     all.flat_map(|(at, one)| {
@@ -383,7 +389,7 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked 
     }
 }
 
-/// Marks the Pareto front of cost and fallen barrels, among those that went through all rounds.
+/// Marks the Pareto front of cost and fallen barrels among the protections that were run in all rounds.
 fn mark_front(all: &mut [Ranked]) {
     let last = all.iter().map(|one| one.round).max();
     let mut finalists: Vec<&mut Ranked> =

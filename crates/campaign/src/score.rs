@@ -1,7 +1,7 @@
-//! The RockScore: one number that compares racks and devices, by a protocol that never changes.
+//! RockScore: a number that compares racks and devices, by a protocol that never changes.
 //!
-//! Stacks of one height on the rack that is scored, with its devices, are shaken across and along the barrels by fixed
-//! motions at fixed levels of peak ground velocity, as good as new and in every state that use brings.
+//! Stacks of one height on the scored rack, with its devices, are shaken across and along the barrels by fixed motions
+//! at fixed levels of peak ground velocity, in new condition and in every worn state.
 //! The score is the peak ground velocity (cm/s, rounded down) at which one stack in ten collapses, in the weakest state
 //! and direction.
 
@@ -31,17 +31,18 @@ pub use protocol::{Protocol, State};
 /// Confidence level of all intervals.
 const LEVEL: f64 = 0.95;
 
-/// The peak ground velocity (m/s) at which one stack in ten collapses.
+/// Peak ground velocity (m/s) at which one stack in ten collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
-    /// From the lognormal curve, with its 95 % interval where the records determine one.
+    /// Velocity from the fitted curve, with its 95 % interval if the records determine one.
     Fitted(f64, Option<Interval>),
-    /// Between the highest level at which no more than one in ten collapsed and the lowest at which more did, where at
-    /// most one level has some of each, so that there is no curve; the lower one counts.
+    /// Levels between which the share of collapse exceeds one in ten; the lower one counts.
+    ///
+    /// Used if there is no fitted curve, because stacks both collapse and stand at one level at most.
     Between(f64, f64),
-    /// Above the highest level.
+    /// The velocity is above this level, the highest.
     Above(f64),
-    /// Below the lowest level.
+    /// The velocity is below this level, the lowest.
     Below(f64),
 }
 
@@ -59,7 +60,7 @@ impl Capacity {
             Err(other) => return Err(*other),
         };
         let at = fit.curve.intensity(protocol.chance);
-        // Do not extrapolate the curve beyond the levels that were run.
+        // The curve is not extrapolated beyond the levels that were run.
         Ok(if at < lowest {
             Self::Below(lowest)
         } else if at > highest {
@@ -72,7 +73,7 @@ impl Capacity {
         })
     }
 
-    /// Returns the levels (m/s) between which the share that collapsed exceeds a chance, of stripes in ascending order.
+    /// Returns the levels (m/s) between which the share of collapse exceeds `chance`; `stripes` are in ascending order.
     fn between(stripes: &[Stripe], chance: f64) -> Self {
         let above = stripes.partition_point(|stripe| stripe.fraction() <= chance);
         match (stripes[..above].last(), stripes.get(above)) {
@@ -82,12 +83,12 @@ impl Capacity {
         }
     }
 
-    /// Returns its 95 % interval, if any.
+    /// Returns the 95 % interval, if there is one.
     pub(crate) fn interval(self) -> Option<Interval> {
         if let Self::Fitted(_, interval) = self { interval } else { None }
     }
 
-    /// Returns the velocity (m/s) that counts: 0 below the lowest level.
+    /// Returns the velocity (m/s) that counts for the score; 0 if it is below the lowest level.
     pub fn velocity(self) -> f64 {
         match self {
             Self::Fitted(at, _) | Self::Between(at, _) | Self::Above(at) => at,
@@ -96,49 +97,50 @@ impl Capacity {
     }
 }
 
-/// A stack in one state, shaken in one direction.
+/// Result of a stack in one state, shaken in one direction.
 #[derive(Clone, Debug)]
 pub struct Scored {
-    /// The state.
+    /// State of the stack.
     pub state: State,
-    /// The direction.
+    /// Direction of shaking.
     pub view: View,
-    /// Its capacity.
+    /// Velocity at which one stack in ten collapses.
     pub capacity: Capacity,
-    /// Fragility curve of collapse, with the shares that collapsed at each level.
+    /// Fragility of collapse, with the share at each level.
     pub curve: LimitCurve,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
-    /// Runs without a verdict.
+    /// Number of runs without a verdict.
     pub left_out: usize,
-    /// Runs whose stack fell under its own weight, before it was shaken.
+    /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
 }
 
 impl Scored {
-    /// Counts collapses at a level (m/s) of the protocol; `None` where no run of that level has a verdict.
+    /// Returns the numbers of runs and collapses at a level (m/s) of the protocol; `None` if no run at that level has a
+    /// verdict.
     pub fn at(&self, velocity: f64) -> Option<Stripe> {
-        // Levels are rounded when written as text, and motions were scaled to these.
+        // Motions were scaled to levels that were rounded when written as text.
         let same = |stripe: &&Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-6;
         self.curve.stripes.iter().find(same).copied()
     }
 }
 
-/// A score sheet.
+/// Score sheet of a rack and its devices.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// The scored scenario, as the protocol stacks it.
+    /// Scored scenario, with the number of levels of the protocol.
     pub scenario: Scenario,
-    /// The protocol.
+    /// Protocol of the score.
     pub protocol: Protocol,
-    /// Every state in every direction.
+    /// Result of every state in every direction.
     pub rows: Vec<Scored>,
-    /// The page.
+    /// Report page.
     pub document: Document,
 }
 
 impl Sheet {
-    /// Returns the weakest state and direction.
+    /// Returns the result of the weakest state and direction.
     pub fn weakest(&self) -> Option<&Scored> {
         let by = |a: &&Scored, b: &&Scored| a.capacity.velocity().total_cmp(&b.capacity.velocity());
         self.rows.iter().min_by(by)
@@ -151,7 +153,7 @@ impl Sheet {
         reason = "a velocity of the protocol, positive and below a hundred meters a second"
     )]
     pub fn score(&self) -> u32 {
-        // A level such as 0.15 m/s is slightly less in binary.
+        // The binary value of a level such as 0.15 m/s may be slightly smaller.
         self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
     }
 
@@ -161,24 +163,24 @@ impl Sheet {
     }
 }
 
-/// Error of a score.
+/// Reason why a scenario cannot be scored.
 #[derive(Debug, thiserror::Error)]
 pub enum ScoreError {
-    /// A free scene has no racks.
+    /// The scenario is a free scene, which has no racks.
     #[error(
-        "\"{0}\" is a free scene, and a RockScore is that of racks and devices: take the scenario of a stack"
+        "\"{0}\" is a free scene, but a RockScore is for racks and devices: use the scenario of a stack"
     )]
     NoStack(String),
-    /// A state does not fit this stack.
+    /// A state cannot be applied to the stack.
     #[error("the state \"{state}\" cannot be tried on this stack")]
     State {
-        /// Its name.
+        /// Name of the state.
         state: String,
-        /// The reason.
+        /// Reason.
         #[source]
         source: ScenarioError,
     },
-    /// Its motion cannot be read.
+    /// The motion of the scenario cannot be read.
     #[error(transparent)]
     Ground(#[from] GroundError),
     /// A stack cannot be built, or does not stand.
@@ -187,28 +189,29 @@ pub enum ScoreError {
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// Its cases do not support a decision.
+    /// The cases of a study cannot be evaluated.
     #[error(transparent)]
     Decision(#[from] DecisionError),
-    /// No curve describes the runs.
+    /// The runs do not determine a score.
     #[error("no score for the state \"{state}\" when shaken {direction}")]
     Curve {
-        /// The state.
+        /// Name of the state.
         state: String,
-        /// The direction, in words.
+        /// Direction of shaking, in words.
         direction: &'static str,
-        /// The reason.
+        /// Reason.
         #[source]
         source: FitError,
     },
 }
 
-/// Scores the rack and the devices of a scenario, in folders below `folder`, and resumes earlier runs.
+/// Scores the rack and the devices of a scenario.
 ///
-/// `report` receives the numbers of finished and of all runs, and may cancel.
+/// The studies are stored in folders below `folder`, from which an interrupted run resumes.
+/// `report` receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
-/// When the scenario has no stack, a state cannot be built, or a folder cannot be written.
+/// If the scenario has no stack, a state cannot be built, or a folder cannot be written.
 pub fn score(
     scenario: &Scenario,
     protocol: &Protocol,
@@ -219,7 +222,7 @@ pub fn score(
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
     }
-    // The protocol sets the motions.
+    // The motion of the scenario is removed, since the protocol sets the motions.
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
     let refused = |state: &str| {

@@ -6,10 +6,10 @@
 //!                                                  StudyTable: one row a case ─▶ CSV, Parquet
 //! ```
 //!
-//! A study is a deterministic list of chunks.
-//! A chunk is run as a whole, and its shard is renamed only when it is complete and on the disk, so that an existing
-//! shard is a finished chunk: an interrupted study resumes from there, on one machine or on many.
-//! Draws for a case depend on the seed of the study and on the identity of the case, not on the number of cases.
+//! A study is a deterministic list of chunks of cases, and each chunk is run as a whole.
+//! The file of its rows (the shard) gets its name only when it is complete and on the disk, so that every shard is a
+//! finished chunk. An interrupted study resumes from its shards, on one machine or on many.
+//! Random draws for a case depend on the seed of the study and on the identity of the case, not on the number of cases.
 //!
 //! ```no_run
 //! use std::ops::ControlFlow;
@@ -76,7 +76,7 @@ use motions::Motion;
 use plan::{Chunks, Sizes};
 use setting::Setting;
 
-/// A study: its factors, its motions, and the design of its cases.
+/// Study: factors that are varied, motions, and the design of the cases.
 ///
 /// ```
 /// use barrelstack_campaign::Study;
@@ -89,49 +89,49 @@ use setting::Setting;
 pub struct Study {
     /// Title, in one line.
     pub title: String,
-    /// Seed of everything that is drawn.
+    /// Seed of all random draws.
     pub seed: u64,
     /// Design of the cases.
     pub design: Design,
-    /// The text of the study file.
+    /// Text of the study file.
     text: String,
     template: Template,
-    /// Files of the motion of the base that were given in memory.
+    /// Files of the motion of the base scenario that are held in memory.
     held: Vec<FileRef>,
     factors: Vec<Factor>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
-    /// `true` if some of its cases simulate their stack in space.
+    /// `true` if some cases simulate the stack in space.
     in_space: bool,
-    /// The levels that are crossed with the rest.
+    /// Levels of intensity that are crossed with motions and factors; a single `None` without levels.
     levels: Vec<Option<f64>>,
-    /// Cases of each chunk; of an incremental dynamic analysis, hunts.
+    /// Number of cases of each chunk; in an incremental dynamic analysis, of hunts.
     chunk: Sizes,
     cases: Cases,
     chunks: Chunks,
-    /// Fingerprint of the study, its records and the version of the program.
+    /// Fingerprint of the study, the records and the version of the program.
     hash: u64,
 }
 
-/// A field that is varied.
+/// Factor: fields of the scenario that are varied together.
 #[derive(Clone, Debug)]
 struct Factor {
-    /// Name of its column.
+    /// Name of the column of the factor.
     name: String,
-    /// Paths of the fields that take the value.
+    /// Paths of the fields that take the value of the factor.
     fields: Vec<String>,
     variation: Variation,
-    /// Specification of its column.
+    /// Specification of the column of the factor.
     column: ColumnSpec,
-    /// The value of the base, where it has one.
+    /// Value in the base scenario, if the field has one there.
     base: Option<Value>,
-    /// `true` if it changes which bodies and contacts there are.
+    /// `true` if values may differ in the bodies and contacts of the model.
     structural: bool,
-    /// `true` if one of its values simulates the stack in space.
+    /// `true` if the stack is simulated in space for one of the values.
     in_space: bool,
 }
 
-/// Variation of a field.
+/// How a factor is varied: by listed values or by a distribution.
 #[derive(Clone, Debug)]
 enum Variation {
     Values(Vec<Setting>),
@@ -139,7 +139,7 @@ enum Variation {
 }
 
 impl Factor {
-    /// Returns the values that are crossed with those of other factors.
+    /// Returns the listed values, which are crossed with those of other factors; `None` for a distribution.
     fn crossed(&self) -> Option<&[Setting]> {
         match &self.variation {
             Variation::Values(values) => Some(values),
@@ -148,19 +148,19 @@ impl Factor {
     }
 }
 
-/// The intensity to which motions are scaled.
+/// Intensity to which motions are scaled.
 #[derive(Clone, Debug)]
 struct Intensity {
     measure: barrelstack_motion::IntensityMeasure,
     levels: Levels,
 }
 
-/// The levels of an intensity (SI).
+/// Levels of an intensity (SI).
 #[derive(Clone, Debug)]
 enum Levels {
     List(Vec<f64>),
     Distribution(Distribution),
-    /// Found by an incremental dynamic analysis.
+    /// Levels that an incremental dynamic analysis finds.
     Hunted,
 }
 
@@ -169,7 +169,9 @@ pub fn json_schema() -> serde_json::Value {
     barrelstack_input::schema::of_file("barrelstack study", &STUDY)
 }
 
-/// Returns every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
+/// Returns a reference of every table and field of a study file in Markdown.
+///
+/// The fields of `[base]` are those of a scenario file and are not listed.
 pub fn reference() -> String {
     let fields = barrelstack_input::reference::of_tables(
         &STUDY,
@@ -186,13 +188,13 @@ impl Study {
         self.hash
     }
 
-    /// Returns the number of cases; of an adaptive design, the maximum.
+    /// Returns the number of cases; for an adaptive design, the maximum.
     pub fn cases(&self) -> u64 {
         let runs = if let Design::Ida(hunt) = &self.design { hunt.runs } else { 1 };
         self.cases.count(self).saturating_mul(u64::from(runs))
     }
 
-    /// `true` if the number of cases depends on their results.
+    /// `true` if the number of cases depends on the results of earlier cases.
     pub fn is_adaptive(&self) -> bool {
         match &self.design {
             Design::Ida(_) => true,
@@ -206,7 +208,7 @@ impl Study {
         }
     }
 
-    /// Returns the unit of a chunk: "cases", or "hunts" of an incremental dynamic analysis.
+    /// Returns the unit in which chunks are counted: "cases", or "hunts" in an incremental dynamic analysis.
     pub fn chunk_unit(&self) -> &'static str {
         if matches!(self.design, Design::Ida(_)) { "hunts" } else { "cases" }
     }

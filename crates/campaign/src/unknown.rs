@@ -1,13 +1,13 @@
-//! Unmeasured parameters of a stack as factors of a study: the draws of `[imperfections]`.
+//! Unmeasured parameters of a stack (friction, stiffness, damping) as factors of a study.
 //!
-//! Variants of a run, the chart of heights, the ranking of protections and the scores all use them, so that their
-//! results for one stack rest on one set of medians and spreads.
+//! Medians and scatter are those of `[imperfections]`. Variants of a run, studies of heights, rankings of protections and
+//! scores all use the same ones for a stack.
 
 use std::fmt::Write as _;
 
 use crate::scenario::{Imperfection, Scenario, Scene, Setting};
 
-/// Pairs that form seats, each with the pair of the same materials that meets in impacts.
+/// Interfaces of seats, each with the interface of fallen bodies of the same materials, if any.
 const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-ground", Some("fallen-rack-ground")),
     ("barrel-rack", Some("fallen-barrel-rack")),
@@ -20,10 +20,10 @@ fn toml(value: &str) -> String {
     if bare { value.to_owned() } else { format!("\"{value}\"") }
 }
 
-/// Returns the tables `[[factor]]` of a scenario: friction, stiffness and damping of its seats, about the stated
+/// Returns the tables `[[factor]]` of a scenario, for friction, stiffness and damping of its seats about the stated
 /// values.
 ///
-/// A free scene, and one whose variants differ in places and masses alone, has none.
+/// The text is empty for a free scene, and for a scenario whose variants differ in positions and masses only.
 pub(crate) fn factors(scenario: &Scenario) -> String {
     let mut text = String::new();
     let Scene::Stack { stack, imperfections: spread, .. } = &scenario.scene else { return text };
@@ -33,7 +33,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
     let settings = scenario.settings();
     let of = |path: &str| settings.iter().find(|setting: &&Setting| setting.path == path);
     for (pair, fallen) in SEATS {
-        // Without posts no rack stands on another.
+        // Racks stand on each other only if they have posts.
         if pair == "rack-rack" && stack.rack.posts.is_none() {
             continue;
         }
@@ -53,8 +53,8 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
             );
         };
         let friction = "friction.coefficient";
-        // Static friction takes the same value, so that it does not fall below kinetic friction; so does the
-        // friction of fallen bodies, whose materials are the same.
+        // Static friction takes the same value, so that it does not fall below kinetic friction. The friction of fallen
+        // bodies takes it too, since their materials are the same.
         let others = [
             Some(path("friction.static_coefficient")),
             fallen.map(|fallen| format!("interface.{fallen}.{friction}")),
@@ -76,7 +76,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
         factor("friction", friction, &also, dispersion, "");
         factor("stiffness", "stiffness", &[], spread.stiffness, "");
         factor("damping", "damping", &[], spread.damping, "");
-        // The logarithm of a restitution is proportional to the damping ratio while that is small.
+        // The logarithm of a restitution is proportional to the damping ratio as long as the ratio is small.
         let restitution = of(&path("restitution")).and_then(|one| one.value.parse::<f64>().ok());
         if let Some(restitution) = restitution {
             let dispersion = -spread.damping * libm::log(restitution);

@@ -1,4 +1,4 @@
-//! Damaged folders: damage in any file of a study is reported or repaired, and links lead nothing out of the folder.
+//! Damaged folders: damage in any file of a study is reported or repaired, and nothing is written through links.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ use barrelstack_campaign::decision::{Request, decide_folder};
 use barrelstack_campaign::study::{Collected, Progress, RunOptions, StudyError, collect};
 use barrelstack_motion::Random;
 
-/// Six cases in three chunks, of milliseconds each.
+/// Returns a study of six cases in three chunks; each case takes milliseconds.
 fn study() -> Study {
     let text = format!(
         "{HEAD}duration = \"0.4 s\"\nstop_after_collapse = \"0.01 s\"\n\
@@ -35,7 +35,7 @@ fn run(study: &Study, folder: &Path) -> Result<Progress, StudyError> {
     Ok(last.into_inner().unwrap())
 }
 
-/// Reads the files of a folder and those below it, except for shards that were set aside.
+/// Reads the files of a folder and its subfolders, except for shards that were set aside.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -50,7 +50,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// Returns status, rows and decision of a folder, or the refusals.
+/// Returns the status, rows and decision of a folder, or the error of each.
 fn read_all(folder: &Path) -> [Result<String, String>; 3] {
     let words = |error: StudyError| error.to_string();
     let status = Collected::status(folder).map(|status| format!("{status:?}")).map_err(words);
@@ -61,7 +61,7 @@ fn read_all(folder: &Path) -> [Result<String, String>; 3] {
     [status, rows, decided]
 }
 
-/// Returns the bytes with one digit changed, or with one bit, by turns.
+/// Returns the bytes with one digit changed if `time` is even, and with one bit changed if it is odd.
 fn changed(bytes: &[u8], time: u32, random: &mut Random) -> Vec<u8> {
     let mut pick = |below: usize| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below")]
@@ -80,8 +80,10 @@ fn changed(bytes: &[u8], time: u32, random: &mut Random) -> Vec<u8> {
     changed
 }
 
-/// Changes every file of a finished folder a number of times, by a digit or a bit. None is accepted silently: reading
-/// refuses it or is unaffected, and another run restores the folder or refuses it.
+/// Changes a digit or a bit of every file of a finished folder, a number of times, and checks that no change is accepted
+/// silently.
+///
+/// Reading must fail or be unaffected, and another run must restore the folder or fail.
 fn damage(times: u32) -> [u32; 3] {
     let (study, place) = (study(), tempfile::tempdir().unwrap());
     let folder = place.path().join("study");
@@ -143,8 +145,9 @@ fn no_digit_and_no_bit_of_a_folder_changes_in_silence_in_a_thousand_tries() {
     assert_eq!((refused, unread), (5000, 4000));
 }
 
-/// Changes what else a study depends on: the record of a motion, by a digit or a bit, and the claim that a killed
-/// process left. A changed record is refused, or its fingerprint in the manifest is another; a claim changes nothing.
+/// Changes a digit or a bit of the other files on which a study depends: a record, and the claim of a killed process.
+///
+/// A changed record must be refused, or get another fingerprint in the manifest; a claim must have no effect.
 fn damage_beside(times: u32) -> [u32; 2] {
     let place = tempfile::tempdir().unwrap();
     let (folder, record) = (place.path().join("study"), place.path().join("record.csv"));
@@ -200,7 +203,7 @@ fn no_digit_and_no_bit_of_a_record_or_a_claim_changes_in_silence() {
 #[test]
 #[ignore = "takes minutes: the same with a thousand changes"]
 fn no_digit_and_no_bit_of_a_record_or_a_claim_changes_in_silence_in_a_thousand_tries() {
-    // As measured: none is accepted, not even under another fingerprint.
+    // Measured: no change is accepted, not even with another fingerprint.
     assert_eq!(damage_beside(1000), [1000, 0]);
 }
 
@@ -229,9 +232,9 @@ fn what_is_not_the_folder_of_a_study_is_named_as_what_it_is() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("study");
     let said = |folder: &Path| Collected::read(folder).unwrap_err().to_string();
-    assert!(said(&folder).contains("is not there; name a folder"));
+    assert!(said(&folder).contains("does not exist; name the folder"));
     fs::create_dir(&folder).unwrap();
-    assert!(said(&folder).contains("it has no study.json; name a folder"));
+    assert!(said(&folder).contains("it has no study.json; name the folder"));
     symlink("/dev/zero", folder.join("study.json")).unwrap();
     assert!(said(&folder).contains("its study.json is not a file"));
     assert!(said(&folder.join("study.json")).contains("is not a folder"));
@@ -248,7 +251,7 @@ fn a_folder_of_somebody_else_leads_nothing_that_is_written_out_of_it() {
     let folder = place.path().join("study");
     run(&study, &folder).unwrap();
     let whole = files(&folder);
-    // Claims, shards and all files of results are links, or hard links to another file.
+    // Claims, shards and all result files are replaced by links, or by hard links to another file.
     for (path, _) in whole.iter().filter(|(path, _)| path.extension().unwrap() == "parquet") {
         fs::remove_file(path).unwrap();
     }

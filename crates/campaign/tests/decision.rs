@@ -1,4 +1,4 @@
-//! Decisions from tables with known answers.
+//! Decisions from tables with known results.
 
 use crate::common::{capacity, number, ordinary, study};
 use barrelstack_campaign::decision::{DecisionError, LimitState, Request, SiteHazard, decide};
@@ -16,7 +16,7 @@ fn the_fragility_of_known_capacities_is_found_and_the_curve_is_not_doubted() {
     assert!(curve.median.unwrap().holds(0.5));
     assert!(curve.returned.is_empty() && curve.monotony.p == 1.0);
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
-    // Raw counts are those of the table.
+    // The raw counts must be those of the table.
     let failures: u32 = curve.stripes.iter().map(|stripe| stripe.failures).sum();
     assert_eq!(failures as usize, found.cases.all.iter().filter(|case| case.collapsed).count());
 }
@@ -156,7 +156,7 @@ fn a_hazard_curve_that_does_not_serve_is_refused_with_the_place() {
         SiteHazard::parse("site.csv", "pga (g),rate (1/year)\n0.1,0.1\n0.2,0.01\n").unwrap();
     let request = Request { hazard: Some(hazard), years: None };
     let error = decide(&ordinary(), &request).unwrap_err();
-    assert!(error.to_string().contains("are over pgv; give"), "{error}");
+    assert!(error.to_string().contains("is for pgv; give"), "{error}");
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn a_table_without_a_verdict_is_refused() {
 fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
     let mut collected = ordinary();
     let mut columns = collected.table.columns().to_vec();
-    // Eight cases of another friction come first; the base of both factors is in the missing part.
+    // The first eight cases have another friction; the base values of both factors are in the missing part.
     let first = |row: usize, one: f64, other: f64| Some(if row < 8 { one } else { other });
     columns[1] =
         number("friction", "", Role::Factor, (0..96).map(|k| first(k, 0.5, 0.3)).collect());
@@ -229,7 +229,7 @@ fn shares_of_one_change_at_a_time_are_reported_at_each_level_with_intervals_that
         for level in &group.levels {
             let failed = (0..12).filter(|record| capacity(*record) <= level.intensity).count();
             assert_eq!((level.cases, level.collapsed as usize), (12, failed));
-            // One case per motion: the interval of Wilson, a little wider by Student's t.
+            // With one case per motion, the interval is that of Wilson, slightly wider by Student's t.
             let one = barrelstack_fragility::wilson(level.collapsed, 12, 0.95);
             assert!(level.interval.high - level.interval.low >= one.high - one.low - 1e-9);
         }
@@ -237,7 +237,7 @@ fn shares_of_one_change_at_a_time_are_reported_at_each_level_with_intervals_that
         let alone = barrelstack_fragility::wilson(group.collapsed, 96, 0.95);
         assert!(group.interval.low < alone.low && group.interval.high > alone.high);
     }
-    assert!(html(&found.document).contains("Intervals count motions"));
+    assert!(html(&found.document).contains("Intervals are clustered by motion"));
 }
 
 #[test]
@@ -259,7 +259,7 @@ fn cases_of_one_record_that_repeat_each_other_make_a_median_no_surer() {
         let stated = found.to_document().fragility[0].ln_median_standard_error.unwrap();
         let [median, _] = found.curves[0].standard_errors().unwrap();
         assert_eq!(stated, median);
-        // Nine times as many independent cases would have a third of the error.
+        // With nine times as many independent cases, the error would be a third.
         (median, found.curves[0].fit.as_ref().unwrap().median_error)
     };
     let ((clustered, alone), (again, thrice)) = (errors(&once), errors(&collected));
@@ -272,7 +272,7 @@ fn every_measure_stands_in_one_table_and_the_cause_comes_first() {
     let found = decide(&ordinary(), &Request::default()).unwrap();
     assert_eq!(found.measures.len(), 2);
     let first = &found.cases.measures[found.measures[0].measure].name;
-    // Capacities were set in PGV and decrease with the number of the record, which PGA contains.
+    // Capacities are in PGV and decrease with the number of the record, on which PGA depends.
     let likelihood = |at: usize| found.measures[at].collapse.as_ref().unwrap().fit.ln_likelihood;
     assert!(likelihood(0) >= likelihood(1), "{first}");
     assert!(found.measures.iter().all(|row| row.drift.is_some()));
@@ -290,5 +290,5 @@ fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
     let last = found.curves[0].stripes.last().unwrap();
     let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
     assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
-    assert!(found.warnings.iter().any(|w| w.starts_with("Levels were chosen by hunting")));
+    assert!(found.warnings.iter().any(|w| w.starts_with("The levels are those of hunts")));
 }

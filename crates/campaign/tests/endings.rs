@@ -1,4 +1,4 @@
-//! A study follows every case to its end, or states everywhere that it did not.
+//! Endings of cases: a study follows every case to its end, or all results state that it did not.
 
 use crate::common;
 use barrelstack_report::html;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use barrelstack_campaign::decision::{Request, decide};
 use barrelstack_campaign::study::{Collected, Endings, RunOptions, Study, StudyTable};
 
-/// Returns four records that may not be bundled; reports a skipped test where they are missing.
+/// Returns four records that may not be bundled; if they are missing, reports that the test is skipped.
 fn records() -> Option<String> {
     let folder =
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
@@ -27,7 +27,7 @@ fn records() -> Option<String> {
     Some(quoted.join(", "))
 }
 
-/// The shipped example with four other records.
+/// Returns the built-in example study with four other records, and its results.
 fn study(folder: &Path, run: &str) -> Option<(Study, Collected)> {
     let text = format!(
         "schema = 1\nseed = 3\n[base]\nextends = \"candia-8-barrels\"\n{run}\n\
@@ -94,7 +94,7 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_reported_everywhe
     let page = decide(&cut, &Request::default()).unwrap();
     assert!(page.losses.is_err(), "what falls after the cut is not known");
     assert!(page.warnings[0].contains("cut short"), "{:?}", page.warnings);
-    assert!(!page.warnings.iter().any(|said| said.contains("nature of rocking")));
+    assert!(!page.warnings.iter().any(|said| said.contains("typical of rocking")));
     let first = &page.document.verdict.sentences[0];
     assert!(first.contains("cut short while the ground still moved"), "{first}");
     assert!(html(&page.document).contains("No losses are given"));
@@ -102,7 +102,7 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_reported_everywhe
 
 #[test]
 fn the_shipped_example_loses_what_it_loses_without_any_stop() {
-    // A part of the motions of the shipped study, which has 240 cases: the least and the most at every level.
+    // A part of the motions of the built-in study, which has 240 cases: the least and the most at every level.
     let example = barrelstack_campaign::study::builtin("napa-four-levels").unwrap();
     let example = example.replace("count = 23", "count = 1");
     let until = "[base.run]\nuntil = \"duration\"\nduration = \"100 s\"\n";

@@ -1,4 +1,4 @@
-//! Exported files, and `OpenQuake` and Pelicun run on them.
+//! Exports to other programs: contents of the files, and runs of `OpenQuake` and Pelicun with them.
 
 #![allow(clippy::print_stdout, reason = "numbers of other programs are read with --nocapture")]
 
@@ -12,7 +12,7 @@ use barrelstack_campaign::decision::{Decision, Exported, Request, decide, export
 use barrelstack_campaign::study::Collected;
 use barrelstack_fragility::Lognormal;
 
-/// The harder beyond its capacity a stack is shaken, the more of it falls.
+/// Returns a study in which more barrels fall the more the shaking exceeds the capacity.
 fn gradual() -> Collected {
     study(|record, level| match level / capacity(record) {
         over if over < 1.0 => 0,
@@ -22,7 +22,7 @@ fn gradual() -> Collected {
     })
 }
 
-/// A decision and its export.
+/// Returns the decision of a study and its export.
 fn exported(collected: &Collected, asset: &str) -> (Decision, Exported) {
     let decision = decide(collected, &Request::default()).unwrap();
     let found = export(&decision, &collected.provenance, asset).unwrap();
@@ -33,7 +33,7 @@ fn text<'a>(found: &'a Exported, name: &str) -> &'a str {
     &found.files.iter().find(|(known, _)| *known == name).expect("a file").1
 }
 
-/// Levels (cm/s), means and coefficients of variation of a vulnerability function.
+/// Returns the levels (cm/s), means and coefficients of variation of a vulnerability function.
 fn vulnerability(found: &Exported, name: &str) -> [Vec<f64>; 3] {
     let parsed = roxmltree::Document::parse(text(found, name)).unwrap();
     ["imls", "meanLRs", "covLRs"].map(|name| {
@@ -48,7 +48,7 @@ const FUNCTIONS: [&str; 2] =
 #[test]
 fn what_is_exported_is_the_same_curve_to_four_digits() {
     let (decision, found) = exported(&ordinary(), "stack <A>");
-    // OpenQuake states a lognormal capacity by its mean and standard deviation, over PGV in cm/s.
+    // OpenQuake describes a lognormal capacity by its mean and standard deviation, here of PGV in cm/s.
     let parsed = roxmltree::Document::parse(text(&found, "openquake-fragility.xml")).unwrap();
     let node = |name: &str| parsed.descendants().find(|n| n.has_tag_name(name)).expect("a node");
     assert_eq!(node("imls").attribute("imt"), Some("PGV"));
@@ -100,7 +100,7 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
                 let (k, t) = (at / steps, (at % steps) as f64 / steps as f64);
                 let between = |of: &[f64]| of[k] + t * (of[k + 1] - of[k]);
                 let (x, m, c) = (between(&x), between(&mean), between(&variation));
-                // What a beta distribution needs: a variance below m (1 − m).
+                // A beta distribution requires a variance below m (1 − m).
                 let variance = (c * m).powi(2);
                 assert!(
                     variance == 0.0 || variance < m * (1.0 - m),
@@ -108,12 +108,12 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
                 );
                 if name == FUNCTIONS[0] {
                     let ours = losses.fallen(0.01 * x) / 6.0;
-                    // What is allowed, with the ends of the pieces in which it is tested.
+                    // The allowed difference, and a little more since the exporter tests it at other points.
                     let off = (m - ours).abs();
                     assert!(off < 3e-3 * ours + 2e-7, "{name} at {x} cm/s: {m} and {ours}");
                 }
             }
-            // At the levels themselves the scatter is that of the cases, but for its bound.
+            // At the levels themselves the scatter is that of the cases, up to its limit.
             let at = |level: f64| x.iter().position(|x| (x - level).abs() < 1e-9).unwrap();
             let k = at(50.0);
             assert!(variation[k] > 0.0, "{name}");
@@ -125,7 +125,7 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
 fn one_name_goes_through_fragility_vulnerability_mapping_and_exposure() {
     let (_, found) = exported(&gradual(), "stack <A>");
     let noted = |note: &str| found.notes.iter().any(|known| known == note);
-    assert!(noted("OpenQuake takes no name like stack <A>: there it is stack__A_"));
+    assert!(noted("OpenQuake does not accept the name stack <A>; it is exported as stack__A_"));
     for name in ["openquake-fragility.xml", FUNCTIONS[0], FUNCTIONS[1]] {
         let parsed = roxmltree::Document::parse(text(&found, name)).unwrap();
         let function = |n: &roxmltree::Node<'_, '_>| n.tag_name().name().ends_with("Function");
@@ -164,16 +164,16 @@ fn names_in_other_programs_are_no_formulas_no_markup_and_not_too_long() {
     }
 }
 
-/// Intensities (m/s) at which other programs are run.
+/// Intensities (m/s) at which the other programs are run.
 const INTENSITIES: [f64; 5] = [0.25, 0.42, 0.5, 0.66, 0.85];
 
-/// Chances of the limit states at an intensity (m/s), the first one first.
+/// Returns the probabilities of the limit states at an intensity (m/s), in order.
 fn ours(decision: &Decision, intensity: f64) -> Vec<f64> {
     let fits = decision.curves.iter().filter_map(|curve| curve.fit.as_ref().ok());
     fits.map(|fit| fit.curve.probability(intensity)).collect()
 }
 
-/// A Python that has a module: the one that `BARRELSTACK_PYTHON` names, which then must have it, else `python3`.
+/// Returns a Python that has a module: that of `BARRELSTACK_PYTHON`, which must have the module, or `python3`.
 fn python(module: &str) -> Option<String> {
     let named = std::env::var("BARRELSTACK_PYTHON").ok();
     let name = named.clone().unwrap_or_else(|| "python3".to_owned());
@@ -192,7 +192,7 @@ fn put_all(folder: &Path, found: &Exported) {
     }
 }
 
-/// A stack that is shaken along direction 1, while direction 2 has three times as much.
+/// Pelicun script for a stack that is shaken along direction 1, while direction 2 has three times the demand.
 const PELICUN: &str = "
 import sys, warnings, numpy, pandas
 warnings.filterwarnings('ignore')
@@ -244,11 +244,12 @@ fn pelicun_computes_the_damage_that_we_compute() {
     }
 }
 
-/// Events of a scenario.
+/// Number of events of a scenario.
 const EVENTS: usize = 2000;
 
-/// Runs the engine on a job with five stacks, each at a place of its own and shaken alike in all events; what it
-/// writes under a name, by columns of each stack.
+/// Runs `OpenQuake` on a job with five stacks, each at its own place and shaken equally in all events.
+///
+/// Returns the columns of the output file `wanted` for each stack.
 fn openquake(
     python: &str,
     job: &str,
@@ -259,7 +260,7 @@ fn openquake(
     let folder = folder.path();
     put_all(folder, found);
     let put = |name: &str, text: String| std::fs::write(folder.join(name), text).unwrap();
-    // The stub with places and stacks of our own.
+    // The exposure template with five stacks at different places.
     let stub = text(found, "openquake-exposure.csv");
     let (head, stack) = stub.trim_end().split_once('\n').unwrap();
     let (mut assets, mut sites) = (head.to_owned(), "site_id,lon,lat".to_owned());
@@ -316,11 +317,11 @@ fn openquake_computes_the_damage_that_we_compute() {
         let states: Vec<f64> = names
             .map(|curve| row[&format!("contents-{}", curve.limit.name().replace('-', "_"))])
             .collect();
-        // Theirs are shares in each state, ours chances to be in it or beyond.
+        // OpenQuake gives the share in each damage state; ours is the probability of that state or a more severe one.
         let theirs: Vec<f64> = (0..states.len()).map(|k| states[k..].iter().sum()).collect();
         println!("OpenQuake at {:.0} cm/s: {theirs:.4?}, ours {ours:.4?}", 100.0 * x);
         for (theirs, ours) in theirs.iter().zip(&ours) {
-            // Chances below 5e-5 are held constant, and numbers are of single precision.
+            // OpenQuake holds probabilities below 5e-5 constant and has single precision.
             assert!((theirs - ours).abs() < 1e-4, "{x} m/s: {theirs}, not {ours}");
         }
     }
@@ -330,7 +331,7 @@ fn openquake_computes_the_damage_that_we_compute() {
 #[ignore = "needs OpenQuake; `cargo xtask python heavy` runs it"]
 fn openquake_computes_the_losses_that_we_compute() {
     let Some(python) = python("openquake.calculators.base") else { return };
-    // All or nothing scatters as much as a ratio can.
+    // A ratio that is either 0 or 1 has the largest possible scatter.
     for collected in [gradual(), ordinary()] {
         let (decision, found) = exported(&collected, "stack");
         let losses = decision.losses.as_ref().unwrap();
@@ -357,7 +358,7 @@ fn openquake_computes_the_losses_that_we_compute() {
                     assert!((wine / lost - 1.0).abs() < 4e-3, "{x}: {wine}, not {lost}");
                     continue;
                 }
-                // Five standard errors of the mean of what is drawn.
+                // The tolerance is five standard errors of the mean of the draws.
                 let level = levels.iter().position(|level| *level >= 100.0 * x).unwrap();
                 let scatter = variation[level].max(variation[level - 1]);
                 let error = 5.0 * scatter / (EVENTS as f64).sqrt() + 1e-3;

@@ -1,13 +1,13 @@
-//! Stacks that do not stand: those that fall under their own weight count as collapsed, and those in both planes are
-//! refused with the stacks of each.
+//! Stacks that fall under their own weight, which count as collapsed, and stacks in both planes, which are refused with
+//! advice for each plane.
 
 use barrelstack::Scenario;
 use barrelstack::variants::planes;
 use barrelstack_campaign::Study;
 use barrelstack_campaign::study::Tally;
 
-/// Levels along the barrels on seats as soft as one contact node of the paper, hardly shaken, with one rack a little
-/// beside its place: four stand, six and eight do not.
+/// Stacks along the barrels on seats as soft as one contact node of the paper, hardly shaken, with one rack slightly out
+/// of place: stacks of four levels stand, those of six and eight do not.
 const STUDY: &str = r#"
 schema = 1
 title = "levels along the barrels"

@@ -1,4 +1,4 @@
-//! A study that grows runs its new cases only, and has the same table as one of that size from the start.
+//! Growth of studies: only new cases are run, and the table is that of a study of the larger size.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -85,18 +85,18 @@ fn what_every_case_depends_on_may_not_change_and_the_refusal_names_it() {
         ("to = 0.6", "to = 0.7", "a [[factor]] has changed"),
         ("levels = 2", "levels = 1", "the scenario in [base] has changed"),
         ("chunk = 20", "chunk = 10", "[design] has changed"),
-        ("seed = 7", "seed = 8", "its seed is 7, that of this one 8"),
+        ("seed = 7", "seed = 8", "its seed is 7, and that of this study is 8"),
         ("1 g", "2 g", "the motion"),
     ] {
         let reason = refused(&first.replace(from, to));
         assert!(reason.contains(named), "{named}: {reason}");
     }
-    // A chunk alone does not decide that the study has changed.
+    // Running a single chunk does not accept a changed study.
     let study = Study::parse("test.toml", &first.replace("count = 40", "count = 60")).unwrap();
     let reason =
         study.run_chunk(folder.path(), 2, Width::widest(), &|| false).unwrap_err().to_string();
-    assert!(reason.contains("run it as a whole once"), "{reason}");
-    // A damaged shard heals, chunk by chunk too.
+    assert!(reason.contains("run the whole study once"), "{reason}");
+    // A damaged shard is replaced when its chunk is run alone.
     let study = Study::parse("test.toml", &first).unwrap();
     let shard = std::fs::read_dir(folder.path().join("shards")).unwrap().next().unwrap().unwrap();
     std::fs::write(shard.path(), b"no shard").unwrap();
@@ -105,7 +105,7 @@ fn what_every_case_depends_on_may_not_change_and_the_refusal_names_it() {
     assert_eq!([run(), run()], [ChunkRun::Again, ChunkRun::Before]);
 }
 
-/// The shards of a chunk, by name.
+/// Returns the paths of the shards of a chunk, sorted by name.
 fn shards(folder: &Path, chunk: &str) -> Vec<std::path::PathBuf> {
     let all = std::fs::read_dir(folder.join("shards")).unwrap();
     let mut found: Vec<_> = all.map(|entry| entry.unwrap().path()).collect();
@@ -129,7 +129,7 @@ fn what_an_older_process_writes_into_a_grown_folder_is_run_again() {
     assert_eq!(ran, 20);
     assert!(again == table);
     assert!(good.is_file() && !stale.exists());
-    // Beside the right one it changes nothing, and nothing is run.
+    // Next to the right shard it has no effect, and nothing is run.
     std::fs::copy(&foreign, &stale).unwrap();
     let (ran, again) = run(&large, &grown);
     assert!(ran == 0 && again == table && !stale.exists());
@@ -154,7 +154,10 @@ fn a_process_whose_study_grew_meanwhile_ends_and_says_so() {
     };
     let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
     let error = study.run(&out, &options, &report).unwrap_err().to_string();
-    assert!(error.contains("has been given to a study that grew since this run began"), "{error}");
+    assert!(
+        error.contains("has been taken over by a larger form of the study since this run began"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -191,7 +194,7 @@ fn who_waits_for_a_chunk_of_a_stopped_process_learns_its_name() {
     let report = |progress: &Progress| {
         if let Some(chunk) = progress.waits_for {
             *found.lock().unwrap() = Some((chunk, holder(folder.path(), chunk).unwrap()));
-            // It ends, and its claim is free.
+            // The process ends, which releases its claim.
             stopped.lock().unwrap().take();
         }
         ControlFlow::Continue(())

@@ -21,8 +21,7 @@ fn every_height_direction_motion_and_level_is_a_run() {
     let request = Request { synthetic: 3, ..Request::default() };
     let (result, runs) = stopped_at_once(&request);
     assert!(matches!(result, Err(HeightsError::Study(StudyError::Stopped))), "{result:?}");
-    // Two components of the bundled record and three synthetic motions; the record unscaled beside them.
-    // Two to six levels.
+    // Two components of the bundled record and three synthetic motions, and the record unscaled; two to six levels.
     let stacks = 5 * View::ALL.len();
     assert_eq!(usize::try_from(runs).unwrap(), stacks * (VELOCITIES.len() * 5 + 2));
     let (_, fewer) = stopped_at_once(&Request { highest: 2, ..request });

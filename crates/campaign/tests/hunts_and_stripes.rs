@@ -1,5 +1,5 @@
-//! Two designs of a study, one fragility: incremental dynamic analysis and multiple stripes on the six
-//! barrels of the paper, under the same motions.
+//! Incremental dynamic analysis and multiple stripes give the same fragility: both designs are run on the six barrels of
+//! the paper, under the same motions.
 
 #![allow(clippy::print_stdout, reason = "the measured values are shown")]
 
@@ -33,7 +33,7 @@ fn found(design: &str) -> Decision {
     decide(&collected.unwrap(), &Request::default()).unwrap()
 }
 
-/// The curve of collapse, and its 95 % intervals of median and dispersion.
+/// Returns the curve of collapse, and the 95 % intervals of median and dispersion.
 fn curve(name: &str, found: &Decision) -> (Lognormal, [Interval; 2]) {
     let limit = &found.curves[0];
     let fitted = limit.fit.as_ref().unwrap().curve;

@@ -1,6 +1,6 @@
-//! Studies, decisions, scores, heights and protections: their tables, pages and folders, whatever stops or damages them.
+//! Tests of studies, decisions, scores, heights and protections: tables, pages and folders, also interrupted and damaged.
 //!
-//! One program, since each would compile and link what it tests anew.
+//! All tests are one program, so that the crates are linked only once.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

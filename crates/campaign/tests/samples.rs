@@ -1,4 +1,4 @@
-//! Ten thousand samples: a page that can be mailed, bins instead of a wall, and an order that is tested.
+//! Studies of ten thousand samples: size of the page, bins, and the test of monotony.
 
 use crate::common::{integer, made, number, text};
 use barrelstack_campaign::decision::{Decision, Request, decide};
@@ -6,7 +6,8 @@ use barrelstack_campaign::study::Role;
 use barrelstack_motion::Random;
 use barrelstack_report::html;
 
-/// Samples of a study without bodies: 24 records, levels from 0.1 to 1 m/s, and the chance of collapse at a level.
+/// Returns the decision of a made-up study of 24 records at levels from 0.1 to 1 m/s; `chance` is the probability of
+/// collapse at a level.
 fn sampled(count: usize, seed: u64, chance: impl Fn(f64) -> f64) -> Decision {
     let mut random = Random::new(seed);
     let levels: Vec<f64> = (0..count).map(|_| 0.1 + 0.9 * random.uniform()).collect();
@@ -37,15 +38,15 @@ fn sampled(count: usize, seed: u64, chance: impl Fn(f64) -> f64) -> Decision {
     decide(&collected, &Request::default()).unwrap()
 }
 
-/// Chance of collapse of a lognormal capacity of median 0.5 m/s and dispersion 0.4.
+/// Returns the probability of collapse for a lognormal capacity of median 0.5 m/s and dispersion 0.4.
 fn ordered(level: f64) -> f64 {
     barrelstack_fragility::Lognormal { median: 0.5, dispersion: 0.4 }.probability(level)
 }
 
-/// As [`ordered`], with an island: from 0.25 to 0.35 m/s five in ten more collapse.
+/// Returns the probability of [`ordered`], increased by 0.5 from 0.25 to 0.35 m/s, an island of collapse.
 ///
-/// Weaker ones are not always found: with three in ten more, 19 of 20 among ten thousand samples and 7 of 20 among
-/// 2,400 (`validation/README.md`).
+/// Weaker islands are not always found: with an increase of 0.3, 19 of 20 are found among ten thousand samples and 7 of
+/// 20 among 2,400 (`validation/README.md`).
 fn island(level: f64) -> f64 {
     ordered(level) + if (0.25..0.35).contains(&level) { 0.5 } else { 0.0 }
 }
@@ -57,7 +58,7 @@ fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
     assert_eq!(bins, 16);
     let cases: u32 = found.curves[0].stripes.iter().map(|stripe| stripe.cases).sum();
     assert_eq!(cases, 10_000);
-    // Measured: 175 kB, every figure drawn for the desk and for the phone.
+    // Measured: 175 kB, with every figure drawn for wide and for narrow screens.
     assert!(html(&found.document).len() < 200_000, "{} bytes", html(&found.document).len());
     let headline = &found.document.verdict.headline;
     assert!(headline.contains("10000 cases") && headline.contains(" to "), "{headline}");
@@ -77,6 +78,6 @@ fn an_island_among_samples_is_found_with_every_seed_and_none_where_there_is_none
         (1..=20).filter(|seed| sampled(10_000, *seed, chance).curves[0].violates_order()).count()
     };
     assert_eq!(violations(island), 20);
-    // Measured: none; the level of the test is one in twenty.
+    // Measured: none is found; the level of the test is one in twenty.
     assert!(violations(ordered) <= 1);
 }

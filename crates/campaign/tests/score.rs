@@ -1,4 +1,4 @@
-//! The RockScore: the least of all states and directions, the same after an interruption, refused without a rack.
+//! RockScore: the smallest velocity of all states and directions, equal after an interruption, refused without a rack.
 
 use barrelstack_report::html;
 use std::ops::ControlFlow;
@@ -9,7 +9,7 @@ use barrelstack::Scenario;
 use barrelstack_campaign::score::{Capacity, Protocol, ScoreError, Sheet, score};
 use barrelstack_campaign::study::{RunOptions, StudyError};
 
-/// Two levels under three motions.
+/// Returns a short protocol: stacks of two levels under three motions.
 fn brief(velocities: &[f64]) -> Protocol {
     let velocities = velocities.to_vec();
     Protocol { levels: 2, velocities, periods: vec![1.2], synthetic: 0, ..Protocol::rockscore() }
@@ -33,12 +33,12 @@ fn the_score_is_the_least_of_all_states_and_directions_and_a_stop_loses_no_bit()
 
     let least = sheet.rows.iter().map(|row| row.capacity.velocity()).fold(f64::MAX, f64::min);
     assert_eq!(f64::from(sheet.score()), (100.0 * least + 1e-6).floor());
-    // New, wet, and the worn states of chocks, in two directions; no run is lost.
+    // The states new, wet, and worn chocks, in two directions; no run is missing.
     let worn = chocked.stack().unwrap().devices.present()[0].degraded.len();
     assert!(worn > 0);
     assert_eq!(sheet.rows.len(), 2 * (2 + worn));
     assert!(sheet.rows.iter().all(|row| (row.runs, row.left_out) == (9, 0)));
-    // Six stacks of some direction are down at the strongest shaking, and all stand at the weakest.
+    // At the strongest shaking at least six runs collapse; at the weakest none does.
     let at = |velocity| sheet.rows.iter().map(move |row| row.at(velocity).unwrap().failures);
     assert_eq!(at(0.3).sum::<u32>(), 0);
     assert!(at(2.4).sum::<u32>() >= 6);
@@ -86,5 +86,5 @@ fn a_scene_without_racks_has_no_score() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Scenario::builtin("sliding-block", &[]).unwrap();
     let refused = scored(&scene, &Protocol::rockscore(), folder.path()).unwrap_err();
-    assert!(refused.to_string().contains("take the scenario of a stack"), "{refused}");
+    assert!(refused.to_string().contains("use the scenario of a stack"), "{refused}");
 }

@@ -21,14 +21,14 @@ levels = 2
 columns = 2
 ";
 
-/// A study of short runs in space.
+/// Returns a study of short runs in space.
 fn study(rest: &str) -> Study {
     let head = HEAD.replace("[base.stack]\nlevels = 2\ncolumns = 2\n", "");
     let text = format!("{head}{RUN}{rest}");
     Study::parse("test.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// The demo on two levels under all components of its record, from the side and from a corner, at two levels.
+/// Study of the demo with two levels under all components of its record, in two orientations and at two intensities.
 const DEMO: &str = "\
 schema = 1
 title = \"two levels of the demo\"
@@ -59,7 +59,7 @@ kind = \"stripes\"
 chunk = 1
 ";
 
-/// Repeats the run of a row of the study.
+/// Runs the case of a row of the table by itself.
 fn run_of(table: &StudyTable, row: usize) -> Case {
     let number = |column: &str| table.numbers(column).unwrap()[row].unwrap();
     let changes = [
@@ -140,14 +140,14 @@ fn beside_a_plane_space_adds_columns_and_changes_no_row_of_it() {
     };
     let (plane, both) = (views("\"transverse\""), views("\"transverse\", \"spatial\""));
     assert!(plane.column("heading").is_none() && plane.column("debris_away").is_none());
-    // The spatial case is in a chunk of its own.
+    // The case in space is in a separate chunk.
     for column in plane.columns() {
         let other = both.column(&column.spec.name).unwrap();
         assert_eq!(other.values.get(0), column.values.get(0), "{}", column.spec.name);
     }
     assert_eq!(both.texts("heading").unwrap()[0], None);
     assert_eq!(both.integers("debris_right").unwrap()[0], None, "a plane has no such direction");
-    // One component of a formula shakes the stack across its barrels.
+    // A formula has one component, which shakes the stack across its barrels.
     let heading = both.texts("heading").unwrap()[1].as_deref();
     assert!(matches!(heading, Some("right" | "left")), "{heading:?}");
 }

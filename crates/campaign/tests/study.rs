@@ -14,7 +14,7 @@ use barrelstack_campaign::study::{
 /// A short run, after [`HEAD`]: a case of a few milliseconds.
 const RUN: &str = "duration = \"0.4 s\"\nstop_after_collapse = \"0.01 s\"\n";
 
-/// A pulse that fells the stack of [`HEAD`] when it is strong.
+/// Pulse that fells the stack of [`HEAD`] at high intensity.
 const PULSE: &str = "\
 [[motion]]
 name = \"pulse\"
@@ -36,7 +36,7 @@ fn run(study: &Study) -> StudyTable {
     run_with(study, &folder.path().join("out"), 2).table
 }
 
-/// The rows of a table as text, without the number of the case and of the chunk.
+/// Returns the rows of a table as text, without the numbers of case and chunk.
 fn rows(table: &StudyTable) -> Vec<String> {
     let values_of = |row: usize| {
         let values =
@@ -71,7 +71,7 @@ fn a_full_factorial_has_every_combination_once() {
     let pairs: BTreeSet<(String, i64)> =
         friction.iter().zip(levels).map(|(f, l)| (f.to_string(), l.unwrap())).collect();
     assert_eq!(pairs.len(), 6);
-    // Chunks hold cases of the same bodies only.
+    // All cases of a chunk have the same bodies.
     let chunks = table.integers("chunk").unwrap();
     for (chunk, level) in chunks.iter().zip(levels) {
         let same = chunks.iter().zip(levels).filter(|(other, _)| *other == chunk);
@@ -87,7 +87,7 @@ fn one_at_a_time_has_the_base_and_each_other_value_once() {
     let drawn = "[[factor]]\nfield = \"interface.barrel-rack.friction.coefficient\"\n\
                  distribution = { kind = \"uniform\", from = 0.2, to = 0.6 }\n";
     let study = study(&format!("{PULSE}{TWO_FACTORS}{drawn}[design]\nkind = \"one-at-a-time\""));
-    // The base, two other frictions if 0.4 is the base's (it is not: three), one other number of levels, two quantiles.
+    // The base; two other frictions if 0.4 is that of the base, else three; one other number of levels; two quantiles.
     let base = 1;
     let table = run(&study);
     let friction = numbers(&table, "friction");
@@ -258,7 +258,7 @@ fn monte_carlo_stops_after_the_first_chunk_that_is_enough_whatever_the_threads()
     );
     let (_, [low, high]) = Tally::of(table).collapse().unwrap();
     assert!(high - low <= 0.4, "{low} {high}");
-    // Without the last chunk it was not enough.
+    // The stop rule is not met without the last chunk.
     let mut before = Tally::default();
     let outcomes = table.texts("outcome").unwrap();
     outcomes[..table.rows() - 4].iter().for_each(|outcome| before.add(outcome.as_deref().unwrap()));
@@ -288,7 +288,7 @@ fn a_hunt_brackets_the_collapse_of_each_motion() {
 
 #[test]
 fn a_case_that_cannot_run_is_a_row_with_its_reason() {
-    // With this step the stiffest contact cannot be followed; the other value is fine.
+    // With this step the stiffest contact cannot be resolved; the other value is small enough.
     let study = study(&format!(
         "{PULSE}[[factor]]\nfield = \"run.step\"\nvalues = [\"20 us\", \"0.1 s\"]\n[design]\nkind = \"full-factorial\""
     ));
@@ -319,7 +319,7 @@ fn a_damaged_shard_is_named_when_read_and_made_again_when_run() {
         std::fs::write(&names[1], damage).unwrap();
         let error = Collected::read(folder.path()).unwrap_err();
         assert!(matches!(&error, StudyError::Shard { path, .. } if *path == names[1]), "{error}");
-        // Remains of killed runs are removed, similar files stay.
+        // Files left by killed runs are removed; files with similar names stay.
         let left =
             [".000001-0.parquet.00000000000000a1.part", "000001.claim", "mine.part", "mine.claim"];
         let left = left.map(|name| shards.join(name));
@@ -358,7 +358,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
     .unwrap_err()
     .to_string();
-    assert!(message.contains("its seed is 7, that of this one 8"), "{message}");
+    assert!(message.contains("its seed is 7, and that of this study is 8"), "{message}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
     // An earlier version had another layout, without a fingerprint.
@@ -367,7 +367,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     std::fs::write(folder.path().join("study.json"), earlier).unwrap();
     let error = Collected::read(folder.path()).unwrap_err().to_string();
     assert!(
-        error.contains("in layout 2 of such folders, and this version reads layout 3"),
+        error.contains("in layout 2 of study folders, but this version reads layout 3"),
         "{error}"
     );
 
@@ -391,7 +391,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     let error = Collected::read(foreign.path()).unwrap_err();
     assert!(error.to_string().contains("is not a study folder: it has no study.json"), "{error}");
     let error = Collected::read(&foreign.path().join("nowhere")).unwrap_err();
-    assert!(error.to_string().contains("is not there"), "{error}");
+    assert!(error.to_string().contains("does not exist"), "{error}");
     let error = other.run(&foreign.path().join("thesis.docx"), &RunOptions::default(), &|_| {
         ControlFlow::Continue(())
     });
@@ -417,7 +417,7 @@ fn a_changed_record_is_another_study() {
     run_with(&first, &out, 1);
     assert_eq!(first.hash(), Study::load(&file).unwrap().hash());
 
-    // Moved elsewhere it is the same, and nothing is run again.
+    // A folder that was moved is still valid, and nothing is run again.
     let moved = folder.path().join("moved");
     std::fs::create_dir(&moved).unwrap();
     std::fs::copy(&record, moved.join("site.csv")).unwrap();

@@ -1,4 +1,4 @@
-//! Study files with one mistake each: one error, at its place, with a remedy.
+//! Study files with one mistake each: each gives one error at the right place, with a remedy.
 
 #![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
 
@@ -200,7 +200,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         3,
         "[intensity]\ndistribution = { kind = \"normal\", mean = \"0.3 m/s\", deviation = \"0.1 m/s\" } # HERE\n",
-        &["a level has to be above zero", "cut it with `least`"],
+        &["levels must be above zero", "truncate it with `least`"],
     ),
     (3, "[intensity]\nmeasure = \"pgv\"\n", &["[intensity] has no levels"]),
     (4, "", &["`design` is missing"]),
@@ -274,7 +274,7 @@ fn advice_on_a_missing_value_has_the_dimension_of_what_it_is_missing_from() {
         assert!(error.contains(&format!("`{missing}` is missing")), "{intensity}{design}: {error}");
         assert!(error.contains(&line), "{intensity}{design}: no {line} in {error}");
     }
-    // A number of a list has advice for that place of the list.
+    // The error for a number in a list gives advice for that position.
     let text =
         whole([HEAD, SCENE, FACTOR, "[intensity]\nmeasure = \"pgv\"\nlevels = [0.1]\n", DESIGN]);
     let error = Study::parse("case.toml", &text).unwrap_err().to_string();
@@ -291,7 +291,7 @@ fn a_design_of_values_refuses_a_distribution() {
         Study::parse("case.toml", &whole([HEAD, SCENE, &drawn, INTENSITY, DESIGN])).unwrap_err();
     assert!(
         error.to_string().contains(
-            "crosses values, and `interface.rack-ground.friction.coefficient` has a distribution"
+            "crosses listed values, but `interface.rack-ground.friction.coefficient` has a distribution"
         ),
         "{error}"
     );
@@ -313,11 +313,11 @@ fn too_many_cases_are_refused_and_not_counted() {
     for [intensity, design] in [[INTENSITY, DESIGN], [hunted, hunt]] {
         let text = whole([HEAD, SCENE, &many, intensity, design]);
         let error = Study::parse("case.toml", &text).unwrap_err().to_string();
-        assert!(error.contains("more than 10000000 cases: take fewer values"), "{error}");
+        assert!(error.contains("more than 10000000 cases: use fewer values"), "{error}");
     }
 }
 
-/// Whatever a folder of records has, nothing of it is left out unsaid: the first that is no record is named.
+/// No file in a folder of records is silently skipped: the error names the first that is not a record.
 #[test]
 fn what_is_no_record_in_a_folder_of_records_is_named() {
     let place = tempfile::tempdir().unwrap();

@@ -264,23 +264,23 @@ fn studies_beyond_all_memory_are_refused_at_the_field_before_their_cases_are_mad
         (0..1000).map(|at| format!("\"{at}\"")).collect::<Vec<_>>().join(",")
     );
     let studies = [
-        (synthetic(10_000_000) + factorial, "count = 10000000", "100000 that a study has at most"),
+        (synthetic(10_000_000) + factorial, "count = 10000000", "more than the maximum of 100000"),
         (
             (0..60).map(|at| synthetic(100_000 - at)).collect::<String>() + factorial,
             "motion",
-            "100000 at most: take fewer",
+            "the maximum of 100000: use fewer",
         ),
-        (many_components + factorial, "components", "take fewer"),
+        (many_components + factorial, "components", "use fewer"),
         (
             pairs[..4].iter().map(|pair| range(pair, 1000)).collect::<String>() + factorial,
             "range",
-            "more than 10000000 cases: take fewer values",
+            "more than 10000000 cases: use fewer values",
         ),
         (
             pairs[..3].iter().map(|pair| range(pair, 10_000)).collect::<String>()
                 + "[design]\nkind = \"sobol\"\ncount = 8\n",
             "range",
-            "more than 20000 values together: take fewer",
+            "more than 20000 values together: use fewer",
         ),
         (
             pairs.iter().map(|pair| drawn(pair)).collect::<String>()

@@ -171,7 +171,7 @@ fn mistakes_are_reported_before_anything_is_made() {
         &["study", "example", "naba-four-levels"],
         &["did you mean `napa-four-levels`"],
     );
-    case("no folder", &["study", "status", &at], &["is not there"]);
+    case("no folder", &["study", "status", &at], &["does not exist"]);
     let scenario = folder.path().join("scenario.toml");
     fs::write(&scenario, "schema = 1\n[stack]\nlevels = 2\ncolumns = 1\n[motion]\nnone = true\n")
         .unwrap();

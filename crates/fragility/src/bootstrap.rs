@@ -1,4 +1,4 @@
-//! Parametric bootstrap of a fitted curve.
+//! Parametric bootstrap of a fitted fragility curve.
 
 use crate::curve::Lognormal;
 use crate::evidence::{Stripe, evidence};
@@ -6,20 +6,21 @@ use crate::fit::{Dispersion, FitError, fit};
 use crate::math::{ln, normal, normal_quantile, quantile};
 use crate::proportion::Interval;
 
-/// Curves fitted to resampled data.
+/// Fragility curves fitted to resampled data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replicates {
-    /// The curve of the data themselves.
+    /// Curve fitted to the original data.
     pub fitted: Lognormal,
-    /// One curve for each resampled data set that determines one, in order of sampling.
+    /// Curve of each resampled data set that determines one, in the order of sampling.
     pub curves: Vec<Lognormal>,
-    /// Number of resampled data sets that determine no curve ([`FitError`]). They are excluded from
-    /// every interval; above a few percent the intervals are too narrow.
+    /// Number of resampled data sets that determine no curve ([`FitError`]).
+    ///
+    /// They are excluded from every interval; if they are more than a few percent, the intervals are too narrow.
     pub refused: usize,
 }
 
 impl Replicates {
-    /// Returns the interval of a function of the curve: percentiles, corrected for bias (Efron 1987).
+    /// Returns the interval of a function of the curve from bias-corrected percentiles (Efron 1987).
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let mut values: Vec<f64> = self.curves.iter().map(&of).collect();
         values.sort_by(f64::total_cmp);
@@ -31,7 +32,7 @@ impl Replicates {
 
     /// Returns the interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
-        // The score is a monotone function of the probability and is not bounded by 0 and 1.
+        // The interval is that of the score, which is monotone in the probability and not bounded by 0 and 1.
         let score = |curve: &Lognormal, x: f64| ln(x / curve.median) / curve.dispersion;
         let chance = |x: &f64| {
             let scores = self.interval(level, |curve| score(curve, *x));
@@ -51,7 +52,7 @@ impl Replicates {
     }
 }
 
-/// Returns the normal score of the fraction of sorted values below a value, with ties counted half.
+/// Returns the normal quantile of the fraction of sorted values that lie below a value, with ties counted half.
 fn bias(ascending: &[f64], value: f64) -> f64 {
     let below = ascending.partition_point(|x| *x < value);
     let same = ascending[below..].partition_point(|x| *x <= value);
@@ -60,12 +61,12 @@ fn bias(ascending: &[f64], value: f64) -> f64 {
     normal_quantile(share.clamp(1.0 / (n + 1.0), n / (n + 1.0)))
 }
 
-/// Draws the number of failures among `cases`, each with the given probability.
+/// Draws the number of failures among `cases`, each of which fails with the probability `chance`.
 pub(crate) fn binomial(cases: u32, chance: f64, uniform: &mut impl FnMut() -> f64) -> u32 {
     (0..cases).map(|_| u32::from(uniform() < chance)).sum()
 }
 
-/// Draws counts from a curve at the intensities and numbers of cases of `stripes`.
+/// Draws failure counts at the intensities and with the numbers of cases of `stripes`.
 pub(crate) fn drawn(
     stripes: &[Stripe],
     chance: impl Fn(usize) -> f64,
@@ -76,11 +77,12 @@ pub(crate) fn drawn(
     stripes.iter().enumerate().map(draw).collect()
 }
 
-/// Draws counts from the fitted curve and fits each sample again (parametric bootstrap): for
-/// independent cases that follow the curve.
+/// Draws failure counts from the fitted curve and fits a curve to each sample (parametric bootstrap).
+///
+/// The method assumes that cases are independent and follow the curve.
 ///
 /// # Errors
-/// As [`fit`] for the data themselves, or if fewer than half of the samples determine a curve.
+/// As [`fit`] for the original data, or if fewer than half of the samples determine a curve.
 pub fn simulate(
     stripes: &[Stripe],
     dispersion: Dispersion,

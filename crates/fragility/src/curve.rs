@@ -2,12 +2,12 @@
 
 use crate::math::{exp, ln, normal, normal_quantile};
 
-/// The probability of failure at an intensity `x`: `Φ(ln(x/θ)/β)`.
+/// Lognormal fragility curve: the probability of failure at an intensity `x` is `Φ(ln(x/θ)/β)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lognormal {
-    /// `θ`, the intensity at which half of the cases fail, in the unit of the intensities.
+    /// Median capacity `θ`: the intensity at which half of the cases fail, in the unit of the intensities.
     pub median: f64,
-    /// `β`, the standard deviation of the logarithm of the capacity.
+    /// Dispersion `β`: the standard deviation of the logarithm of the capacity.
     pub dispersion: f64,
 }
 
@@ -20,7 +20,7 @@ impl Lognormal {
         normal(ln(intensity / self.median) / self.dispersion)
     }
 
-    /// Returns the intensity at which failure has the given probability.
+    /// Returns the intensity at which the probability of failure is `probability`.
     pub fn intensity(&self, probability: f64) -> f64 {
         self.median * exp(self.dispersion * normal_quantile(probability))
     }

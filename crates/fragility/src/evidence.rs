@@ -1,17 +1,17 @@
-//! Evidence: observations of capacities.
+//! Observations of capacities, to which fragility curves are fitted.
 
 use crate::fit::FitError;
 
-/// The information of one case on the intensity at which it begins to fail.
+/// Knowledge of the capacity of one case: the intensity at which it begins to fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
-    /// Exactly this intensity.
+    /// The capacity is this intensity.
     At(f64),
-    /// It failed here: the capacity is at or below.
+    /// The case failed at this intensity: its capacity is at or below it.
     Below(f64),
-    /// It stood here: the capacity is above.
+    /// The case stood at this intensity: its capacity is above it.
     Above(f64),
-    /// It stood at the first intensity and failed at the second.
+    /// The case stood at the first intensity and failed at the second, higher one.
     Between(f64, f64),
 }
 
@@ -27,35 +27,35 @@ impl Capacity {
     }
 }
 
-/// One observation, or several identical ones.
+/// Observation of a capacity, made in one case or in several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// The capacity observed.
+    /// Observed capacity.
     pub capacity: Capacity,
     /// Number of cases with this observation.
     pub weight: f64,
-    /// Group of dependent cases, such as the index of the record: cases of one group are left out together.
-    /// Ignored by methods without groups.
+    /// Group of dependent cases, such as the index of their record; [`leave_one_out`](crate::leave_one_out) omits one
+    /// group at a time. Other methods ignore the group.
     pub group: usize,
 }
 
 impl Evidence {
-    /// Creates the evidence of a case of a group that failed, or stood, at an intensity.
+    /// Creates the evidence of one case of a group that failed or stood at an intensity.
     pub fn case(intensity: f64, failed: bool, group: usize) -> Self {
         let capacity = if failed { Capacity::Below(intensity) } else { Capacity::Above(intensity) };
         Self { capacity, weight: 1.0, group }
     }
 
-    /// Creates the evidence of a single capacity.
+    /// Creates the evidence of one case of a group with a capacity.
     pub fn capacity(capacity: Capacity, group: usize) -> Self {
         Self { capacity, weight: 1.0, group }
     }
 }
 
-/// Cases at one intensity.
+/// Number of cases and of failures at one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripe {
-    /// In the unit of the intensity measure.
+    /// Intensity, in the unit of the intensity measure.
     pub intensity: f64,
     /// Number of cases run.
     pub cases: u32,
@@ -64,13 +64,13 @@ pub struct Stripe {
 }
 
 impl Stripe {
-    /// Returns the raw fraction of failures; NaN without cases.
+    /// Returns the fraction of cases that failed; NaN without cases.
     pub fn fraction(&self) -> f64 {
         f64::from(self.failures) / f64::from(self.cases)
     }
 }
 
-/// Converts counts to evidence, with each stripe as a group of its own.
+/// Converts failure counts to evidence, in which each stripe is a separate group.
 pub fn evidence(stripes: &[Stripe]) -> Vec<Evidence> {
     let mut all = Vec::with_capacity(2 * stripes.len());
     for (group, stripe) in stripes.iter().enumerate() {
@@ -88,8 +88,9 @@ pub fn evidence(stripes: &[Stripe]) -> Vec<Evidence> {
     all
 }
 
-/// Counts cases, each `(intensity, failed)`, in ascending order of intensity; cases of exactly the
-/// same intensity share a stripe.
+/// Counts cases and failures at each intensity, in ascending order.
+///
+/// Each case is `(intensity, failed)`; cases of exactly the same intensity share a stripe.
 pub fn stripes(cases: impl IntoIterator<Item = (f64, bool)>) -> Vec<Stripe> {
     let mut sorted: Vec<(f64, bool)> = cases.into_iter().collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -106,7 +107,7 @@ pub fn stripes(cases: impl IntoIterator<Item = (f64, bool)>) -> Vec<Stripe> {
     found
 }
 
-/// Checks that every intensity is a positive number, every bracket in order and every weight positive.
+/// Checks that every intensity is positive and finite, every bracket is in ascending order and every weight is positive.
 pub(crate) fn check(all: &[Evidence]) -> Result<(), FitError> {
     if all.is_empty() {
         return Err(FitError::Empty);

@@ -7,22 +7,22 @@ use crate::likelihood::{Known, Likelihood, Score, Top, covariance};
 use crate::math::{exp, ln, ln_choose, normal_quantile};
 use crate::proportion::Interval;
 
-/// Treatment of the dispersion in a fit.
+/// Whether a fit determines the dispersion or takes a given one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dispersion {
-    /// Fitted together with the median.
+    /// The dispersion is fitted together with the median.
     Free,
-    /// Given (`β > 0`), such as from similar structures, where the data cannot determine it.
+    /// The dispersion `β > 0` is given, such as from similar structures, because the data cannot determine it.
     Fixed(f64),
 }
 
-/// The reason why data do not determine a curve.
+/// Reason why data do not determine a curve.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// No evidence.
+    /// There is no evidence.
     #[error("expected at least one observation, found none; run some cases first")]
     Empty,
-    /// A number that cannot be an intensity or a count.
+    /// A number is not valid as an intensity or a count.
     #[error("observation {}: expected {expected}, found {found}", index + 1)]
     Invalid {
         /// Index in the evidence, from 0.
@@ -32,10 +32,10 @@ pub enum FitError {
         /// Value found.
         found: f64,
     },
-    /// A dispersion that is not a positive number.
+    /// A given dispersion is not a positive number.
     #[error("expected a positive, finite dispersion, found {0}")]
     BadDispersion(f64),
-    /// A confidence level outside 0 to 1.
+    /// A confidence level is not between 0 and 1.
     #[error("expected a confidence level between 0 and 1, found {0}")]
     BadLevel(f64),
     /// Every case stood.
@@ -44,7 +44,7 @@ pub enum FitError {
          fitted; add cases of higher intensity"
     )]
     NothingFailed {
-        /// The highest intensity.
+        /// Highest intensity of all cases.
         largest: f64,
     },
     /// Every case failed.
@@ -53,27 +53,27 @@ pub enum FitError {
          can be fitted; add cases of lower intensity"
     )]
     EverythingFailed {
-        /// The lowest intensity.
+        /// Lowest intensity of all cases.
         smallest: f64,
     },
-    /// Failures and survivals have at most one intensity in common.
+    /// Failures and survivals overlap in at most one intensity.
     #[error(
         "no case survived above {above} and none failed below {below}, so the dispersion cannot be \
          found; add cases around these intensities, or give the dispersion"
     )]
     Separated {
-        /// Every survival is at or below this intensity.
+        /// Highest intensity of a survival.
         above: f64,
-        /// Every failure is at or above this intensity.
+        /// Lowest intensity of a failure.
         below: f64,
     },
-    /// Failure does not become likelier with intensity.
+    /// Failure does not become likelier as intensity increases.
     #[error(
         "failure does not become likelier with intensity, so no fragility curve describes the \
          cases; look at the raw fractions, and try another intensity measure"
     )]
     NotIncreasing,
-    /// The iteration broke down.
+    /// The iteration did not converge.
     #[error(
         "the fit did not converge, which data of usual size do not cause; check for intensities \
          that differ by many orders of magnitude"
@@ -92,10 +92,10 @@ pub enum FitError {
     },
 }
 
-/// A fitted curve and its uncertainty.
+/// Fitted fragility curve with its standard errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// Median and dispersion.
+    /// Fitted curve.
     pub curve: Lognormal,
     /// Standard error of `ln θ`.
     pub median_error: f64,
@@ -103,7 +103,7 @@ pub struct Fit {
     pub dispersion_error: f64,
     /// Covariance of `ln θ` and `ln β`.
     pub covariance: f64,
-    /// Logarithm of the likelihood, without binomial coefficients; see [`Fit::ln_likelihood_of`].
+    /// Logarithm of the likelihood, without binomial coefficients (see [`Fit::ln_likelihood_of`]).
     pub ln_likelihood: f64,
     /// Number of fitted parameters: 1 or 2.
     pub parameters: usize,
@@ -128,18 +128,18 @@ impl Fit {
     }
 }
 
-/// Returns a positive value divided and multiplied by `exp(z error)`.
+/// Returns the interval from `value / exp(z error)` to `value exp(z error)`, where `z` is the normal quantile of `level`.
 fn around(value: f64, error: f64, level: f64) -> Interval {
     let reach = exp(-normal_quantile(0.5 * (1.0 - level)) * error);
     Interval { low: value / reach, high: value * reach }
 }
 
-/// Fits a curve to evidence: `z = (ln x − ln θ)/β` is the score of an intensity, and the likelihood
-/// of each observation is the probability, or the density, of its capacity.
+/// Fits a lognormal curve to evidence by maximum likelihood.
 ///
-/// For counts this is the fit of Baker (2015), for capacities that of a normal distribution to
-/// their logarithms, with `n` and not `n − 1` below the sum of squares ([`moments`] has that).
-/// Standard errors are those of the observed information and take the cases as independent.
+/// The likelihood of an observation is the probability (or, for an exact capacity, the density) of its capacity.
+/// For failure counts the fit is that of Baker (2015). For exact capacities it is a normal distribution fitted to their
+/// logarithms, with a variance divided by `n`; [`moments`] divides by `n − 1`.
+/// Standard errors follow from the observed information and assume independent cases.
 ///
 /// # Errors
 /// A [`FitError`] if the evidence does not determine a curve.
@@ -156,7 +156,7 @@ fn free(evidence: &[Evidence]) -> Result<Fit, FitError> {
     let top = top_free(evidence)?;
     let [a, b] = top.parameters;
     let c = covariance(&top.shape.curvature).ok_or(FitError::NotConverged)?;
-    // ln θ = −a/b and ln β = −ln b, so their derivatives by (a, b) are these.
+    // Derivatives of ln θ = −a/b and ln β = −ln b with respect to (a, b).
     let by_median = [-1.0 / b, a / (b * b)];
     let by_dispersion = [0.0, -1.0 / b];
     let product = |u: [f64; 2], v: [f64; 2]| {
@@ -190,10 +190,10 @@ fn fixed(evidence: &[Evidence], beta: f64) -> Result<Fit, FitError> {
 /// Maximizes the likelihood over intercept `a = −ln θ/β` and slope `b = 1/β`.
 pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     let start = [-middle(evidence), 1.0];
-    // Starts from β = 1 about the middle, wide enough for any data.
+    // The start is β = 1 about the mean logarithm, wide enough for any data.
     let top = free_likelihood(evidence).top(start).ok_or(FitError::NotConverged)?;
     let [intercept, slope] = top.parameters;
-    // A slope so small that the median overflows counts as none.
+    // A slope so small that the median overflows counts as zero.
     let median = exp(-intercept / slope);
     if slope > 0.0 && median > 0.0 && median.is_finite() {
         Ok(top)
@@ -202,18 +202,19 @@ pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     }
 }
 
-/// Returns the likelihood over `(a, b)`: `z = a + b ln x`.
+/// Returns the likelihood as a function of `(a, b)` in `z = a + b ln x`.
 fn free_likelihood(evidence: &[Evidence]) -> Likelihood<2> {
     likelihood(evidence, Some(1), 0.0, |u| Score { offset: 0.0, row: [1.0, u] })
 }
 
-/// Returns the likelihood over `a`: `z = a + ln x/β`.
+/// Returns the likelihood as a function of `a` in `z = a + ln x/β`.
 pub(crate) fn fixed_likelihood(evidence: &[Evidence], beta: f64) -> Likelihood<1> {
     likelihood(evidence, None, -ln(beta), |u| Score { offset: u / beta, row: [1.0] })
 }
 
-/// Returns the likelihood of evidence, where `score` gives `z` for `ln x`; `ln_slope` is the logarithm of a
-/// slope that is not a parameter.
+/// Returns the likelihood of evidence, where `score` returns `z` for `ln x`.
+///
+/// `ln_slope` is the logarithm of the slope `1/β` if the slope is not a parameter.
 pub(crate) fn likelihood<const N: usize>(
     evidence: &[Evidence],
     slope: Option<usize>,
@@ -248,9 +249,9 @@ fn middle(evidence: &[Evidence]) -> f64 {
 
 /// Checks that the likelihood has a maximum at a positive, finite dispersion.
 ///
-/// It has none if a single capacity agrees with all evidence, since the dispersion then tends to zero, nor
-/// if the likelihood decreases from `b = 1/β = 0` on, since failure then becomes less likely with intensity;
-/// both criteria are exact, as the likelihood is concave.
+/// There is no maximum if a single capacity agrees with all evidence, since the dispersion then tends to zero. There
+/// is none either if the likelihood decreases from `b = 1/β = 0` on, since failure then becomes less likely with
+/// intensity. Both criteria are exact, because the likelihood is concave.
 fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitError> {
     let (mut above, mut below) = (0.0_f64, f64::INFINITY);
     let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
@@ -279,8 +280,8 @@ fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitErr
     let only_cases =
         |item: &Evidence| matches!(item.capacity, Capacity::Below(_) | Capacity::Above(_));
     if evidence.iter().all(only_cases) {
-        // At b = 0 every case fails with the overall share; the slope there is the sum of
-        // (failed − share) ln x over the cases, up to a positive factor.
+        // At b = 0 every case fails with the same probability, the overall share of failures. The derivative of the
+        // likelihood there is the sum of (failed − share) ln x over the cases, up to a positive factor.
         let total: f64 = evidence.iter().map(|item| item.weight).sum();
         let failed =
             |item: &Evidence| f64::from(u8::from(matches!(item.capacity, Capacity::Below(_))));
@@ -301,11 +302,12 @@ fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitErr
     Ok(())
 }
 
-/// Estimates median and dispersion of exact capacities by moments: `ln θ` is the mean of the logarithms,
-/// `β` their sample standard deviation with `n − 1` (Baker 2015, eqs. 2 and 3).
+/// Estimates median and dispersion of exact capacities by the method of moments.
+///
+/// `ln θ` is the mean of the logarithms and `β` their sample standard deviation, with `n − 1` (Baker 2015, eqs. 2 and 3).
 ///
 /// # Errors
-/// For fewer than two different capacities, or one that is not a positive number.
+/// If there are fewer than two different capacities, or one is not a positive number.
 pub fn moments(capacities: &[f64]) -> Result<Lognormal, FitError> {
     let all: Vec<Evidence> =
         capacities.iter().map(|x| Evidence::capacity(Capacity::At(*x), 0)).collect();

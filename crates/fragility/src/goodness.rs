@@ -1,4 +1,4 @@
-//! Goodness of fit of a fitted curve.
+//! Goodness-of-fit tests of a fitted fragility curve.
 
 use crate::bootstrap::drawn;
 use crate::curve::Lognormal;
@@ -6,25 +6,25 @@ use crate::evidence::{Stripe, evidence};
 use crate::fit::{Dispersion, Fit, FitError, fit, moments};
 use crate::math::{chi_square_above, exp, ln, normal, normal_quantile};
 
-/// Goodness of fit of counts to a curve.
+/// Result of a goodness-of-fit test of failure counts against a fitted curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goodness {
-    /// Twice the logarithm of the likelihood ratio of the raw fractions to the curve, over all stripes.
+    /// Deviance: twice the log-likelihood ratio of the observed fractions to the curve, over all stripes.
     pub deviance: f64,
-    /// Sum of squared residuals over their binomial variance, over the pooled groups.
+    /// Pearson's statistic: sum over the pooled groups of squared residuals divided by their binomial variance.
     pub pearson: f64,
     /// Number of groups, after pooling neighbors until each expects at least one failure and one survival.
     pub groups: usize,
     /// Degrees of freedom: groups minus fitted parameters.
     pub freedom: usize,
-    /// The probability of a `pearson` at least as large if the curve is true; 1 without degrees of freedom,
-    /// which is no evidence.
+    /// Probability of a `pearson` at least as large if the curve is true. Without degrees of freedom it is 1, and the test
+    /// says nothing.
     pub p: f64,
 }
 
-/// Returns twice the logarithm of the likelihood ratio of raw fractions to given probabilities.
+/// Returns twice the log-likelihood ratio of the observed fractions to given probabilities.
 pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64 {
-    // x ln(x/y), zero at x = 0.
+    // x ln(x/y), which is zero at x = 0.
     let part = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * ln(x / y) };
     stripes
         .iter()
@@ -36,9 +36,9 @@ pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64
         .sum()
 }
 
-/// Computes Pearson's test of counts against a fitted curve, in groups of neighboring stripes as Hosmer and
-/// Lemeshow (1980), and the deviance.
+/// Computes Pearson's test of failure counts against a fitted curve, and the deviance.
 ///
+/// Neighboring stripes are pooled into groups (Hosmer and Lemeshow 1980).
 /// Cases must be independent: counts that reuse the same records at every level scatter less
 /// than binomially, and the test is then too lenient.
 pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
@@ -47,8 +47,9 @@ pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
     goodness_in_bins(&sorted.iter().map(|stripe| vec![*stripe]).collect::<Vec<_>>(), found)
 }
 
-/// Like [`goodness`], over bins of cases of different intensities in ascending order: the expectation of a bin is
-/// the sum over its cases, since the curve bends within it.
+/// Computes [`goodness`] over bins that hold cases of different intensities, in ascending order.
+///
+/// The expected number of failures in a bin is the sum over its cases, since the curve is not straight within the bin.
 pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     let chance = |s: &Stripe| found.curve.probability(s.intensity);
     // Cases, failures, expected failures, variance.
@@ -84,8 +85,9 @@ pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     }
 }
 
-/// Estimates the probability of a deviance at least as large if the fitted curve is true, by sampling counts
-/// from it and fitting each sample: valid for small counts, where χ² is not.
+/// Estimates the probability of a deviance at least as large if the fitted curve is true, by simulation.
+///
+/// Counts are sampled from the curve, and each sample is fitted. The result is valid for small counts, where χ² is not.
 ///
 /// # Errors
 /// As [`fit`], or if fewer than half of the samples determine a curve.
@@ -115,17 +117,18 @@ pub fn goodness_by_simulation(
     Ok((worse + 1) as f64 / (usable + 1) as f64)
 }
 
-/// Test of capacities against a lognormal distribution.
+/// Result of a test that capacities are lognormal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normality {
-    /// Largest distance of the empirical distribution of the capacities from the fitted one (Lilliefors 1967).
+    /// Largest distance between the empirical distribution of the capacities and the fitted one (Lilliefors 1967).
     pub distance: f64,
-    /// The probability of a distance at least as large if capacities are lognormal.
+    /// Probability of a distance at least as large if capacities are lognormal.
     pub p: f64,
 }
 
-/// Computes Lilliefors's test that exact capacities are lognormal with unknown median and dispersion;
-/// its distribution does not depend on these and is simulated.
+/// Computes Lilliefors's test that exact capacities are lognormal with unknown median and dispersion.
+///
+/// The distribution of the distance does not depend on median and dispersion and is simulated.
 ///
 /// # Errors
 /// As [`moments`].

@@ -2,80 +2,81 @@
 
 use crate::math::{exp, ln};
 
-/// The reason why a table is not a hazard curve.
+/// Reason why a table is not a hazard curve.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum HazardError {
-    /// Fewer than two rows.
+    /// The table has fewer than two rows.
     #[error("a hazard curve needs at least two rows, found {0}")]
     Short(usize),
-    /// A number that cannot be an intensity or a rate.
+    /// A number is not valid as an intensity or a rate.
     #[error("row {}: expected {what} that is a positive, finite number, found {found}", row + 1)]
     Invalid {
-        /// Row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// The invalid quantity.
+        /// Name of the invalid quantity.
         what: &'static str,
         /// Value found.
         found: f64,
     },
-    /// Intensities out of order.
+    /// Intensities are not in ascending order.
     #[error(
         "row {}: expected an intensity above {before}, found {found}; sort the rows by intensity",
         row + 1
     )]
     Unsorted {
-        /// Row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// The intensity of the row before.
+        /// Intensity of the previous row.
         before: f64,
         /// Value found.
         found: f64,
     },
-    /// Rates that rise.
+    /// Rates increase with intensity.
     #[error(
         "row {}: expected an annual rate of at most {before}, found {found}; stronger shaking \
          cannot be exceeded more often",
         row + 1
     )]
     Rising {
-        /// Row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// The rate of the row before.
+        /// Rate of the previous row.
         before: f64,
         /// Value found.
         found: f64,
     },
 }
 
-/// Annual rate of exceedance of each intensity at a site.
+/// Seismic hazard curve of a site: the annual rate at which each intensity is exceeded.
 ///
-/// Between rows `ln λ` is linear in `ln x`. The table is not extrapolated: shaking weaker than the first row
-/// is taken to have no effect, and for shaking stronger than the last row results are bounds ([`Rate`]).
+/// Between rows `ln λ`, with the rate `λ`, is linear in the logarithm `ln x` of the intensity. The table is not
+/// extrapolated: shaking weaker than the first row is taken to have no effect, and shaking stronger than the last row
+/// makes the result a pair of bounds ([`Rate`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hazard {
     rows: Vec<(f64, f64)>,
 }
 
-/// An annual rate, bounded for the intensities beyond the hazard table.
+/// Annual rate of an event, with bounds for the effect of intensities beyond the hazard table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// Rate (1/year) if shaking beyond the last row has the effect of the last row.
+    /// Rate (1/year) if shaking stronger than the last row has the effect of the last row.
     pub low: f64,
-    /// Rate (1/year) if shaking beyond the last row has the worst effect.
+    /// Rate (1/year) if shaking stronger than the last row has the worst effect.
     pub high: f64,
-    /// Effect of shaking of the intensity of the first row: if not small, weaker and more
-    /// frequent shaking matters and the table begins too high.
+    /// Effect of shaking with the intensity of the first row. If it is not small, weaker and more frequent shaking
+    /// matters, and the table should begin at a lower intensity.
     pub at_first: f64,
 }
 
-/// Contribution of a range of intensities to a rate.
+/// Contribution of a range of intensities to an annual rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
-    /// Lower intensity.
+    /// Lower end of the range.
     pub from: f64,
-    /// Upper intensity.
+    /// Upper end of the range.
     pub to: f64,
-    /// Rate (1/year).
+    /// Contribution to the rate (1/year).
     pub rate: f64,
 }
 
@@ -88,8 +89,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
-/// Width of the integration intervals in `ln x`; a fragility of dispersion 0.05 is still
-/// integrated to 10⁻⁹.
+/// Width of the integration intervals in `ln x`. Even a fragility curve of dispersion 0.05 is integrated to 10⁻⁹.
 const PIECE: f64 = 0.01;
 
 impl Hazard {
@@ -97,7 +97,7 @@ impl Hazard {
     /// intensity.
     ///
     /// # Errors
-    /// For fewer than two rows, numbers that are not positive, and rows out of order.
+    /// If there are fewer than two rows, a number is not positive, or the rows are not in order.
     pub fn new(rows: &[(f64, f64)]) -> Result<Self, HazardError> {
         if rows.len() < 2 {
             return Err(HazardError::Short(rows.len()));
@@ -125,7 +125,7 @@ impl Hazard {
         &self.rows
     }
 
-    /// Returns the annual rate of exceedance of an intensity; `None` outside of the table.
+    /// Returns the annual rate at which an intensity is exceeded; `None` outside of the table.
     pub fn exceedance(&self, intensity: f64) -> Option<f64> {
         let after = self.rows.partition_point(|(x, _)| *x < intensity);
         let next = *self.rows.get(after)?;
@@ -137,7 +137,7 @@ impl Hazard {
         Some(before.1 * exp(exponent * ln(intensity / before.0)))
     }
 
-    /// Returns the intensity of a mean return period (years) of exceedance; `None` outside of the table.
+    /// Returns the intensity that is exceeded once in a mean return period (years); `None` outside of the table.
     pub fn intensity(&self, return_period: f64) -> Option<f64> {
         let rate = 1.0 / return_period;
         let pair = self.rows.windows(2).find(|pair| pair[0].1 >= rate && rate >= pair[1].1)?;
@@ -148,7 +148,7 @@ impl Hazard {
         Some(x0 * exp(ln(x1 / x0) * ln(rate / r0) / ln(r1 / r0)))
     }
 
-    /// Integrates an effect over the rate density of intensity, between two intensities within the table.
+    /// Integrates an effect, weighted by the rate density of intensity, between two intensities within the table.
     fn integral(&self, from: f64, to: f64, of: &impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for pair in self.rows.windows(2) {
@@ -159,7 +159,7 @@ impl Hazard {
             }
             // λ(u) = r0 exp(−k (u − u0)), and −dλ = k λ du.
             let (u0, k) = (ln(x0), -ln(r1 / r0) / ln(x1 / x0));
-            // Steep hazard needs finer intervals, as does steep fragility.
+            // A steep hazard curve needs finer intervals.
             let pieces = ((high - low) / PIECE * (1.0 + 0.02 * k)).ceil().clamp(1.0, 1e6);
             let width = (high - low) / pieces;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≤ 1e6")]
@@ -180,14 +180,15 @@ impl Hazard {
         [self.rows[0], self.rows[self.rows.len() - 1]]
     }
 
-    /// Returns the annual rate of an event with the given probability at each intensity, such as failure
+    /// Returns the annual rate of an event, such as failure, from its probability at each intensity
     /// (Cornell and Krawinkler 2000).
     pub fn rate_of(&self, probability: impl Fn(f64) -> f64) -> Rate {
         self.expected(1.0, probability)
     }
 
-    /// Returns the expected annual consequence, where `consequence` is the expected value at an intensity,
-    /// such as barrels lost, and never exceeds `worst`.
+    /// Returns the expected annual consequence, such as barrels lost per year.
+    ///
+    /// `consequence` returns the expected value at an intensity, which never exceeds `worst`.
     pub fn expected(&self, worst: f64, consequence: impl Fn(f64) -> f64) -> Rate {
         let [(first, _), (last, beyond)] = self.ends();
         let within = self.integral(first, last, &consequence);
@@ -198,7 +199,7 @@ impl Hazard {
         }
     }
 
-    /// Deaggregates the rate: its parts between the given intensities, without those outside of the table.
+    /// Deaggregates the rate into its parts between the given intensities; parts outside of the table are omitted.
     pub fn contributions(
         &self,
         edges: &[f64],
@@ -213,8 +214,9 @@ impl Hazard {
     }
 }
 
-/// Returns the probability of at least one event within a number of years at an annual rate, for
-/// independent events (Poisson).
+/// Returns the probability of at least one event in a number of years, from its annual rate.
+///
+/// Events are assumed to be independent (a Poisson process).
 pub fn chance_within(years: f64, annual_rate: f64) -> f64 {
     -libm::expm1(-annual_rate * years)
 }

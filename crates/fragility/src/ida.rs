@@ -1,11 +1,11 @@
-//! Curves of incremental dynamic analysis: demand against intensity, one per record.
+//! Curves of incremental dynamic analysis (IDA): demand against intensity, one curve per record.
 
 use crate::math::quantile;
 
-/// One record at ascending intensities.
+/// IDA curve of one record: its runs at ascending intensities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ida {
-    /// `(intensity, demand)` in ascending order; an infinite demand is a collapse.
+    /// `(intensity, demand)` of each run in ascending order of intensity; an infinite demand means collapse.
     points: Vec<(f64, f64)>,
 }
 
@@ -33,10 +33,10 @@ impl Ida {
 
     /// Returns the demand at an intensity.
     ///
-    /// Linear between runs, and from rest (zero at zero) to the first. Between a run that stood
-    /// and one that collapsed, in either order, the change is placed at their geometric mean, and
-    /// the demand of the standing run is used on its side. Above the last run the demand is infinite if that
-    /// collapsed, since analyses end there, and `None`, unknown, if it stood.
+    /// The demand is interpolated linearly between runs, and between zero at zero intensity and the first run. Between
+    /// a run that stood and one that collapsed, in either order, the change is placed at the geometric mean of their
+    /// intensities, and the demand of the standing run is used on its side. Above the last run the demand is infinite
+    /// if that run collapsed, since analyses end there, and `None` (unknown) if it stood.
     pub fn demand(&self, intensity: f64) -> Option<f64> {
         let after = self.points.partition_point(|(x, _)| *x < intensity);
         let before = after.checked_sub(1).map_or((0.0, 0.0), |i| self.points[i]);
@@ -60,9 +60,11 @@ impl Ida {
         })
     }
 
-    /// Returns the demand that a fraction of the records stays below at an intensity, infinite if too many have
-    /// collapsed; `None` if the demand of any record is unknown, so that no record is silently excluded.
-    /// A record that resurrects counts as standing where it stands.
+    /// Returns the demand below which a fraction `share` of the records stays at an intensity.
+    ///
+    /// The demand is infinite if too many records have collapsed, and `None` if the demand of any record is unknown, so
+    /// that no record is silently excluded. A record that collapses at a lower intensity but stands at this one counts
+    /// as standing.
     pub fn fractile(all: &[Self], intensity: f64, share: f64) -> Option<f64> {
         let mut demands =
             all.iter().map(|ida| ida.demand(intensity)).collect::<Option<Vec<_>>>()?;

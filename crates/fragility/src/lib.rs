@@ -1,8 +1,8 @@
-//! Statistics of failure against intensity.
+//! Fragility statistics: the probability of failure as a function of shaking intensity.
 //!
-//! The crate is independent of the kind of structure and failure. From observed capacities it fits
-//! lognormal fragility curves, quantifies their uncertainty, tests the fit against the data, and
-//! integrates curves with the hazard of a site.
+//! The crate fits lognormal fragility curves to observed capacities, quantifies their uncertainty, tests
+//! the fit against the data, and integrates curves with the hazard of a site. It does not depend on the
+//! kind of structure or of failure.
 //!
 //! # From counts to a rate
 //!
@@ -19,26 +19,27 @@
 //!
 //! let hazard = Hazard::new(&[(0.05, 0.1), (0.2, 0.01), (0.8, 0.0005), (2.0, 0.00005)])?;
 //! let rate = hazard.rate_of(|x| found.curve.probability(x));
-//! assert!(rate.low > 0.002 && rate.high < 0.006, "{rate:?}"); // a year
+//! assert!(rate.low > 0.002 && rate.high < 0.006, "{rate:?}"); // per year
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Evidence
 //!
-//! All fits maximize one likelihood. Every observation locates a capacity: *at* an
-//! intensity, *below* it (failed there), *above* it (stood there) or *between* two. This covers counts at
-//! fixed intensities, capacities from incremental dynamic analysis, bracketed capacities and
-//! records that never fail below the largest intensity.
+//! All fits maximize the same likelihood. Every observation states that a capacity is *at* an
+//! intensity, *below* it (the case failed there), *above* it (it stood there) or *between* two. This covers
+//! failure counts at fixed intensities, capacities from incremental dynamic analysis, bracketed capacities and
+//! records that never fail up to the largest intensity.
 //!
 //! # Data without a curve
 //!
 //! Data that do not determine a curve give a [`FitError`] with the reason: nothing failed, all failed,
 //! failures and survivals do not overlap, or failure does not become likelier with intensity.
-//! There is no penalty, no prior and no clipping that would turn them into a plausible number.
+//! No penalty, prior or clipping turns such data into a plausible number.
 //!
 //! # Random numbers
 //!
-//! Resampling takes uniform random numbers from the caller (`FnMut() -> f64`), who chooses the generator and the seed.
+//! Functions that resample take uniform random numbers from the caller (`FnMut() -> f64`), who chooses the generator
+//! and the seed.
 
 // Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -1,4 +1,4 @@
-//! The likelihood of evidence, its derivatives, and its maximization.
+//! Likelihood of evidence, with its derivatives and its maximization.
 //!
 //! With `z = offset + row · p` linear in the parameters, every kind of evidence has a likelihood
 //! whose logarithm is concave in `p` (Olsen 1978 for exact and censored values; probit for failures
@@ -6,7 +6,7 @@
 
 use crate::math::{LN_ROOT_TAU, ln, ln_normal, mills, normal_between, normal_density};
 
-/// `z` as a linear function of the parameters.
+/// Normal score `z` as a linear function of the parameters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Score<const N: usize> {
     pub offset: f64,
@@ -22,17 +22,17 @@ impl<const N: usize> Score<N> {
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Known<const N: usize> {
-    /// `Z = z`, with the logarithm of `∂z/∂x` in the density: `ln slope − ln x`.
+    /// `Z = z`; the second value is `ln ∂z/∂x` in the density, without the slope if that is a parameter.
     At(Score<N>, f64),
-    /// `Z ≤ z`.
+    /// `Z` is at most `z`.
     Below(Score<N>),
-    /// `Z > z`.
+    /// `Z` is above `z`.
     Above(Score<N>),
-    /// Between two.
+    /// `Z` lies between the two values of `z`.
     Between(Score<N>, Score<N>),
 }
 
-/// A weighted sum of log-likelihoods.
+/// Weighted sum of log-likelihoods.
 #[derive(Clone, Debug)]
 pub(crate) struct Likelihood<const N: usize> {
     pub terms: Vec<(Known<N>, f64)>,
@@ -40,7 +40,7 @@ pub(crate) struct Likelihood<const N: usize> {
     pub slope: Option<usize>,
 }
 
-/// Value, gradient and matrix of second derivatives.
+/// Value, gradient and matrix of second derivatives of a log-likelihood at one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape<const N: usize> {
     pub value: f64,
@@ -51,7 +51,7 @@ pub(crate) struct Shape<const N: usize> {
 impl<const N: usize> Shape<N> {
     const ZERO: Self = Self { value: 0.0, gradient: [0.0; N], curvature: [[0.0; N]; N] };
 
-    /// Adds the derivatives of a term that depends on one `z`, from its first and second derivative.
+    /// Adds the derivatives of a term with respect to the parameters, from its first and second derivative by `z`.
     fn push(&mut self, score: &Score<N>, first: f64, second: f64) {
         for i in 0..N {
             self.gradient[i] += first * score.row[i];
@@ -62,17 +62,17 @@ impl<const N: usize> Shape<N> {
     }
 }
 
-/// The maximum of a likelihood.
+/// Maximum of a likelihood.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Top<const N: usize> {
     pub parameters: [f64; N],
     pub shape: Shape<N>,
 }
 
-/// Gradients below this, in standard errors, count as zero.
+/// Gradient, in standard errors, below which it counts as zero.
 const FLAT: f64 = 1e-9;
 
-/// Largest number of Newton steps; five to ten suffice.
+/// Largest number of Newton steps; usually five to ten suffice.
 const STEPS: usize = 200;
 
 impl<const N: usize> Likelihood<N> {
@@ -144,7 +144,7 @@ impl<const N: usize> Likelihood<N> {
         sum
     }
 
-    /// Maximizes from a start of finite likelihood; `None` if there is no maximum.
+    /// Maximizes the likelihood from a start at which it is finite; `None` if there is no maximum.
     pub(crate) fn top(&self, start: [f64; N]) -> Option<Top<N>> {
         let mut parameters = start;
         let mut shape = self.shape(&parameters);
@@ -189,7 +189,7 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves `A x = b` for a symmetric, positive definite `A` (Cholesky); `None` if it is not.
+/// Solves `A x = b` for a symmetric, positive definite `A` (Cholesky); `None` if `A` is not positive definite.
 pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
     for j in 0..N {
         for k in 0..j {
@@ -221,7 +221,7 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Op
     Some(b)
 }
 
-/// Returns the inverse of the negative Hessian: the covariance of the parameters.
+/// Returns the covariance of the parameters: the inverse of the negative Hessian.
 pub(crate) fn covariance<const N: usize>(curvature: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let information = negated(curvature);
     let mut inverse = [[0.0; N]; N];

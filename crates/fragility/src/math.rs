@@ -1,4 +1,4 @@
-//! Transcendental functions with the same bits on every platform, and the distributions built on them.
+//! Transcendental functions that are bit-identical on every platform, and probability distributions built on them.
 
 use special::{Beta, Gamma};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -14,11 +14,11 @@ pub(crate) fn exp(x: f64) -> f64 {
 /// `ln √(2π)`.
 pub(crate) const LN_ROOT_TAU: f64 = 0.918_938_533_204_672_7;
 
-/// Below this, `Φ` is evaluated by its asymptotic series, since `erfc` underflows at −37.5.
+/// Score below which `Φ` is evaluated by its asymptotic series, since `erfc` underflows at −37.5.
 const DEEP: f64 = -30.0;
 
-/// `1 − 1/z² + 3/z⁴ − …`, the series of `−z Φ(z)/φ(z)` for `z` far below zero (Abramowitz and
-/// Stegun 1964, 26.2.12); 2·10⁻¹⁴ at −30.
+/// Returns the asymptotic series `1 − 1/z² + 3/z⁴ − …` of `−z Φ(z)/φ(z)` for `z` far below zero (Abramowitz and
+/// Stegun 1964, 26.2.12); its error at −30 is 2·10⁻¹⁴.
 fn deep_series(z: f64) -> f64 {
     let t = 1.0 / (z * z);
     1.0 - t * (1.0 - t * (3.0 - t * (15.0 - t * (105.0 - t * 945.0))))
@@ -84,7 +84,7 @@ pub fn normal_quantile(probability: f64) -> f64 {
     z
 }
 
-/// Returns the probability that χ² with `freedom` degrees of freedom is at least `value`; 1 without any.
+/// Returns the probability that χ² with `freedom` degrees of freedom is at least `value`; 1 if `freedom` is 0.
 pub fn chi_square_above(value: f64, freedom: usize) -> f64 {
     if freedom == 0 || value <= 0.0 {
         return 1.0;
@@ -111,10 +111,10 @@ pub fn student_beyond(t: f64, freedom: usize) -> f64 {
     x.inc_beta(p, q, p.ln_beta(q))
 }
 
-/// Returns the `t` such that Student's `T` lies within `−t` to `t` with a probability; infinite without freedom.
+/// Returns the `t` such that Student's `T` lies within `−t` to `t` with a probability; infinite if `freedom` is 0.
 ///
-/// From the incomplete beta function; above 1000 degrees of freedom, where that is slow and loses
-/// digits, the asymptotic series (Abramowitz and Stegun 1964, 26.7.5).
+/// It is computed from the incomplete beta function. Above 1000 degrees of freedom, where that function is slow and
+/// loses digits, the asymptotic series is used (Abramowitz and Stegun 1964, 26.7.5).
 pub fn student_quantile(probability: f64, freedom: usize) -> f64 {
     if freedom == 0 {
         return f64::INFINITY;
@@ -149,7 +149,7 @@ pub(crate) fn ln_choose(n: u32, k: u32) -> f64 {
 /// Fan 1996, type 7); infinite values are allowed.
 ///
 /// # Panics
-/// Without values.
+/// If there are no values.
 pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     let last = ascending.len() - 1;
     let place = share.clamp(0.0, 1.0) * last as f64;
@@ -217,7 +217,7 @@ mod tests {
         for probability in [0.5, 0.95, 0.99, 0.999] {
             let [before, at, after, later] =
                 [999, 1000, 1001, 1002].map(|freedom| student_quantile(probability, freedom));
-            // The step across the border against those beside it: measured 5e-11.
+            // The step across the border between the methods, compared with the steps next to it; measured 5e-11.
             let bend = (at - after) - 0.5 * ((before - at) + (after - later));
             assert!(bend.abs() < 1e-9, "{probability}: {bend:e}");
             assert!((student_beyond(later, 1002) / (1.0 - probability) - 1.0).abs() < 1e-9); // measured 3e-10

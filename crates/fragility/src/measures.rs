@@ -5,20 +5,21 @@ use crate::fit::{Dispersion, Fit, FitError, fit};
 use crate::likelihood::{Known, Likelihood, Score, solve};
 use crate::math::{chi_square_above, ln, student_beyond};
 
-/// Failure against one intensity measure.
+/// Fit of failures to one intensity measure, with its efficiency and sufficiency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The curve over this measure. An efficient measure has a small dispersion.
+    /// Fragility curve in terms of this measure; the more efficient the measure, the smaller the dispersion.
     pub fit: Fit,
-    /// The probability that a failed case had a higher intensity than a standing one: 0.5 for no
-    /// discrimination, 1 for a perfect one (area under the ROC curve).
+    /// Probability that a failed case had a higher intensity than a standing one (area under the ROC curve): 0.5 if the
+    /// measure does not discriminate, 1 if it does so perfectly.
     pub concordance: f64,
-    /// The probability of an improvement by a second measure at least as large if it held no further
-    /// information: small if the first measure is not sufficient. `None` if the second follows from the first.
+    /// p-value of the sufficiency test: the probability of an improvement at least as large by a second measure that
+    /// has no further information. It is small if the first measure is not sufficient; `None` if the second measure
+    /// follows from the first.
     pub sufficiency: Option<f64>,
 }
 
-/// Fits failures against a measure, alone and together with a second one.
+/// Fits failures against an intensity measure, alone and together with a second quantity.
 ///
 /// `cases` are `(intensity, failed)`, and `second` is another quantity of each case, such as another
 /// measure or the duration. Sufficiency is the likelihood-ratio test of the second in a probit
@@ -53,7 +54,7 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
         .collect();
     let b = 1.0 / alone.curve.dispersion;
     let both = Likelihood { terms, slope: Some(1) };
-    // Without a maximum the two measures separate failures from survivals completely: the likelihood then tends to one.
+    // If there is no maximum, the two measures separate failures from survivals completely, and the likelihood tends to 1.
     let highest =
         both.top([-b * ln(alone.curve.median), b, 0.0]).map_or(0.0, |top| top.shape.value);
     Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))
@@ -86,25 +87,27 @@ fn concordance(cases: &[(f64, bool)]) -> f64 {
     pairs / (failed_in_all * stood)
 }
 
-/// Demand against one measure: `ln D = ln a + b ln x + ε`.
+/// Regression of demand on one intensity measure: `ln D = ln a + b ln x + ε`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demanded {
-    /// `b`.
+    /// Slope `b` of the regression.
     pub slope: f64,
     /// Standard deviation of `ε`: small for an efficient measure (Luco and Cornell 2007).
     pub dispersion: f64,
-    /// `dispersion/b`, the scatter in terms of intensity, which also penalizes measures on which the
-    /// demand depends weakly (Padgett et al. 2008).
+    /// Proficiency `dispersion/b`: the scatter in terms of intensity, which also penalizes measures on which the
+    /// demand depends only weakly (Padgett et al. 2008).
     pub proficiency: f64,
-    /// The probability of a dependence of `ε` on a second quantity at least as large if there were none.
+    /// p-value of the sufficiency test: the probability of a dependence at least as strong of `ε` on a second quantity if
+    /// there is none in truth.
     pub sufficiency: Option<f64>,
     /// Number of cases.
     pub cases: usize,
 }
 
-/// Regresses demands of standing cases, each `(intensity, demand)`, both positive, on a measure, and the
-/// residuals on a second quantity. `None` for fewer than three cases, for equal intensities and for numbers
-/// that are not positive.
+/// Regresses the demands of standing cases on an intensity measure, and the residuals on a second quantity.
+///
+/// Each case is `(intensity, demand)`, both positive. Returns `None` for fewer than three cases, for equal intensities
+/// and for numbers that are not positive.
 pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<Demanded> {
     let sound = |x: f64| x.is_finite() && x > 0.0;
     if cases.len() < 3 || !cases.iter().all(|(x, d)| sound(*x) && sound(*d)) {
@@ -134,7 +137,7 @@ pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<De
     })
 }
 
-/// A straight line by least squares.
+/// Least-squares straight line.
 struct Line {
     intercept: f64,
     slope: f64,

@@ -1,18 +1,18 @@
-//! Competing modes of failure: a failure in one mode precludes the others.
+//! Competing failure modes: a failure in one mode precludes the others.
 
 use crate::likelihood::{Known, Likelihood, Score};
 use crate::math::{ln, normal};
 
-/// Division of failures among modes, as a function of intensity.
+/// Share of each mode among failures, as a function of intensity.
 ///
 /// ```text
-/// s₁(x) = Φ(a₁ + b₁ ln x)                      of all failures
-/// s₂(x) = (1 − s₁(x)) Φ(a₂ + b₂ ln x)          of those that are left, and so on
+/// s₁(x) = Φ(a₁ + b₁ ln x)                      share of all failures
+/// s₂(x) = (1 − s₁(x)) Φ(a₂ + b₂ ln x)          share of the remaining failures, and so on
 /// ```
 ///
-/// The last mode takes the rest, so that shares add up to one; multiplied by the probability of failure they are
-/// the cumulative incidence of each mode (Kalbfleisch and Prentice 2002, chapter 8), which may decrease where
-/// another mode takes over, and never adds up to more than the probability of failure.
+/// The last mode has the remaining failures, so that shares add up to one. A share times the probability of failure is
+/// the cumulative incidence of the mode (Kalbfleisch and Prentice 2002, chapter 8). It may decrease where another mode
+/// takes over, and the incidences of all modes add up to the probability of failure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shares {
     /// `a` and `b` of every mode but the last.
@@ -20,8 +20,10 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Fits the maximum-likelihood shares of failures, each `(intensity, mode)`, of modes numbered from 0; `None`
-    /// if they determine none, such as if an intensity separates two modes completely.
+    /// Fits the shares of the modes to failures by maximum likelihood.
+    ///
+    /// Each failure is `(intensity, mode)`, with modes numbered from 0. Returns `None` if the failures do not determine
+    /// the shares, such as if an intensity separates two modes completely.
     pub fn fit(failures: &[(f64, usize)], modes: usize) -> Option<Self> {
         let mut splits = Vec::new();
         for mode in 0..modes.checked_sub(1)? {
@@ -66,7 +68,7 @@ impl Shares {
 mod tests {
     use super::*;
 
-    /// Returns failures at quantiles of a known division into three modes.
+    /// Returns failures that follow a known division into three modes.
     fn divided(truth: &Shares) -> Vec<(f64, usize)> {
         let mut failures = vec![];
         for i in 0..40 {

@@ -1,4 +1,4 @@
-//! Tests whether failure becomes likelier with intensity, as every fragility curve assumes.
+//! Test of the assumption of every fragility curve that failure becomes likelier with intensity.
 
 use std::collections::BTreeMap;
 
@@ -6,40 +6,41 @@ use crate::bootstrap::drawn;
 use crate::evidence::Stripe;
 use crate::goodness::deviance;
 
-/// A range of intensities over which the raw fraction of failures falls.
+/// Range of intensities over which the observed fraction of failures decreases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fall {
-    /// The stripe with the high fraction, at the lower intensity.
+    /// Stripe with the higher fraction, at the lower intensity.
     pub from: Stripe,
-    /// The stripe with the low fraction, at the higher intensity.
+    /// Stripe with the lower fraction, at the higher intensity.
     pub to: Stripe,
-    /// The probability of a fall at least as clear if failure never becomes less likely, for independent cases.
+    /// p-value: the probability of a decrease at least as significant if failure never becomes less likely with intensity,
+    /// for independent cases.
     pub p: f64,
 }
 
-/// Raw fractions compared with the nearest nondecreasing ones.
+/// Observed fractions of failures compared with the best-fitting nondecreasing probabilities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Monotony {
-    /// The counts, in ascending order of intensity.
+    /// Failure counts, in ascending order of intensity.
     pub stripes: Vec<Stripe>,
-    /// The maximum-likelihood nondecreasing probabilities (Ayer et al. 1955), one per stripe.
+    /// Nondecreasing probabilities of maximum likelihood (Ayer et al. 1955), one per stripe.
     pub isotonic: Vec<f64>,
-    /// Twice the logarithm of the likelihood ratio of the raw fractions to these.
+    /// Deviance: twice the log-likelihood ratio of the observed fractions to the nondecreasing probabilities.
     pub deviance: f64,
-    /// The probability of a `deviance` at least as large if failure never becomes less likely.
+    /// p-value: the probability of a `deviance` at least as large if failure never becomes less likely with intensity.
     pub p: f64,
-    /// All falls of the fractions, one per pool of the isotonic probabilities, significant or not.
+    /// All decreases of the fractions, significant or not: one per range in which the nondecreasing probability is constant.
     pub falls: Vec<Fall>,
 }
 
 impl Monotony {
-    /// Returns the falls that are significant at a level, such as 0.05.
+    /// Returns the decreases that are significant at a level, such as 0.05.
     pub fn significant(&self, level: f64) -> impl Iterator<Item = &Fall> {
         self.falls.iter().filter(move |fall| fall.p < level)
     }
 }
 
-/// Adjacent stripes of one probability.
+/// Adjacent stripes that share one nondecreasing probability.
 struct Pool {
     first: usize,
     last: usize,
@@ -53,7 +54,7 @@ impl Pool {
     }
 }
 
-/// Pools neighbors that violate the order until none does.
+/// Pools neighboring stripes whose fractions decrease until none do.
 fn pools(stripes: &[Stripe]) -> Vec<Pool> {
     let mut pools: Vec<Pool> = vec![];
     for (i, stripe) in stripes.iter().enumerate() {
@@ -89,12 +90,12 @@ fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
     (pools, chances, misfits)
 }
 
-/// Tests whether fractions fall with intensity, by the likelihood ratio of the raw fractions to the
-/// isotonic ones, whose distribution is simulated from the latter; stripes without cases are ignored.
+/// Tests whether the fraction of failures decreases with intensity.
 ///
-/// A pool of the isotonic probabilities is a range in which fractions fall. Its `p` compares its
-/// part of the deviance with the largest part of any pool in each sample, which corrects for
-/// multiple comparisons.
+/// The statistic is the likelihood ratio of the observed fractions to the isotonic (nondecreasing) probabilities. Its
+/// distribution is simulated from these probabilities. Stripes without cases are ignored.
+/// Each pool of stripes with one isotonic probability is a range in which fractions decrease. The `p` of a pool compares
+/// its part of the deviance with the largest part of any pool in each sample, which corrects for multiple comparisons.
 pub fn monotony(
     stripes: &[Stripe],
     replicates: usize,
@@ -131,7 +132,9 @@ pub fn monotony(
     Monotony { stripes: sorted, isotonic: chances, deviance: observed, p, falls }
 }
 
-/// Returns the pair of stripes, the first of the lower intensity, with the largest fall; of several, the closest pair.
+/// Returns the pair of stripes between which the fraction decreases most, the one of lower intensity first.
+///
+/// Of several such pairs, the closest is returned.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {
@@ -148,19 +151,20 @@ fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     found.map(|(_, from, to)| (from, to))
 }
 
-/// A group that failed at one intensity and stood at a higher one.
+/// Group of cases that failed at one intensity and stood at a higher one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Returned {
-    /// The group.
+    /// Number of the group.
     pub group: usize,
-    /// The lowest intensity at which it failed.
+    /// Lowest intensity at which the group failed.
     pub failed: f64,
-    /// The highest intensity at which it stood.
+    /// Highest intensity at which the group stood.
     pub stood: f64,
 }
 
-/// Returns groups, such as records, that failed at one intensity and stood at a higher one, independent of
-/// any statistics. Cases are `(group, intensity, failed)`.
+/// Returns the groups, such as records, that failed at one intensity and stood at a higher one.
+///
+/// Each case is `(group, intensity, failed)`. No statistics are involved.
 pub fn returns(cases: impl IntoIterator<Item = (usize, f64, bool)>) -> Vec<Returned> {
     let mut bounds: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for (group, intensity, failed) in cases {

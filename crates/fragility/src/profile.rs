@@ -1,8 +1,8 @@
 //! Profile-likelihood confidence intervals.
 //!
-//! The interval of a quantity holds the values at which the likelihood, maximized over all other
-//! parameters, falls below its maximum by no more than half the quantile of χ² with one degree of freedom
-//! (Wilks 1938). It needs no normality of the estimates and stays within 0 to 1.
+//! The interval of a quantity holds all values at which the log-likelihood, maximized over the other
+//! parameters, lies below its maximum by at most half the quantile of χ² with one degree of freedom
+//! (Wilks 1938). Estimates need not be normal, and intervals of probabilities stay within 0 to 1.
 
 use crate::evidence::Evidence;
 use crate::fit::{Dispersion, FitError, fit, likelihood};
@@ -10,10 +10,10 @@ use crate::likelihood::{Likelihood, Score};
 use crate::math::{chi_square_quantile_one, exp, ln, normal};
 use crate::proportion::Interval;
 
-/// Scores beyond these are certain: `Φ(−38)` is near the smallest representable number.
+/// Magnitude of a score beyond which the probability counts as 0 or 1: `Φ(−38)` is near the smallest representable number.
 const CERTAIN: f64 = 38.0;
 
-/// The likelihood of evidence constrained to a score at `ln x = place`.
+/// Profile likelihood: the likelihood of evidence with a prescribed score at `ln x = place`.
 struct Profile<'a> {
     evidence: &'a [Evidence],
     dispersion: Dispersion,
@@ -42,7 +42,7 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// Returns how far a score at a place lies outside of the interval, in log-likelihood; negative inside.
+    /// Returns the log-likelihood by which a score at `ln x = place` lies outside of the interval; negative inside.
     fn excess(&self, place: f64, score: f64) -> f64 {
         let highest = match self.dispersion {
             Dispersion::Free => {
@@ -64,7 +64,7 @@ impl<'a> Profile<'a> {
     }
 }
 
-/// Returns the maximum over nonnegative slopes.
+/// Returns the largest log-likelihood over slopes that are not negative.
 fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     match of.top([start]) {
         Some(top) if top.parameters[0] >= 0.0 => top.shape.value,
@@ -73,8 +73,9 @@ fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     }
 }
 
-/// Finds the zero of `excess`, searching from a point where it is negative with doubling steps; `limit`
-/// if there is none.
+/// Returns the zero of `excess` between `from`, where it is negative, and `limit`; `limit` if there is none.
+///
+/// The zero is bracketed by steps that double, and then found by bisection.
 fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
     let beyond = |x: f64| if step > 0.0 { x >= limit } else { x <= limit };
     let (mut inside, mut stride) = (from, step);

@@ -2,7 +2,7 @@
 
 use crate::math::{beta_quantile, exp, ln, normal_quantile};
 
-/// An interval.
+/// Confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower bound.
@@ -12,14 +12,15 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// `true` if a value lies within, bounds included.
+    /// `true` if a value lies within the interval, bounds included.
     pub fn holds(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
     }
 }
 
-/// Returns Wilson's score interval of a proportion (Wilson 1927): short, with a coverage near the level on
-/// average. 0 to 1 without cases.
+/// Returns the score interval of a proportion (Wilson 1927); 0 to 1 without cases.
+///
+/// The interval is short, and its coverage is close to the level on average.
 pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
     if cases == 0 {
         return Interval { low: 0.0, high: 1.0 };
@@ -36,8 +37,9 @@ pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// Returns the exact interval of a proportion (Clopper and Pearson 1934): its coverage is never below the
-/// level. 0 to 1 without cases.
+/// Returns the exact interval of a proportion (Clopper and Pearson 1934); 0 to 1 without cases.
+///
+/// The coverage is never below the level.
 pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     let tail = 0.5 * (1.0 - level);
     let (k, n) = (f64::from(failures), f64::from(cases));
@@ -47,14 +49,16 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// Returns the largest proportion of a population that a sample may miss entirely: with that proportion, `count`
-/// observations contain no instance with the probability of one tail of an interval of a level.
+/// Returns the largest proportion of a population that a sample of `count` observations may miss entirely.
+///
+/// With that proportion, the probability that no observation shows it is one tail of an interval of `level`.
 pub fn unobserved(count: usize, level: f64) -> f64 {
     if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
 }
 
-/// Returns the upper confidence bound of a proportion (Clopper and Pearson 1934, one-sided): its coverage is
-/// never below `probability`. 1 without cases.
+/// Returns the one-sided upper confidence bound of a proportion (Clopper and Pearson 1934); 1 without cases.
+///
+/// The coverage is never below `probability`.
 pub fn at_most(failures: u32, cases: u32, probability: f64) -> f64 {
     if failures >= cases {
         return 1.0;
@@ -70,9 +74,9 @@ mod tests {
 
     #[test]
     fn one_sided_bounds_have_their_textbook_values() {
-        // None of n: 1 − 0.05^(1/n), the rule of three.
+        // For no failures in n cases the bound is 1 − 0.05^(1/n) (rule of three).
         assert!((at_most(0, 24, 0.95) - (1.0 - 0.05_f64.powf(1.0 / 24.0))).abs() < 1e-12);
-        // With a probability at the bound, one or none of 34 fails in 5 of 100 samples.
+        // If the probability equals the bound, at most one of 34 cases fails in 5 of 100 samples.
         let p = at_most(1, 34, 0.95);
         let tail = (1.0 - p).powi(34) + 34.0 * p * (1.0 - p).powi(33);
         assert!((tail - 0.05).abs() < 1e-9, "{p}: {tail}");

@@ -1,4 +1,4 @@
-//! Confidence over records, by leaving out one record at a time.
+//! Confidence intervals for dependent cases, by leaving out one record at a time.
 
 use std::collections::BTreeSet;
 
@@ -8,26 +8,26 @@ use crate::fit::{Dispersion, FitError, fit};
 use crate::math::{exp, ln, normal, normal_quantile, student_quantile};
 use crate::proportion::{Interval, unobserved};
 
-/// A curve, and the curves without each group of evidence, such as all cases of one record.
+/// Fitted curve, and the curves fitted without each group of evidence, such as all cases of one record.
 ///
-/// Intervals are the delete-one jackknife of groups about the curve itself (the correction for few groups
-/// that Bell and `McCaffrey` 2002 compare as the jackknife, and others call CR3) with Student's t, with one degree
-/// of freedom fewer than groups, of the logarithms of median and dispersion, and to first order of functions
-/// of them.
-/// They assume nothing about the dependence between the cases of one record.
-/// In simulations they cover the truth in 93 to 97.3 of 100 campaigns with 8 to 40 records at ten levels, at one
-/// tenth, one half and nine tenths (`tests/coverage.rs`).
+/// Intervals come from the delete-one jackknife of groups, centered on the curve of all evidence, and Student's t, with
+/// one degree of freedom fewer than there are groups. (Bell and `McCaffrey` 2002 call this correction for few groups the
+/// jackknife; others call it CR3.) It is applied to the logarithms of median and dispersion, and to first order to
+/// functions of them.
+/// Cases of one record may depend on each other in any way.
+/// In simulations with 8 to 40 records at ten levels, the intervals at failure probabilities of one tenth, one half and
+/// nine tenths cover the truth in 93 to 97.3 of 100 campaigns (`tests/coverage.rs`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeaveOneOut {
     fitted: Lognormal,
     others: Vec<Lognormal>,
 }
 
-/// Fits evidence, and again without each of its groups.
+/// Fits a curve to all evidence, and one without each of its groups.
 ///
 /// # Errors
-/// As [`fit`]; [`FitError::Unstable`] for fewer than three groups, and if the evidence determines no curve
-/// without one of them: one record then decides everything, and the uncertainty cannot be estimated.
+/// As [`fit`]; [`FitError::Unstable`] if there are fewer than three groups, or if the evidence without one of them
+/// determines no curve: a single record then decides the result, and the uncertainty cannot be estimated.
 pub fn leave_one_out(all: &[Evidence], dispersion: Dispersion) -> Result<LeaveOneOut, FitError> {
     let fitted = fit(all, dispersion)?.curve;
     let groups: BTreeSet<usize> = all.iter().map(|item| item.group).collect();
@@ -48,7 +48,7 @@ impl LeaveOneOut {
         self.others.len()
     }
 
-    /// Returns Student's t of a level.
+    /// Returns Student's t for a confidence level.
     fn reach(&self, level: f64) -> f64 {
         student_quantile(level, self.others.len() - 1)
     }
@@ -61,17 +61,17 @@ impl LeaveOneOut {
         (n - 1.0) / n * self.others.iter().map(change).sum::<f64>()
     }
 
-    /// Returns the standard error of the logarithm of the median, with dependent cases within a record.
+    /// Returns the standard error of the logarithm of the median, valid for dependent cases within a record.
     pub fn median_error(&self) -> f64 {
         self.spread(|curve| ln(curve.median), |curve| ln(curve.median)).sqrt()
     }
 
-    /// Returns the standard error of the logarithm of the dispersion, with dependent cases within a record.
+    /// Returns the standard error of the logarithm of the dispersion, valid for dependent cases within a record.
     pub fn dispersion_error(&self) -> f64 {
         self.spread(|curve| ln(curve.dispersion), |curve| ln(curve.dispersion)).sqrt()
     }
 
-    /// Returns the interval of a function of the curve with nearly symmetric errors, such
+    /// Returns the interval of a function of the curve whose errors are nearly symmetric, such
     /// as the logarithm of a rate.
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let here = of(&self.fitted);
@@ -82,7 +82,7 @@ impl LeaveOneOut {
     /// Returns the interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
         let chance = |x: &f64| {
-            // The score is not bounded by 0 and 1.
+            // The interval is that of the score, which is not bounded by 0 and 1.
             let score = ln(x / self.fitted.median) / self.fitted.dispersion;
             let half = self.reach(level) * self.score_error(score);
             Interval { low: normal(score - half), high: normal(score + half) }
@@ -90,8 +90,9 @@ impl LeaveOneOut {
         intensities.iter().map(chance).collect()
     }
 
-    /// Returns the standard error of a value of the score `(ln x − ln m) / β`, to first order in the errors of
-    /// `ln m` and `ln β`: curves without a record may be so steep that their own scores diverge.
+    /// Returns the standard error of a score `(ln x − ln m) / β`, to first order in the errors of `ln m` and `ln β`.
+    ///
+    /// The scores of the curves without a record are not used, since such a curve may be so steep that its score diverges.
     fn score_error(&self, score: f64) -> f64 {
         let (place, width) = (|c: &Lognormal| ln(c.median), |c: &Lognormal| ln(c.dispersion));
         let beta = self.fitted.dispersion;
@@ -101,7 +102,7 @@ impl LeaveOneOut {
         variance.max(0.0).sqrt()
     }
 
-    /// Returns the interval of the intensity at which failure has the given probability.
+    /// Returns the interval of the intensity at which the probability of failure is `probability`.
     pub fn intensity(&self, level: f64, probability: f64) -> Interval {
         let Lognormal { median, dispersion } = self.fitted;
         let score = normal_quantile(probability);
@@ -122,11 +123,11 @@ impl LeaveOneOut {
     }
 }
 
-/// Returns the interval of the mean of a quantity between 0 and 1 over cases that are dependent in groups, each
-/// `(sum, cases)`.
+/// Returns the interval of the mean of a quantity between 0 and 1, over cases that depend on each other within groups.
 ///
-/// Wilson's interval with Student's t in place of the normal quantile, for as many independent cases as would
-/// scatter like the groups do; for as many as there are groups if these do not scatter at all.
+/// Each group is `(sum, cases)`. The interval is that of Wilson with Student's t in place of the normal quantile. Its
+/// number of cases is the number of independent cases that would scatter like the groups, or the number of groups if
+/// these do not scatter at all.
 /// A few groups may agree by chance, so the interval also covers the mean that would follow if the fraction of groups
 /// that a sample may miss ([`unobserved`]) were all 0 or all 1.
 pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
@@ -151,10 +152,10 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     }
 }
 
-/// Returns the interval of the mean of paired differences, one per group, each between `-most` and `most`; `None` for
-/// fewer than two.
+/// Returns the interval of the mean of paired differences, one per group; `None` for fewer than two.
 ///
-/// Student's interval, widened like that of [`grouped_mean`] at 95 % if a few differences agree by chance.
+/// Each difference lies between `-most` and `most`. The interval is Student's, widened like that of [`grouped_mean`],
+/// since a few differences may agree by chance.
 /// If one of `tries` such intervals is selected, the level applies to all of them together (Bonferroni), so that the
 /// best of many is not overrated.
 pub fn mean_difference(

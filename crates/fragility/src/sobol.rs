@@ -1,10 +1,11 @@
-//! Sobol' points in up to 21 dimensions, with the direction numbers of Joe and Kuo (2008), and in any
-//! number of dimensions by padding.
+//! Sobol' points in up to 21 dimensions, and in any number of dimensions by padding.
+//!
+//! The direction numbers are those of Joe and Kuo (2008).
 
 /// Largest number of dimensions without padding.
 pub const DIMENSIONS: usize = 21;
 
-/// Number of cells of every coordinate.
+/// Number of cells into which every coordinate is divided.
 const CELLS: f64 = 4_294_967_296.0;
 
 /// Degree and coefficients of a primitive polynomial, and the initial direction numbers, from the second dimension on:
@@ -32,7 +33,7 @@ const TABLE: [(u32, u32, &[u32]); DIMENSIONS - 1] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// Returns the 32 direction numbers of a dimension, from 0.
+/// Returns the 32 direction numbers of a dimension; dimensions count from 0.
 fn directions(dimension: usize) -> [u32; 32] {
     let mut v = [0_u32; 32];
     let Some(row) = dimension.checked_sub(1) else {
@@ -58,7 +59,7 @@ fn directions(dimension: usize) -> [u32; 32] {
     v
 }
 
-/// One dimension of the sequence.
+/// One dimension of the Sobol' sequence.
 #[derive(Clone, Debug)]
 pub struct Axis {
     directions: [u32; 32],
@@ -66,7 +67,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Creates a dimension, from 0, with a digital shift that preserves the nets (Owen 1995).
+    /// Creates a dimension, counted from 0, with a digital shift that preserves the nets (Owen 1995).
     pub fn new(dimension: usize, shift: u32) -> Self {
         Self { directions: directions(dimension), shift }
     }
@@ -78,17 +79,19 @@ impl Axis {
             .fold(self.shift, |digits, bit| digits ^ self.directions[bit])
     }
 
-    /// Returns the coordinate of a point, from 0, in the order of Antonov and Saleev; the middle of its cell of 2⁻³².
+    /// Returns the coordinate of a point, counted from 0 in the order of Antonov and Saleev.
+    ///
+    /// The coordinate is the middle of a cell of width 2⁻³².
     pub fn at(&self, point: u32) -> f64 {
         (f64::from(self.digits(point)) + 0.5) / CELLS
     }
 }
 
-/// Returns the coordinate of a point, from 0, in any dimension.
+/// Returns the coordinate of a point, counted from 0, in any dimension.
 ///
-/// Dimensions form groups of as many as the sequence has; every group takes its points in an order of
-/// its own and every dimension scrambles its digits (Owen 1995, by the hash of Burley 2020), so that each
-/// group is a Sobol' net and groups are independent of each other.
+/// Dimensions are divided into groups of [`DIMENSIONS`]. Every group takes its points in an order of its own, and every
+/// dimension scrambles its digits (Owen 1995, by the hash of Burley 2020), so that each group is a Sobol' net and
+/// groups are independent of each other.
 /// Of the first 2ᵐ points, one lies in each of 2ᵐ equal parts of every dimension.
 pub fn padded(dimension: usize, point: u32, seed: u64) -> f64 {
     let group = (dimension / DIMENSIONS) as u64;
@@ -99,7 +102,7 @@ pub fn padded(dimension: usize, point: u32, seed: u64) -> f64 {
     (f64::from(nested(axis.digits(nested(point, order)), digits)) + 0.5) / CELLS
 }
 
-/// Mixes bits (`SplitMix64` of Steele, Lea and Flood 2014).
+/// Returns a hash of a seed (`SplitMix64` of Steele, Lea and Flood 2014).
 fn mixed(seed: u64) -> u64 {
     let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -139,7 +142,7 @@ mod tests {
             .flat_map(|a| (0..a).map(move |b| (a, b)))
             .map(|(a, b)| product(&points[a], &points[b]).abs())
             .fold(0.0, f64::max);
-        // Measured 0.58; for as many pairs of 64 random numbers the largest is some 0.45, for equal numbers 1.
+        // Measured 0.58. For as many pairs of 64 random numbers the largest is about 0.45; for equal numbers it is 1.
         assert!(worst < 0.7, "{worst}");
         assert_ne!(padded(3, 5, 7), padded(3, 5, 8));
     }

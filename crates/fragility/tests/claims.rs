@@ -1,4 +1,4 @@
-//! Coverage of intervals and rate of false claims without an effect: simulated, side by side with the previous rules.
+//! Simulated coverage of intervals, and rate of false claims, compared with the previous rules.
 //!
 //! `cargo test --release -p barrelstack-fragility --test all claims -- --nocapture` prints the tables of
 //! `validation/statistics.md`.
@@ -12,17 +12,18 @@ use barrelstack_motion::Random;
 
 const LEVEL: f64 = 0.95;
 
-/// Barrels of a stack.
+/// Number of barrels of a stack.
 const BARRELS: f64 = 8.0;
 
-/// Standard normal number (Box and Muller 1958).
+/// Draws a standard normal number (Box and Muller 1958).
 fn normal(random: &mut Random) -> f64 {
     let (radius, angle) = (random.uniform().max(1e-300), random.uniform());
     (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
 }
 
-/// Mean number of barrels that fall under a motion at three levels of shaking: a stack collapses if the motion is
-/// more severe than its capacity, which is random for every stack, and then two to eight barrels fall.
+/// Draws the mean number of barrels that fall under a motion at three levels of shaking.
+///
+/// A stack collapses if the motion is more severe than its capacity, which is random; then two to eight barrels fall.
 fn fallen(severity: f64, help: f64, random: &mut Random) -> f64 {
     let level = |level: f64, random: &mut Random| {
         let collapses = level + severity - help + 0.5 * normal(random) > 0.0;
@@ -40,8 +41,9 @@ fn student(differences: &[f64]) -> Interval {
     Interval { low: mean - half, high: mean + half }
 }
 
-/// Fractions of searches with a claim, and barrels claimed, by the previous and the present rule: of several
-/// protections the first has the effect `help`, the others none.
+/// Fractions of searches with a claim, and numbers of barrels claimed, by the previous and the present rule.
+///
+/// The first of several protections has the effect `help`; the others have none.
 struct Claims {
     before: f64,
     after: f64,
@@ -116,14 +118,14 @@ fn a_search_in_which_nothing_helps_rarely_claims_that_something_does() {
             percent(found.after),
             if help > 0.0 { percent(found.right) } else { "-".to_owned() }
         );
-        // Two of a hundred searches are allowed one by one, four with their scatter. Measured: 0 to 2 %.
+        // The allowed rate is two in a hundred searches, and four with the scatter of the simulation. Measured: 0 to 2 %.
         assert!(found.after <= 0.04, "{motions} motions: {}", found.after);
         assert!(found.before > 0.2, "the old rule claims: {}", found.before);
         assert!(help < 2.0 || found.right > 0.9, "what helps much is found: {}", found.right);
     }
 }
 
-/// Fractions of trials whose interval covers the mean difference, by the previous and the present rule.
+/// Returns the fractions of trials whose interval covers the mean difference, by the previous and the present rule.
 fn held(motions: usize, draw: &dyn Fn(&mut Random) -> f64, truth: f64) -> [f64; 2] {
     let mut random = Random::new(7);
     let mut held = [0_u32; 2];
@@ -162,7 +164,7 @@ fn intervals_of_paired_differences_hold_them_where_few_are_not_alike() {
     }
 }
 
-/// Weights of the inputs of the results below; the first two also interact.
+/// Weights of the inputs in the test functions below; the first two inputs also interact.
 const WEIGHTS: [f64; 5] = [1.0, 0.5, 0.2, 0.05, 0.0];
 
 /// Returns a block of results `[f(A), f(B), f(A with input 1 of B), …]`.
@@ -181,7 +183,7 @@ fn block(of: fn(f64) -> f64, random: &mut Random) -> Vec<f64> {
     [result(a), result(b)].into_iter().chain(exchanged).collect()
 }
 
-/// Returns percentiles of resampled blocks, the previous intervals of the total indices.
+/// Returns the previous intervals of the total indices: percentiles of resampled blocks.
 fn resampled(blocks: &[Vec<f64>], random: &mut Random) -> Vec<Interval> {
     let mut drawn: Vec<Vec<f64>> = vec![Vec::new(); WEIGHTS.len()];
     for _ in 0..100 {
@@ -262,7 +264,7 @@ fn intervals_of_sobol_indices_hold_them_for_weak_and_strong_inputs() {
                 for (at, index) in found.iter().enumerate() {
                     held[at][0] += u32::from(before[at].holds(truth[at][1]));
                     held[at][1] += u32::from(index.total_interval.holds(truth[at][1]));
-                    // The truth is itself known to some thousandths.
+                    // The true values are known to a few thousandths only.
                     let first = index.first_interval;
                     let first = Interval { low: first.low - 0.003, high: first.high + 0.003 };
                     held[at][2] += u32::from(first.holds(truth[at][0]));
@@ -280,7 +282,7 @@ fn intervals_of_sobol_indices_hold_them_for_weak_and_strong_inputs() {
                     ends[0],
                     ends[1]
                 );
-                // The fewest trials are 62, whose shares scatter by 3 %. Measured: 89 % and more.
+                // There are at least 62 trials, whose shares scatter by 3 %. Measured: at least 89 %.
                 assert!(after >= 0.85, "{name}, {blocks} blocks, total {at}: {after}");
                 assert!(first >= 0.82, "{name}, {blocks} blocks, first {at}: {first}");
             }
@@ -299,7 +301,7 @@ fn fewer_than_sixteen_blocks_say_nothing_and_no_interval_has_width_zero() {
     }
     few.push(block(of, &mut random));
     let found = sobol_indices(&few, LEVEL).unwrap();
-    // The last input has no effect, which sixteen blocks do not suffice to show.
+    // The last input has no effect; sixteen blocks are too few to show that.
     let nothing = found.last().unwrap();
     assert_eq!((nothing.first, nothing.total), (0.0, 0.0));
     assert!(nothing.total_interval.high > 0.3, "{nothing:?}");
@@ -316,7 +318,7 @@ fn up_to(k: u32, n: u32, p: f64) -> f64 {
     sum
 }
 
-/// Rule for heights: a height counts as low if few enough fall and the bound is low enough.
+/// The rule of studies of heights: a height is rated low if the share of collapse and its upper bound are small enough.
 #[test]
 fn a_height_above_the_limit_is_rarely_called_low_however_many_motions_there_are() {
     let low = |k: u32, n: u32| f64::from(k) / f64::from(n) <= 0.05 && at_most(k, n, LEVEL) <= 0.12;
@@ -341,7 +343,7 @@ fn a_height_above_the_limit_is_rarely_called_low_however_many_motions_there_are(
     for n in 1..400 {
         let wrong = passes(&low, n, 0.12);
         assert!(wrong <= 0.05 + 1e-9, "{n} motions: {wrong}");
-        // A height that passes without failures passes with any more motions without failures.
+        // A height that passes without failures also passes with more motions without failures.
         assert!(!low(0, n) || low(0, n + 1), "{n}");
     }
     // The previous rule passed a probability of 12 % more often with 34 motions than with 24.

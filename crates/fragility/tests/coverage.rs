@@ -26,8 +26,8 @@ fn coverage(mut band: impl FnMut(&mut Random) -> Vec<barrelstack_fragility::Inte
     held.map(|held| f64::from(held) / CAMPAIGNS as f64)
 }
 
-/// Requires a mean of 93 to 97 %, and `each` at every intensity, which allows for the scatter of
-/// a thousand campaigns (0.7 % of standard deviation).
+/// Asserts a mean coverage of 93 to 97 %, and a coverage within `each` at every intensity, which allows for the scatter
+/// of a thousand campaigns (standard deviation 0.7 %).
 #[expect(clippy::print_stdout, reason = "the measured coverage, shown with --nocapture")]
 fn assert_nominal(shares: [f64; 5], each: std::ops::RangeInclusive<f64>, what: &str) {
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
@@ -104,7 +104,7 @@ fn bands_over_records_hold_the_truth_however_the_cases_of_a_record_depend_on_eac
                 shares[2],
                 share(median)
             );
-            // Measured: 0.930 to 0.973 from 8 records on, 0.950 to 0.980 of 6; the scatter of a thousand
+            // Measured: 0.930 to 0.973 for 8 and more records, 0.950 to 0.980 for 6; the scatter of a thousand
             // campaigns is 0.007.
             let most = if records < 8 { 0.99 } else { 0.98 };
             assert!(shares.iter().all(|share| (0.925..=most).contains(share)), "{shares:?}");
@@ -121,7 +121,7 @@ fn intervals_of_a_mean_loss_hold_it_where_nine_in_ten_collapse() {
             let mut random = Random::new(7);
             let mut held = 0_u32;
             for _ in 0..CAMPAIGNS {
-                // A collapse loses a half, three quarters or all of the barrels.
+                // In a collapse, half, three quarters or all of the barrels are lost.
                 let lost = |random: &mut Random| {
                     let part = 0.5 + 0.25 * (3.0 * random.uniform()).floor().min(2.0);
                     if random.uniform() < chance { part } else { 0.0 }

@@ -1,4 +1,4 @@
-//! Fits against independent answers, invariances, and errors.
+//! Fits compared with independent results, invariances, and errors.
 
 use crate::common::eight_stripes;
 use barrelstack_fragility::{
@@ -79,7 +79,7 @@ fn records_that_never_fail_raise_the_median_instead_of_being_dropped() {
     let without = fit(&all, Dispersion::Free).unwrap().curve;
     all.extend([Evidence::capacity(Capacity::Above(0.8), 0); 2]);
     let with = fit(&all, Dispersion::Free).unwrap().curve;
-    // Two of six above 0.8: the fitted curve must leave about a third there.
+    // Two of six capacities are above 0.8, so the fitted curve must leave about a third there.
     near(with.probability(0.8), 2.0 / 3.0, 0.12); // measured 0.073
     assert!(with.median > 1.2 * without.median);
 }
@@ -114,9 +114,9 @@ fn data_that_determine_no_curve_are_refused_by_name() {
     assert_eq!(of(&[(0.2, 5, 0), (0.4, 5, 0)]), FitError::NothingFailed { largest: 0.4 });
     assert_eq!(of(&[(0.2, 5, 5), (0.4, 5, 5)]), FitError::EverythingFailed { smallest: 0.2 });
     assert_eq!(of(&[(0.2, 5, 0), (0.4, 5, 5)]), FitError::Separated { above: 0.2, below: 0.4 });
-    // A single level with some failures: the level is the whole capacity of both kinds.
+    // If failures and survivals overlap in a single level, the error states that level as both bounds.
     assert_eq!(of(&[(0.4, 5, 2)]), FitError::Separated { above: 0.4, below: 0.4 });
-    // Only one level is mixed: any steep enough curve through it explains all.
+    // Only one level has both failures and survivals, so any steep curve through it fits.
     let one_mixed = of(&[(0.2, 5, 0), (0.3, 5, 2), (0.4, 5, 5)]);
     assert_eq!(one_mixed, FitError::Separated { above: 0.3, below: 0.3 });
     assert_eq!(of(&[(0.2, 5, 4), (0.4, 5, 1)]), FitError::NotIncreasing);
@@ -208,7 +208,7 @@ proptest! {
         };
         match (fitted(1.0), fitted(unit)) {
             (Ok(one), Ok(other)) => {
-                // Measured: 2e-15 of both.
+                // Measured: 2e-15 for both.
                 prop_assert!((other.curve.median / one.curve.median / unit - 1.0).abs() < 1e-11);
                 prop_assert!((other.curve.dispersion / one.curve.dispersion - 1.0).abs() < 1e-11);
             }

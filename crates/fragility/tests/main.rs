@@ -1,6 +1,6 @@
-//! Fragility and rates: fits, intervals and their coverage.
+//! Tests of fragility curves and rates: fits, intervals and their coverage.
 //!
-//! One program, since each would compile and link what it tests anew.
+//! All tests are one program, so that the crates are linked only once.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

@@ -1,4 +1,4 @@
-//! Resampling and tests of fit and order, with seeded random numbers.
+//! Resampling, goodness of fit and monotony, with seeded random numbers.
 
 use crate::common::eight_stripes;
 use crate::drawing::draw;
@@ -39,7 +39,7 @@ fn replicates_of_counts_scatter_by_the_standard_errors() {
     assert!(drawn.band(0.95, &[0.4])[0].holds(found.curve.probability(0.4)));
 }
 
-/// Twenty records at six levels, each with its own capacity: the cases of a record agree.
+/// Returns evidence of twenty records at six levels; each record has one capacity, so that its cases agree.
 fn dependent(random: &mut Random) -> Vec<Evidence> {
     (0..20)
         .flat_map(|group| {
@@ -58,14 +58,14 @@ fn leaving_whole_records_out_sees_the_dependence_that_counts_hide() {
     assert_eq!(whole.groups(), 20);
     let interval = whole.median(0.95);
     let half = 0.5 * (interval.high / interval.low).ln() / 2.093;
-    // The true error is that of 20 capacities, β/√20 = 0.089; 120 independent cases claim less.
+    // The true error is that of 20 capacities, β/√20 = 0.089; a fit to 120 independent cases gives less.
     assert!(half > 1.3 * naive.median_error, "{half} against {}", naive.median_error); // ratio 1.9
     assert!((0.06..0.13).contains(&half), "{half}");
 }
 
 #[test]
 fn a_curve_that_hangs_on_one_record_gets_no_interval() {
-    // One overlap in five records: without one of the two there is no curve.
+    // Only two of five records overlap; without one of the two there is no curve.
     let all: Vec<Evidence> = [(0.3, false), (0.4, false), (0.5, true), (0.45, false), (0.44, true)]
         .iter()
         .enumerate()
@@ -85,7 +85,7 @@ fn counts_from_a_curve_fit_it_and_counts_from_a_mixture_do_not() {
     let p = goodness_by_simulation(&good, Dispersion::Free, 200, || random.uniform()).unwrap();
     assert!(p > 0.5, "{p}"); // measured 0.97
 
-    // Half of the cases fail early, the rest late: a plateau that no lognormal curve has.
+    // Half of the cases fail early and the rest late, which gives a plateau that no lognormal curve has.
     let bad = counts(&[(0.1, 40, 0), (0.2, 40, 20), (0.4, 40, 20), (0.8, 40, 20), (1.6, 40, 40)]);
     let found = fit(&evidence(&bad), Dispersion::Free).unwrap();
     assert!(goodness(&bad, &found).p < 1e-3);
@@ -139,7 +139,7 @@ fn an_island_of_failure_is_found_and_its_levels_are_named() {
     let falls: Vec<_> = found.significant(0.05).collect();
     assert_eq!(falls.len(), 1);
     assert_eq!((falls[0].from.intensity, falls[0].to.intensity), (0.6, 1.0));
-    // Pool-adjacent-violators: 14, 15, 2 and 4 of 80 become one chance.
+    // Pooling of adjacent violators: 14, 15, 2 and 4 of 80 get one probability.
     assert!(found.isotonic[1..5].iter().all(|p| (p - 35.0 / 80.0).abs() < 1e-15));
     assert!(found.isotonic.windows(2).all(|pair| pair[0] <= pair[1]));
 }
@@ -175,7 +175,7 @@ fn records_that_stand_again_are_listed_whatever_the_statistics() {
     assert_eq!(returns(cases), [Returned { group: 0, failed: 0.4, stood: 0.8 }]);
 }
 
-/// Failure that depends on one quantity alone, and a correlated second one.
+/// Returns a quantity on which failure depends, a correlated second quantity, and the failures.
 fn two_measures(random: &mut Random) -> (Vec<f64>, Vec<f64>, Vec<bool>) {
     let (mut cause, mut companion, mut failed) = (vec![], vec![], vec![]);
     for _ in 0..400 {
@@ -200,7 +200,7 @@ fn the_measure_that_causes_failure_is_efficient_and_sufficient_and_its_companion
     assert!(by_cause.sufficiency.unwrap() > 0.05); // measured 0.6
     assert!(by_companion.sufficiency.unwrap() < 1e-6);
     assert!(by_cause.concordance > by_companion.concordance && by_companion.concordance > 0.5);
-    // A measure in other units holds no further information.
+    // The same measure in other units adds no information.
     let same: Vec<f64> = cause.iter().map(|x| 100.0 * x).collect();
     assert_eq!(failure_against(&pair(&cause), Some(&same)).unwrap().sufficiency, None);
 }

@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
-/// Period (s) below which the correlation has another branch.
+/// Period (s) below which the correlation model uses another formula.
 const SHORT: f64 = 0.109;
 
-/// Returns the correlation of the residuals of ln Sa at two periods (s) of one horizontal direction
-/// (Baker and Jayaram 2008, Earthquake Spectra 24:299-317; for 0.01 to 10 s).
+/// Returns the correlation of the residuals of ln Sa at two periods (s), for one horizontal direction.
+///
+/// The model is that of Baker and Jayaram (2008, Earthquake Spectra 24:299-317), valid from 0.01 to 10 s.
 pub fn spectral_correlation(one: f64, other: f64) -> f64 {
     let (low, high) = if one < other { (one, other) } else { (other, one) };
     if low == high {

@@ -4,33 +4,32 @@ use barrelstack_motion::{MotionError, Random};
 
 use crate::target::SelectionTarget;
 
-/// Number of sets of simulated spectra, each of which gives a set of records; the best is kept.
+/// Number of trials: each selects a set of records for other simulated spectra, and the best set is kept.
 const TRIALS: usize = 5;
-/// Weight of the error of the standard deviation relative to that of the mean.
+/// Weight of the error of the standard deviation, relative to that of the mean.
 const SPREAD_WEIGHT: f64 = 2.0;
-/// Weight of that error for a target without spread, which selection by distance from the mean cannot reach.
+/// Weight of the error of the standard deviation for a target without spread, which no set of records can reach.
 const NO_SPREAD_WEIGHT: f64 = 0.1;
-/// Largest number of rounds of exchanges; they end when no exchange helps.
+/// Largest number of rounds of exchanges; they end earlier when no exchange reduces the error.
 const ROUNDS: usize = 20;
 
 /// A record available for selection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// Its name, for messages.
+    /// Name of the record in messages.
     pub name: String,
     /// Pseudo-accelerations (m/s²) at the target's periods.
     pub spectrum: Vec<f64>,
-    /// Candidates of one group are alternatives, such as the records of one earthquake: at most
-    /// [`Choosing::most_of_group`] of them are selected.
+    /// Group of the record, such as its earthquake; at most [`Choosing::most_of_group`] records of one group are selected.
     pub group: String,
 }
 
-/// Size of the set, and its limits.
+/// Settings of a selection: size of the set and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choosing {
-    /// Size of the set, at least 2.
+    /// Number of records to select, at least 2.
     pub count: usize,
-    /// Smallest and largest factor on a record.
+    /// Smallest and largest scale factor of a record.
     pub scale: [f64; 2],
     /// Largest number of candidates of one group; `None` for no limit.
     pub most_of_group: Option<usize>,
@@ -38,27 +37,27 @@ pub struct Choosing {
     pub seed: u64,
 }
 
-/// One record of the set.
+/// Selected record with its scale factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
-    /// Its index among the candidates.
+    /// Index of the record among the candidates.
     pub candidate: usize,
-    /// Its scale factor.
+    /// Scale factor of the record.
     pub scale: f64,
 }
 
-/// The selected set and its fit to the target.
+/// Selected set of records and its fit to the target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
-    /// The records, in the order of the candidates.
+    /// Selected records, in the order of the candidates.
     pub chosen: Vec<Chosen>,
     /// Mean of ln Sa of the set at each period.
     pub mean: Vec<f64>,
     /// Standard deviation of ln Sa of the set, with `n − 1`.
     pub deviation: Vec<f64>,
-    /// Number of candidates within the limits of scale.
+    /// Number of candidates that reach the mean of the target with a scale factor within the limits.
     pub eligible: usize,
-    /// Number of rounds of exchanges.
+    /// Number of rounds of exchanges that were made.
     pub rounds: usize,
 }
 
@@ -69,8 +68,8 @@ impl Selection {
         errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
     }
 
-    /// Returns the largest relative error of the standard deviation over the periods that have one; absolute
-    /// if the target has no spread.
+    /// Returns the largest relative error of the standard deviation over the periods at which the target has a spread;
+    /// the largest absolute error if the target has no spread.
     pub fn deviation_error(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let pairs = self.deviation.iter().zip(target.deviation());
@@ -81,8 +80,8 @@ impl Selection {
         })
     }
 
-    /// Returns the error by which sets are compared: an error of the median counts like one of the standard
-    /// deviation twice as large.
+    /// Returns the error by which sets are compared, in which an error of the median counts twice as much as one of the
+    /// standard deviation.
     fn worst(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let deviation = if spread { 0.5 * self.deviation_error(target) } else { 0.0 };
@@ -96,12 +95,12 @@ const SMALLEST: f64 = 0.01;
 /// Selects records whose spectra have the target's mean and spread (Jayaram, Lin and Baker 2011,
 /// Earthquake Spectra 27:797-815).
 ///
-/// If the target is conditional, every record is scaled to it at the given period; else to the
-/// mean of ln Sa of its simulated spectrum.
-/// A set is a function of target, candidates and settings; of equal choices the first is taken.
+/// If the target is conditional, every record is scaled to the target at the condition's period; otherwise to the mean
+/// of ln Sa of its simulated spectrum.
+/// The same target, candidates and settings always give the same set; of equally good candidates the first is taken.
 ///
 /// # Errors
-/// If the settings are out of range, a candidate has another number of periods, or too few
+/// If the settings are out of range, a candidate has another number of periods than the target, or too few
 /// candidates lie within the limits.
 pub fn select(
     target: &SelectionTarget,
@@ -178,23 +177,23 @@ fn check(
     Ok(())
 }
 
-/// A candidate before scaling.
+/// Candidate before scaling.
 struct Row {
     candidate: usize,
-    /// ln Sa.
+    /// ln Sa at each period.
     spectrum: Vec<f64>,
-    /// The quantity that scaling matches: ln Sa at the given period, or its mean.
+    /// Level that scaling matches to the target: ln Sa at the condition's period, or the mean of ln Sa.
     level: f64,
     group: usize,
 }
 
-/// All candidates, before scaling.
+/// All candidates before scaling, with the limits of scaling.
 struct Pool {
     rows: Vec<Row>,
     groups: usize,
-    /// Index of the given period.
+    /// Index of the condition's period.
     given: Option<usize>,
-    /// Smallest and largest logarithm of a factor.
+    /// Logarithms of the smallest and the largest scale factor.
     limits: [f64; 2],
     most: usize,
 }
@@ -208,7 +207,7 @@ impl Pool {
             rows: Vec::new(),
             groups: names.len(),
             given: target.condition().map(|(at, _)| at),
-            // The margin keeps a factor at the limit within it.
+            // The margin admits a factor that equals a limit up to rounding.
             limits: [libm::log(choosing.scale[0]) - 1e-12, libm::log(choosing.scale[1]) + 1e-12],
             most: choosing.most_of_group.unwrap_or(usize::MAX),
         };
@@ -230,13 +229,13 @@ impl Pool {
         (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
     }
 
-    /// Returns the number of candidates that reach the target's mean.
+    /// Returns the number of candidates that reach the target's mean with a scale factor within the limits.
     fn eligible(&self, target: &SelectionTarget) -> usize {
         let level = self.level(target.mean());
         (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()
     }
 
-    /// Returns the available candidate with the smallest squared distance from a spectrum.
+    /// Returns the candidate with the smallest squared distance from a spectrum among those that may join the set.
     fn nearest(&self, spectrum: &[f64], level: f64, set: &Set<'_>) -> Option<usize> {
         let mut best = (f64::INFINITY, None);
         for (k, row) in self.rows.iter().enumerate() {
@@ -254,12 +253,12 @@ impl Pool {
     }
 }
 
-/// The set so far, with the sums for its moments.
+/// Set of records during selection, with the sums from which its moments follow.
 struct Set<'a> {
     target: &'a SelectionTarget,
     /// Rows of the pool, each with the level to which it is scaled.
     members: Vec<(usize, f64)>,
-    /// Sums of ln Sa minus the target's mean, which preserves digits.
+    /// Sum over the members of ln Sa minus the target's mean, at each period; the difference preserves digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.
@@ -290,7 +289,7 @@ impl<'a> Set<'a> {
         }
     }
 
-    /// `true` if a row may join when the member at `leaving` leaves.
+    /// `true` if a row may join the set, given that the member at `leaving` leaves it.
     fn takes(&self, pool: &Pool, row: usize, leaving: Option<usize>) -> bool {
         let group = pool.rows[row].group;
         let mut same = 0;
@@ -306,8 +305,10 @@ impl<'a> Set<'a> {
         same < pool.most
     }
 
-    /// Returns the weighted sum of the squared errors of mean and standard deviation; for the largest error,
-    /// of their eighth powers, with the standard deviation relative to the target.
+    /// Returns the error that exchanges minimize: the weighted sum of squared errors of mean and standard deviation.
+    ///
+    /// To minimize the largest error, it is the sum of their eighth powers, with the standard deviation relative to the
+    /// target.
     fn error(&self) -> f64 {
         (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
     }
@@ -319,12 +320,13 @@ impl<'a> Set<'a> {
         if !self.largest {
             return mean * mean + self.weight * apart * apart;
         }
-        // As in [`Selection::worst`]; in hundredths, so that the powers do not underflow.
+        // Errors as in [`Selection::worst`], in percent so that the powers do not underflow.
         let spread = if wanted > SMALLEST { 50.0 * apart / wanted } else { 0.0 };
         eighth_power(100.0 * mean) + eighth_power(spread)
     }
 
-    /// Exchanges each member for the candidate that lowers the error most; returns the number of rounds.
+    /// Exchanges each member for the candidate that lowers the error most, until no exchange helps or [`ROUNDS`] are made;
+    /// returns the number of rounds.
     fn improve(&mut self, pool: &Pool) -> usize {
         for round in 1..=ROUNDS {
             let mut changed = false;
@@ -354,7 +356,7 @@ impl<'a> Set<'a> {
         ROUNDS
     }
 
-    /// Returns the error with one more spectrum, stopping once it exceeds `limit`.
+    /// Returns the error of the set with one more spectrum; the sum stops early once it exceeds `limit`.
     fn error_with(&self, spectrum: &[f64], shift: f64, limit: f64) -> f64 {
         let mut error = 0.0;
         for (k, (value, mean)) in spectrum.iter().zip(self.target.mean()).enumerate() {

@@ -10,17 +10,17 @@ pub const PERIODS: [f64; 22] = [
     2.5, 3.0, 4.0, 5.0, 7.5,
 ];
 
-/// Spectral acceleration given at one period.
+/// Condition of a conditional spectrum: the spectral acceleration at one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Period (s), one of the target's.
+    /// Period (s); must be one of the target's periods.
     pub period: f64,
-    /// Pseudo-acceleration there (m/s²).
+    /// Pseudo-acceleration at the period (m/s²).
     pub acceleration: f64,
 }
 
 impl Condition {
-    /// Creates a condition of Sa (m/s²) a number of standard deviations of ln Sa above a median.
+    /// Creates a condition whose ln Sa lies `epsilon` standard deviations above that of the median Sa (m/s²).
     pub fn at_epsilon(period: f64, median: f64, deviation: f64, epsilon: f64) -> Self {
         Self { period, acceleration: median * libm::exp(deviation * epsilon) }
     }
@@ -40,8 +40,10 @@ pub struct SelectionTarget {
 
 impl SelectionTarget {
     /// Creates a target from the medians (m/s²) and standard deviations of ln Sa of a ground-motion model at ascending
-    /// periods (s); with a condition, the conditional spectrum (Baker 2011, Journal of Structural
-    /// Engineering 137:322-331):
+    /// periods (s).
+    ///
+    /// With a condition, the target is the conditional spectrum (Baker 2011, Journal of Structural Engineering
+    /// 137:322-331):
     ///
     /// ```text
     /// ε   = (ln Sa* − ln median*)/σ*
@@ -104,7 +106,7 @@ impl SelectionTarget {
         Ok(Self { periods: periods.to_vec(), mean, deviation, covariance, condition })
     }
 
-    /// Creates the target of a spectrum without spread.
+    /// Creates a target that has the values of a spectrum and no spread.
     ///
     /// # Errors
     /// As [`SelectionTarget::new`].
@@ -147,8 +149,10 @@ impl SelectionTarget {
         (0..count).map(|_| one(random)).collect()
     }
 
-    /// Returns the lower triangle `L` with `L Lᵀ` the covariance; a given period, or one that depends on those
-    /// before, contributes nothing. Published correlations are rounded, so small negative pivots occur.
+    /// Returns the lower triangular Cholesky factor `L` of the covariance, which is `L Lᵀ`.
+    ///
+    /// The column of the condition's period, and of a period that depends on those before, is zero. Published
+    /// correlations are rounded, so small negative pivots occur.
     fn cholesky(&self) -> Vec<f64> {
         let n = self.periods.len();
         let mut root = vec![0.0; n * n];

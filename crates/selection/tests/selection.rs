@@ -1,4 +1,4 @@
-//! Targets and sets of records: published correlations, the conditional spectrum, and the fit of sets.
+//! Selection of records: published correlations, the conditional spectrum, and the fit of selected sets.
 
 #![allow(
     clippy::unwrap_used,
@@ -11,8 +11,10 @@ use barrelstack_selection::{
     Candidate, Choosing, Condition, Selection, SelectionTarget, select, spectral_correlation,
 };
 
-/// Median (g) and standard deviation of ln Sa of Campbell and Bozorgnia (2008) for M 7 at 10 km, Vs30
-/// 400 m/s, vertical strike slip: the example of Jayaram, Lin and Baker (2011); from `OpenQuake` 3.24.
+/// Period (s), median (g) and standard deviation of ln Sa for the example of Jayaram, Lin and Baker (2011).
+///
+/// The model is that of Campbell and Bozorgnia (2008) for M 7 at 10 km, Vs30 400 m/s, vertical strike slip; the numbers
+/// are from `OpenQuake` 3.24.
 const MODEL: [(f64, f64, f64); 19] = [
     (0.05, 0.340_912, 0.517_05),
     (0.075, 0.428_207, 0.538_74),
@@ -44,7 +46,7 @@ fn target(epsilon: Option<f64>) -> SelectionTarget {
     SelectionTarget::new(&periods, &median, &sigma, condition).unwrap()
 }
 
-/// Spectra drawn from the model, correlated over the periods as published.
+/// Returns spectra drawn from the model, with the published correlation between periods.
 fn library(count: usize) -> Vec<Candidate> {
     let n = MODEL.len();
     // Cholesky factor of the correlations; these are rounded, so the diagonal gets a small increment.
@@ -73,7 +75,7 @@ fn choosing(count: usize) -> Choosing {
 
 #[test]
 fn correlations_are_those_of_an_independent_implementation() {
-    // OpenQuake 3.24, BakerJayaram2008; one pair or more in each branch of the model.
+    // From OpenQuake 3.24, BakerJayaram2008; at least one pair in each branch of the model.
     for (one, other, expected) in [
         (0.01, 0.05, 0.947_630_922_693),
         (0.03, 0.1, 0.918_969_949_548),
@@ -129,7 +131,7 @@ fn a_set_meets_a_published_target_in_mean_and_spread() {
     };
     // Measured: 1.3 % and 2.6 %.
     assert!(near(&found));
-    // For any seed, and from a fifth of the records: measured 2.0 % and 4.1 % at most.
+    // For several seeds, and from a fifth of the records; measured at most 2.0 % and 4.1 %.
     for seed in 2..6 {
         let choosing = Choosing { seed, ..choosing(40) };
         assert!(near(&select(&target, &library[..400], &choosing).unwrap()));
@@ -165,7 +167,7 @@ fn a_set_meets_a_target_without_condition_and_a_spectrum_without_spread() {
     let mean = SelectionTarget::of_spectrum(&table, &periods).unwrap();
     let found = select(&mean, &library, &choosing(10)).unwrap();
     println!("mean: {:.4}, {:.4}", found.median_error(&mean), found.deviation_error(&mean));
-    // Without choice the spread is 0.5 and more.
+    // Without selection the standard deviation is at least 0.5.
     assert!(found.median_error(&mean) < 0.08 && found.deviation_error(&mean) < 0.4);
 }
 

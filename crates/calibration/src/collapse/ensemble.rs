@@ -10,20 +10,20 @@ use barrelstack_motion::Random;
 
 use super::observed::{Mode, Time};
 
-/// Observable result of a simulated case.
+/// What an observer could record of a simulated case: mode and times of the events.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Course {
-    /// Mode.
+    /// Mode of collapse, or that the stack stands.
     pub(super) mode: Mode,
     /// Time at which the first body left its seat.
     pub(super) loss: Time,
-    /// Time at which each barrel had fallen, by name, in the order of the bodies.
+    /// Name of each barrel and the time at which it had fallen, in the order of the bodies.
     pub(super) falls: Vec<(String, Time)>,
 }
 
 impl Course {
     fn of(case: &CaseResult) -> Option<Self> {
-        // A tested stack stood at rest before: parameters with which it falls at rest are impossible.
+        // The tested stack stood before it was shaken, so parameters with which it falls at rest are impossible.
         if case.fell_at_rest() {
             return None;
         }
@@ -38,7 +38,7 @@ impl Course {
         Some(Self { mode, loss, falls: case.falls.iter().map(fall).collect() })
     }
 
-    /// Returns the first barrel to fall, and the time.
+    /// Returns the first barrel to fall and the time of its fall; `None` if none falls.
     pub(super) fn first_fall(&self) -> Option<(&str, f64)> {
         let fallen = self.falls.iter().filter_map(|(barrel, time)| match time {
             Time::At(time) => Some((barrel.as_str(), *time)),
@@ -53,9 +53,9 @@ impl Course {
     }
 }
 
-/// Simulates all cases on all cores, in their order; `None` for a case that cannot be simulated.
+/// Simulates all cases on all cores and returns their courses in order; `None` for a case that cannot be simulated.
 ///
-/// `done` is called repeatedly with the number of completed cases and may stop them; the result is then `None`.
+/// `done` is called repeatedly with the number of completed cases and may cancel the rest; the result is then `None`.
 pub(super) fn simulate(
     cases: Vec<Prepared>,
     lanes: Option<Width>,
@@ -68,8 +68,9 @@ pub(super) fn simulate(
     Some(results.iter().map(Course::of).collect())
 }
 
-/// Returns a scenario with every rack and barrel offset by normal deviates of a standard deviation (m), since no two
-/// stacks are built alike.
+/// Returns a scenario with random offsets of every rack and barrel, since no two stacks are built alike.
+///
+/// The offsets are normally distributed with the standard deviation `scatter` (m).
 pub(super) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> Scenario {
     let mut changed = scenario.clone();
     let Scene::Stack { stack, .. } = &mut changed.scene else { return changed };

@@ -12,9 +12,10 @@ use super::observed::{Observed, Time};
 pub struct Errors {
     /// Standard deviation (s) of a time read from a video.
     pub reading: f64,
-    /// Its increase per second after the first loss of seat: the course of a collapse
-    /// departs more and more from that of any model. Falls of the eight barrels two seconds after the loss of seat
-    /// shift by half a second when one contact parameter changes by 10 %.
+    /// Increase of that standard deviation (s) per second after the first loss of seat.
+    ///
+    /// The course of a collapse departs more and more from that of any model: in a stack of eight barrels, falls two
+    /// seconds after the loss of seat shift by half a second when one contact parameter changes by 10 %.
     pub growth: f64,
     /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that is not modeled.
     pub other: f64,
@@ -29,7 +30,8 @@ impl Default for Errors {
 impl Errors {
     /// Returns the log-likelihood of an observation.
     ///
-    /// Labels that agree have the probability 1 − ε, others ε. A time t given a simulated one s has the density
+    /// With ε = `other`, a mode or barrel has the probability 1 − ε if it agrees with the simulated one, else ε. An
+    /// observed time t has, given the simulated time s, the density
     /// (1 − ε) N(t; s, σ²) + ε/T, with σ = reading + growth · (time since the loss of seat) and T the
     /// duration of observation.
     pub(super) fn log_likelihood(&self, observed: &Observed, course: &Course) -> f64 {

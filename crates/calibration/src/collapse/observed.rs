@@ -6,10 +6,10 @@ use barrelstack_input::measured::Entry;
 
 use crate::{CalibrateError, Table};
 
-/// The word for a barrel or a stack that still stood at the end of observation.
+/// Cell text for a barrel or a stack that still stood at the end of the observation.
 const STANDS: &str = "stands";
 
-/// Suffix of the name of a barrel in the header of its column.
+/// Suffix after the name of a barrel in the header of its column.
 const FELL: &str = " fell";
 
 /// Columns that do not belong to a barrel.
@@ -19,42 +19,44 @@ const COLUMNS: [&str; 6] =
 /// Time of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Time {
-    /// At this time (s).
+    /// It happened at this time (s).
     At(f64),
-    /// Not before the end of observation.
+    /// It did not happen before the end of the observation.
     Never,
 }
 
-/// Result of a stack.
+/// Whether a stack stood, or the mode in which it collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mode {
-    /// It stood.
+    /// The stack stood.
     Stands,
-    /// It collapsed in this mode.
+    /// The stack collapsed in this mode.
     Collapse(CollapseMode),
 }
 
-/// Observation of one test.
+/// Observations of one test; `None` for a quantity that was not observed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Observed {
-    /// The scenario of the test, if the file names one.
+    /// Scenario of the test, if the file names one.
     pub(super) scenario: Option<String>,
-    /// Result of the stack.
+    /// Mode of collapse, or that the stack stood.
     pub(super) mode: Option<Mode>,
-    /// The first barrel to fall.
+    /// Name of the first barrel to fall.
     pub(super) first_barrel: Option<String>,
     /// Time at which the first body left its seat.
     pub(super) loss: Option<Time>,
     /// Time at which the first barrel had fallen.
     pub(super) first_fall: Option<Time>,
-    /// Times at which barrels had fallen, by name.
+    /// Names of barrels, and the times at which they had fallen.
     pub(super) falls: Vec<(String, Time)>,
     /// Duration of observation (s), from the start of the motion.
     pub(super) until: f64,
 }
 
 impl Observed {
-    /// Reads every row of a table; `margin` (s) is added to the last time of a row without an end of observation.
+    /// Reads every row of a table, and returns the tests with warnings.
+    ///
+    /// Where a row states no end of the observation, the end is its last time plus `margin` (s).
     pub(super) fn read(
         table: &Table,
         margin: f64,
@@ -92,8 +94,8 @@ impl Observed {
         }
         if tests.iter().any(|test| !test.falls.is_empty() && test.repeats_itself()) {
             warnings.push(
-                "\"first fall\" and \"first barrel\" are left out where fall times of barrels are given, \
-                 which say the same"
+                "\"first fall\" and \"first barrel\" are ignored in rows that give fall times of barrels, \
+                 which contain the same information"
                     .to_owned(),
             );
         }
@@ -107,14 +109,14 @@ impl Observed {
         self.first_fall.is_some() || self.first_barrel.is_some()
     }
 
-    /// Returns all times, with the column of each.
+    /// Returns every observed time with the name of its column.
     fn times(&self) -> impl Iterator<Item = (String, Time)> + '_ {
         let own = [("loss of seat", self.loss), ("first fall", self.first_fall)];
         let own = own.into_iter().filter_map(|(name, time)| Some((name.to_owned(), time?)));
         own.chain(self.falls.iter().map(|(barrel, time)| (format!("{barrel}{FELL}"), *time)))
     }
 
-    /// Sets the end of observation.
+    /// Sets the end of the observation, and checks that nothing was observed after it.
     fn watched(
         mut self,
         table: &Table,
@@ -136,9 +138,9 @@ impl Observed {
             if let Some((column, _)) =
                 self.times().find(|(_, time)| matches!(time, Time::At(time) if *time > until))
             {
-                let expected = format!("a time up to the end of the watch at {until} s");
+                let expected = format!("a time up to the end of the observation at {until} s");
                 let found = table.cell(row, &column);
-                let remedy = "correct it, or the column \"until\"";
+                let remedy = "correct this time, or the column \"until\"";
                 return Err(table.at(row, &column, &expected, &found, remedy).into());
             }
             self.until = until;
@@ -148,9 +150,9 @@ impl Observed {
             || self.times().any(|(_, time)| time == Time::Never)
             || last == 0.0;
         if open {
-            let remedy = "what stands, and a mode without a time, say nothing without it";
+            let remedy = "it is needed where something stands, or no time is given";
             return Err(table
-                .at(row, "until", "how long the test was watched", "nothing", remedy)
+                .at(row, "until", "how long the test was observed", "nothing", remedy)
                 .into());
         }
         self.until = last + margin;
@@ -158,7 +160,7 @@ impl Observed {
     }
 }
 
-/// Returns the times of a column, if it exists.
+/// Returns the times of a column; `None` for each empty cell, and for all rows if there is no such column.
 fn times(table: &Table, name: &str) -> Result<Vec<Option<Time>>, CalibrateError> {
     if !table.has(name) {
         return Ok(vec![None; table.count()]);
@@ -190,6 +192,6 @@ fn mode(table: &Table, row: usize) -> Result<Option<Mode>, CalibrateError> {
     }
     let names = modes.map(CollapseMode::name).join(", ");
     let expected = format!("{names} or {STANDS}");
-    let remedy = "name the mode so, or leave it empty";
+    let remedy = "use one of these names, or leave the cell empty";
     Err(table.at(row, "mode", &expected, &format!("\"{cell}\""), remedy).into())
 }

@@ -8,7 +8,7 @@ use super::sampler::Posterior;
 use super::{Trial, alike};
 use crate::figures::measured;
 
-/// Quantiles of the weight between which simulated times are drawn.
+/// Quantiles of the posterior weight between which a bar shows the simulated times.
 const MIDDLE: [f64; 2] = [0.05, 0.95];
 
 /// Draws the posterior weight of the observed modes, and the times of the observed events.
@@ -23,7 +23,7 @@ pub(super) fn pictures(
         .collect()
 }
 
-/// Returns the courses of a test.
+/// Returns the courses of the test at index `at`.
 fn of<'a>(
     courses: &'a [Option<Course>],
     at: usize,
@@ -45,7 +45,8 @@ fn modes(
             rows.bar(format!("test {}: {name}", at + 1), [0.0, share]);
         }
     }
-    let caption = "How much of the weight of the simulations goes as the test was observed to go.";
+    let caption =
+        "Posterior weight of the simulations that reproduce the observed mode of each test.";
     let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share of the weight", "") };
     rows.figure("collapse-modes", caption, x, None)
 }
@@ -82,12 +83,12 @@ fn times(
             row(&format!("{barrel} fell"), *time, &|course| course.fall(barrel));
         }
     }
-    let caption = "When it was observed, and when it happens in the simulations: the middle 90 % of the weight of those in \
-                   which it does. A row without a bar happens in none.";
+    let caption = "Observed times of the events, and bars for their simulated times: the central 90 % of the posterior weight of \
+                   the simulations in which the event happens. A row without a bar: it happens in none.";
     rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(observed))
 }
 
-/// Returns the quantiles that enclose the middle of the weight; NaN without weight.
+/// Returns the quantiles [`MIDDLE`] of values with weights; NaN if the weights are zero.
 fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
     weighed.sort_by(|one, other| one.0.total_cmp(&other.0));
     let all: f64 = weighed.iter().map(|(_, weight)| weight).sum();
@@ -101,7 +102,7 @@ fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
     })
 }
 
-/// Rows with a name and a bar each.
+/// Rows of a figure, each with a name and a bar.
 #[derive(Default)]
 struct Rows {
     names: Vec<String>,
@@ -111,7 +112,7 @@ struct Rows {
 
 impl Rows {
     fn bar(&mut self, name: String, [from, to]: [f64; 2]) {
-        // The gap separates every bar from the next.
+        // NaN breaks the line between one bar and the next.
         self.x.extend([from, to, f64::NAN]);
         self.y.extend([Axis::row(self.names.len()); 3]);
         self.names.push(name);

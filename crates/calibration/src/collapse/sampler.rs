@@ -1,12 +1,12 @@
-//! Iterated importance sampling in a box: the samples of all rounds count in the result.
+//! Adaptive multiple importance sampling of a posterior in a box.
 //!
-//! Adaptive multiple importance sampling (Cornuet, Marin, Mira and Robert 2012): a first round covers
-//! the box (Latin hypercube), each further round samples around likely points, and the
-//! weight of a sample is its likelihood over the joint density of all rounds' proposals.
+//! The method is that of Cornuet, Marin, Mira and Robert (2012): a first round covers the box (Latin
+//! hypercube), each further round samples around likely points, and the weight of a sample is its
+//! likelihood over the joint density of all rounds' proposals. The samples of all rounds count.
 //! A likelihood that is itself random, as that of one simulated course of a chaotic collapse, leaves
 //! the weights correct: the randomness is one more coordinate, sampled from its own distribution.
-//! For a handful of parameters this takes a page; samplers on crates.io require gradients, or chains of
-//! thousands of steps that cannot run in parallel.
+//! It is implemented here because samplers on crates.io require gradients, or chains of thousands of
+//! steps that cannot run in parallel.
 
 use barrelstack_dynamics::math;
 use barrelstack_motion::Random;
@@ -20,11 +20,11 @@ const ROUNDS: usize = 5;
 /// Fraction of a later round that is still sampled from the whole box, which bounds the weights.
 const WIDE: f64 = 0.2;
 
-/// Smallest effective number of samples of a proposal or a result; the likelihood is raised to a power
-/// below one until it is reached.
+/// Smallest effective number of samples of a proposal or a result. If there are fewer, the likelihood is
+/// raised to a power below one.
 const FEWEST: f64 = 40.0;
 
-/// One sample: a point of the box `[−1, 1]ⁿ`, and the seed of everything else that is random in it.
+/// One sample: a point of the box `[−1, 1]ⁿ`, and the seed of all other random numbers of its simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draw {
     pub(super) point: Vec<f64>,
@@ -36,8 +36,8 @@ pub(super) struct Draw {
 pub(super) struct Posterior {
     pub(super) draws: Vec<Draw>,
     pub(super) weights: Vec<f64>,
-    /// The power to which the likelihood was raised to reach the effective number of samples; one if
-    /// not necessary. Below one, intervals are wider than with enough samples.
+    /// Power to which the likelihood was raised to reach the smallest effective number of samples, usually one.
+    /// Below one, intervals are wider than with enough samples.
     pub(super) power: f64,
 }
 
@@ -53,8 +53,8 @@ struct Proposal {
 
 /// Samples the posterior of a uniform prior on the box with about `count` samples.
 ///
-/// `evaluate` returns the log-likelihood of each of a batch of samples; `−∞` if it is
-/// zero. Returns `None` if no sample has any likelihood.
+/// `evaluate` returns the log-likelihood of each sample of a batch, `−∞` for a likelihood of zero.
+/// Returns `None` if every sample has a likelihood of zero.
 pub(super) fn sample(
     dimensions: usize,
     count: usize,
@@ -90,7 +90,7 @@ pub(super) fn sample(
     Some(Posterior { draws, weights, power })
 }
 
-/// Adds a seed to each point, different for every position in the list.
+/// Gives each point a seed, which depends on its index; the first point has the index `from`.
 fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     let seeded = |(at, point)| Draw {
         point,
@@ -99,7 +99,7 @@ fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     points.into_iter().enumerate().map(seeded).collect()
 }
 
-/// Latin hypercube: every coordinate has one point in each of `count` equal parts.
+/// Returns a Latin hypercube: of each coordinate, one point lies in each of `count` equal parts of the range.
 fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f64>> {
     let mut points = vec![vec![0.0; dimensions]; count];
     for at in 0..dimensions {
@@ -140,7 +140,8 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     Some(weights.into_iter().map(|weight| weight / sum).collect())
 }
 
-/// Returns the weights with the largest power, up to one, that leaves enough effective samples, and that power.
+/// Returns the weights, with the likelihood raised to the largest power, at most one, that leaves enough effective
+/// samples; and that power.
 fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     let whole = weights(logs, densities, 1.0)?;
     if effective(&whole) >= FEWEST {
@@ -234,12 +235,12 @@ fn mirrored_normal(x: f64, center: f64, width: f64) -> f64 {
         let off = (x - center) / width;
         math::exp(-0.5 * off * off) / (width * (2.0 * std::f64::consts::PI).sqrt())
     };
-    // Images further out are negligible.
+    // The kernel and its reflections; those further out are negligible.
     normal(x) + normal(2.0 - x) + normal(-2.0 - x) + normal(4.0 + x) + normal(x - 4.0)
 }
 
 impl Posterior {
-    /// Creates the posterior of samples from the box itself.
+    /// Creates the posterior of samples that were drawn uniformly from the box.
     #[cfg(test)]
     pub(super) fn of(draws: Vec<Draw>, logs: &[f64]) -> Option<Self> {
         let (weights, power) = flattened(logs, &vec![1.0; draws.len()])?;

@@ -1,4 +1,4 @@
-//! A scenario with changed constants, simulated at the times of a recording.
+//! Simulation of a scenario with changed constants, sampled at the times of a recording.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -12,7 +12,7 @@ use barrelstack::scenario::{Dimension, Scenario};
 use crate::parameters::{Parameter, Tunable};
 use crate::{CalibrateError, Table};
 
-/// A recording: times (s) and channels by name.
+/// Recorded response: times (s) and channels by name.
 pub(super) struct Measured {
     pub(super) times: Vec<f64>,
     pub(super) channels: Vec<(String, Vec<f64>)>,
@@ -38,7 +38,7 @@ impl Measured {
         times.truncate(kept);
         if kept < 3 {
             return Err(table
-                .unsuited(format!("{kept} rows are left in the window: lengthen it"))
+                .unsuited(format!("only {kept} rows are in the window: lengthen it"))
                 .into());
         }
         let mut channels = Vec::new();
@@ -51,7 +51,7 @@ impl Measured {
         }
         if channels.is_empty() {
             return Err(table.unsuited(
-                "there is no channel beside the time: add columns such as `B1.1_displacement_x (m)`",
+                "there is no column but the time: add channels such as `B1.1_displacement_x (m)`",
             ).into());
         }
         Ok(Self { times, channels })
@@ -63,7 +63,7 @@ impl Measured {
     }
 }
 
-/// Simulates a scenario for points: sets of logarithms of factors on its constants.
+/// Simulates a scenario with changed constants; a point holds the logarithms of the factors on them.
 pub(super) struct Simulator<'a> {
     scenario: Scenario,
     measured: &'a Measured,
@@ -73,7 +73,7 @@ pub(super) struct Simulator<'a> {
     stopped: AtomicBool,
 }
 
-/// Callback with the number of simulations started, called repeatedly from several threads; may stop them.
+/// Progress callback with the number of simulations started, called repeatedly from several threads; may cancel.
 pub(super) type Report<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
 
 impl<'a> Simulator<'a> {
@@ -87,12 +87,12 @@ impl<'a> Simulator<'a> {
         let mut scenario = scenario.clone();
         scenario.run.stop_after_collapse = None;
         let scale = scenario.run.similitude.sqrt();
-        // One step for all simulations, so that a change of step is not mistaken for an effect of a
-        // parameter; the step of a run is a small fraction of the critical one.
+        // All simulations use one time step, so that a change of step is not mistaken for an effect of a
+        // parameter. The step of a run is a small fraction of the critical one.
         let assembly = assemble(&scenario).map_err(RunFailure::from)?;
         let step = time_step(&scenario, &assembly)? / scale;
         scenario.run.step = Some(step);
-        // Two more steps, so that the last row lies between samples.
+        // Two extra steps, so that the time of the last row lies between samples.
         scenario.run.duration = Some(measured.end() / scale + 2.0 * step);
         // Every step is sampled, so that interpolation adds nothing to the residuals.
         scenario.record.history_rate = 1.0 / step;
@@ -106,12 +106,12 @@ impl<'a> Simulator<'a> {
         self.count.load(Ordering::Relaxed)
     }
 
-    /// `true` if the simulations were stopped.
+    /// `true` if the simulations were canceled.
     pub(super) fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Runs the scenario unchanged and checks that it has the recorded channels; returns a warning, if any.
+    /// Runs the scenario unchanged and checks that it has the recorded channels; returns a warning if the stack collapses.
     pub(super) fn first(&self) -> Result<Option<String>, CalibrateError> {
         let run = self.run(&vec![0.0; self.tunable.parameters().len()])?;
         if self.stopped() {
@@ -133,7 +133,7 @@ impl<'a> Simulator<'a> {
         match &run.outcome {
             Outcome::Collapse { time, .. } => Ok(Some(format!(
                 "with the values of the scenario the stack collapses at {time:.2} s, within the window: end \
-                 it before"
+                 the window earlier"
             ))),
             Outcome::Invalid { reason } => Err(CalibrateError::Scenario(reason.clone())),
             Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted => Ok(None),
@@ -169,13 +169,13 @@ impl<'a> Simulator<'a> {
         self.measured.channels.iter().map(channel).collect()
     }
 
-    /// Simulates several points on all cores; the assignment to threads has no effect.
+    /// Simulates several points on all cores; the result does not depend on the number of threads.
     pub(super) fn batch(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
         pool::map(points, |point| self.channels(point), &|_| ())
     }
 }
 
-/// Interpolates linearly between samples, constant beyond the last.
+/// Interpolates linearly between samples; beyond the last sample the value is constant.
 fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
     let above = times.partition_point(|sample| *sample < time);
     match (above.checked_sub(1), values.get(above)) {

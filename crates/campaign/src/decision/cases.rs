@@ -1,4 +1,4 @@
-//! The cases of a study that have a verdict, with their motions and intensities.
+//! Cases of a study that have a verdict, with their motions and intensities.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use crate::outcome::CollapseMode;
 use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value, word};
 use crate::watch::Ending;
 
-/// An intensity measure and how it is printed.
+/// Intensity measure of a study, with the name and unit in which it is displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of its column, or of the measure of the study.
+    /// Name of the column of the measure in the table, or of the measure of the study.
     pub name: String,
     /// SI unit.
     pub unit: String,
@@ -23,7 +23,7 @@ pub struct Measure {
     pub label: String,
     /// Unit for display.
     pub shown_unit: &'static str,
-    /// Printed units per SI unit.
+    /// Factor from the SI unit to the unit for display.
     pub scale: f64,
 }
 
@@ -53,17 +53,17 @@ impl Measure {
         Self { name: name.to_owned(), unit: unit.to_owned(), label, shown_unit, scale }
     }
 
-    /// Returns an intensity in the printed unit.
+    /// Converts an intensity (SI) to the unit for display.
     pub fn shown(&self, intensity: f64) -> f64 {
         self.scale * intensity
     }
 
-    /// Returns an intensity in the printed unit as a cell of a table.
+    /// Returns a table cell with an intensity (SI), converted to the unit for display.
     pub(super) fn cell(&self, intensity: f64) -> Cell {
         Cell::Number(self.shown(intensity), 3)
     }
 
-    /// Formats an interval with its unit; open where the cases do not bound it.
+    /// Formats an interval with its unit, as "… or more" or "… or less" if it has only one bound.
     pub fn range(&self, bounds: Interval) -> String {
         match (bounds.low > 0.0, bounds.high.is_finite()) {
             (true, true) => format!("{} to {}", self.digits(bounds.low), self.words(bounds.high)),
@@ -73,62 +73,64 @@ impl Measure {
         }
     }
 
-    /// Formats an intensity with its unit, in three digits.
+    /// Formats an intensity with its unit, with three significant digits.
     pub fn words(&self, intensity: f64) -> String {
         let number = self.digits(intensity);
         if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
     }
 
-    /// Formats an intensity in three digits, without its unit.
+    /// Formats an intensity without its unit, with three significant digits.
     fn digits(&self, intensity: f64) -> String {
         let shown = self.shown(intensity);
-        // Print a requested level as 50 and not 50.0, though 100 × 0.36 is not quite 36.
+        // Whole levels are printed as 36 rather than 36.0, although 100 × 0.36 is not exactly 36.
         let whole = shown >= 10.0 && (shown - shown.round()).abs() < 1e-9 * shown;
         if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) }
     }
 }
 
-/// A case with a verdict.
+/// Case with a verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Index of its row in the table.
+    /// Index of the row of the case in the table.
     pub row: u32,
-    /// Index of its record in [`Cases::records`].
+    /// Index of the motion in [`Cases::records`].
     pub record: u32,
     /// `true` if a barrel or rack lost its seat.
     pub collapsed: bool,
-    /// `true` if its stack fell under its own weight, before it was shaken.
+    /// `true` if the stack fell under its own weight, before it was shaken.
     pub fell_at_rest: bool,
-    /// Mode of its collapse, an index of [`Cases::modes`].
+    /// Mode of collapse, as an index of [`Cases::modes`]; `None` if the stack stood.
     pub mode: Option<u8>,
-    /// `true` if it was simulated until nothing moved, so that its falls are known.
+    /// `true` if the case was simulated until nothing moved, so that all falls are known.
     pub followed: bool,
-    /// Barrels in the stack.
+    /// Number of barrels in the stack.
     pub barrels: u32,
-    /// Drop (m) of each barrel that fell.
+    /// Height of fall (m) of each barrel that fell.
     pub falls: Box<[f64]>,
-    /// Largest force (N) on each of them since its fall; `None` where the study has none.
+    /// Largest force (N) on each fallen barrel since it fell; `None` if the study does not record forces.
     pub forces: Option<Box<[f64]>>,
-    /// Wine (m³) in each of them.
+    /// Volume of wine (m³) in each fallen barrel.
     pub wines: Box<[f64]>,
-    /// Wine (m³) in all barrels of the stack.
+    /// Volume of wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Peak drift ratio of the top while the stack stood; not a number where unknown.
+    /// Peak drift ratio of the top while the stack stood; NaN if unknown.
     drift: f64,
-    /// Intensities (SI), one for each of [`Cases::measures`]; not a number where unknown.
+    /// Intensity (SI) in each of [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
-    /// Hunt or curve that it belongs to: the cases of one record with the same values of the factors that are not
-    /// drawn anew for each case.
+    /// Number of the curve to which the case belongs.
+    ///
+    /// A curve has the cases of one motion with the same values of all factors except those drawn for each case. In an
+    /// incremental dynamic analysis it is a hunt.
     pub curve: u32,
 }
 
 impl Case {
-    /// Returns its intensity (SI) in a measure, given by index.
+    /// Returns the intensity (SI) of the case in the measure at an index; `None` if unknown.
     pub fn intensity(&self, measure: usize) -> Option<f64> {
         self.intensities.get(measure).copied().filter(|value| !value.is_nan())
     }
 
-    /// Returns the peak drift ratio of the top while the stack stood.
+    /// Returns the peak drift ratio of the top while the stack stood; `None` if unknown.
     pub fn drift(&self) -> Option<f64> {
         Some(self.drift).filter(|value| !value.is_nan())
     }
@@ -138,44 +140,44 @@ impl Case {
         u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
     }
 
-    /// Returns the share of its barrels that fell; 0 without barrels.
+    /// Returns the share of the barrels of the stack that fell; 0 if it has none.
     pub fn fallen_share(&self) -> f64 {
         f64::from(self.fallen()) / f64::from(self.barrels.max(1))
     }
 }
 
-/// The cases of a study that have a verdict.
+/// Cases of a study that have a verdict, with what they have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cases {
     /// Title of the study.
     pub title: String,
-    /// Names of the motions.
+    /// Names of the motions, to which [`Case::record`] refers.
     pub records: Vec<String>,
-    /// Modes of collapse, in the order of first occurrence.
+    /// Names of the modes of collapse, in the order of first occurrence.
     pub modes: Vec<String>,
-    /// The measures.
+    /// Intensity measures of the cases.
     pub measures: Vec<Measure>,
-    /// The measure of the study, an index of `measures`.
+    /// Index of the measure of the study in `measures`.
     pub main: usize,
-    /// `true` if every case was scaled to a level of it, so that raw fractions exist at each.
+    /// `true` if every case was scaled to a level of that measure, so that each level has a raw fraction of collapse.
     pub leveled: bool,
-    /// `true` if levels were chosen by hunting for collapse, so that they depend on earlier results.
+    /// `true` if the levels are those of hunts for collapse, which depend on earlier results.
     pub hunted: bool,
-    /// `true` if cases are samples, each with a motion, a level and factors of its own.
+    /// `true` if cases are samples: motion, level and factors are drawn for each case.
     pub sampled: bool,
-    /// Factors that are drawn anew for each case of a motion.
+    /// Names of the factors that are drawn for each case of a motion.
     pub drawn: Vec<String>,
     /// Counts of cases by how they ended.
     pub endings: Endings,
-    /// The cases; shared, since there may be a million and subsets of them are used.
+    /// Cases, shared by reference since there may be a million and subsets of them are used.
     pub all: Vec<Arc<Case>>,
-    /// Number of rows without a verdict: failed, not judged, or could not run.
+    /// Number of rows without a verdict: the run failed, was not judged, or could not start.
     pub left_out: usize,
     /// Seed of resampling.
     pub seed: u64,
 }
 
-/// Numbers names in the order of first occurrence.
+/// Map of names to numbers, in the order of first occurrence.
 #[derive(Default)]
 struct Numbering(BTreeMap<String, u32>);
 
@@ -197,31 +199,32 @@ impl Numbering {
     }
 }
 
-/// Converts a count of cases, of which there are ten million at most.
+/// Converts a number of cases, which is at most ten million.
 fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// Reads cases part by part, so that the table need not be in memory.
+/// Reader of cases from the table in parts, so that the table need not be in memory.
 pub(super) struct Reading {
     cases: Cases,
     records: Numbering,
     modes: Numbering,
     curves: Numbering,
-    /// Rows read so far, and those of them that are samples of their own.
+    /// Number of rows read so far.
     rows: usize,
+    /// Number of rows read so far that are independent samples, and therefore curves of their own.
     own: usize,
-    /// Number of quantities that a design for sensitivity exchanges.
+    /// Number of quantities that a sensitivity design exchanges; 0 for other designs.
     varied: usize,
 }
 
 impl Reading {
-    /// Begins with the provenance of the rows.
+    /// Creates a reader for rows with a provenance.
     pub(super) fn new(made: &Provenance) -> Result<Self, DecisionError> {
         let measures = made.columns.iter().filter(|column| column.role == Role::Intensity);
         let mut measures: Vec<Measure> =
             measures.map(|column| Measure::new(&column.name, &column.unit)).collect();
-        // `sa(0.5)` is the column `sa_0.5`.
+        // The measure `sa(0.5)` has the column `sa_0.5`.
         let requested = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
         let known = |name: &str| measures.iter().position(|measure| measure.name == name);
         let main = match requested.as_deref() {
@@ -267,7 +270,7 @@ impl Reading {
         let (modes, heights) = (table.texts("mode"), table.texts("fall_heights"));
         let forces = table.texts("fall_forces");
         let (wines, wine) = (table.texts("fall_wine"), table.numbers("stack_wine"));
-        // A table that has falls also has the wine in the barrels.
+        // A table with heights of fall must also have the wine in the barrels.
         if heights.is_some() && (wines.is_none() || wine.is_none()) {
             return Err(DecisionError::Column("fall_wine"));
         }
@@ -277,7 +280,7 @@ impl Reading {
         let drawn = &self.cases.drawn;
         let fixed: Vec<_> =
             table.of_role(Role::Factor).filter(|f| !drawn.contains(&f.spec.name)).collect();
-        // The first two cases of a block are independent samples; the others differ from these in one quantity.
+        // Of a block, only the first two cases are independent samples; the others differ from these in one quantity.
         let block = i64::try_from(self.varied + 2).unwrap_or(i64::MAX);
         let numbers = table.integers("case").filter(|_| self.varied > 0);
         let exchanged =
@@ -299,7 +302,7 @@ impl Reading {
             if self.cases.leveled
                 && let Some(level) = cell(level)
             {
-                // The level as requested: the same number in every case of a stripe.
+                // Use the requested level, which is the same number in every case of a stripe.
                 intensities[self.cases.main] = level;
             }
             let mode = modes.and_then(|of| of[row].as_deref());
@@ -351,7 +354,7 @@ impl Reading {
         Ok(())
     }
 
-    /// Returns the cases when all rows were added.
+    /// Returns the cases after all rows were added.
     pub(super) fn finish(self) -> Result<Cases, DecisionError> {
         let Self { mut cases, records, modes, rows, own, .. } = self;
         if cases.all.is_empty() {
@@ -372,7 +375,7 @@ impl Cases {
         reading.finish()
     }
 
-    /// Returns a copy with only the cases that satisfy a predicate.
+    /// Returns a copy that has only the cases for which `keep` returns `true`.
     #[must_use]
     pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
         let mut fewer = self.clone();
@@ -380,7 +383,7 @@ impl Cases {
         fewer
     }
 
-    /// Returns the number of cases that fell under their own weight, before they were shaken.
+    /// Returns the number of cases whose stack fell under its own weight, before it was shaken.
     pub fn fallen_at_rest(&self) -> usize {
         self.all.iter().filter(|case| case.fell_at_rest).count()
     }
@@ -400,12 +403,12 @@ impl Cases {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// Returns the number of curves: motions, each with every combination of the factors that are not drawn anew.
+    /// Returns the number of curves: one for each motion and combination of the factors that are not drawn for each case.
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Describes what a curve is, in words.
+    /// Returns words for the curves in a sentence.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"
@@ -414,7 +417,7 @@ impl Cases {
         }
     }
 
-    /// `true` if the number of fallen barrels is known: no case, or hardly any, was ended while something moved.
+    /// `true` if the numbers of fallen barrels are known, because hardly any case ended while something still moved.
     pub fn has_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }
@@ -427,9 +430,9 @@ impl Cases {
 
     /// Groups the cases by intensity, ascending.
     ///
-    /// The groups are the levels of the study where cases share them.
-    /// Elsewhere they are bins of equally many neighbors, whose intensity is the geometric mean of their cases':
-    /// a fraction needs a few dozen cases, and a trend shows best over about a dozen bins.
+    /// If cases share levels, the groups are the levels of the study. Otherwise they are bins with equal numbers of
+    /// neighboring cases, and the intensity of a bin is the geometric mean over its cases. A fraction needs a few dozen
+    /// cases, and a trend is seen best in about a dozen bins.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
         let mut sorted: Vec<(f64, &Case)> = self
             .all

@@ -1,4 +1,4 @@
-//! One limit state against one measure: raw fractions, the fitted curve, its bands and its tests.
+//! Fragility of one limit state against one measure: raw fractions, fitted curve, confidence band and tests.
 
 use std::collections::BTreeMap;
 
@@ -15,54 +15,55 @@ use super::limit::LimitState;
 /// Confidence level of all bands.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// Number of draws of the test of order.
+/// Number of simulated data sets in the test whether failure becomes likelier with intensity.
 const DRAWS: usize = 500;
 
 /// Method of a confidence band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
-    /// Jackknife over records: cases of one record may depend on each other.
+    /// Jackknife over records; cases of one record may depend on each other.
     Records,
-    /// Likelihood of independent cases, where all are of one record.
+    /// Profile likelihood of independent cases; used if all cases are of one record.
     Likelihood,
-    /// No band: without one of the records there is no curve.
+    /// No band, since the cases without one of the records determine no curve.
     None,
 }
 
-/// One limit state against one measure.
+/// Fragility of one limit state against one measure.
 #[derive(Clone, Debug)]
 pub struct LimitCurve {
-    /// The limit state.
+    /// Limit state.
     pub limit: LimitState,
-    /// Index of the measure.
+    /// Index of the measure in [`Cases::measures`].
     pub measure: usize,
-    /// Raw counts, at levels or in bins.
+    /// Numbers of cases and failures, at levels or in bins.
     pub stripes: Vec<Stripe>,
     /// Wilson's interval of each raw fraction.
     pub intervals: Vec<Interval>,
-    /// The fitted curve, or the reason why there is none.
+    /// Fitted curve, or the reason why there is none.
     pub fit: Result<Fit, FitError>,
     /// Intensities at which the band is given.
     pub grid: Vec<f64>,
-    /// The 95 % band; empty without a curve or where one record decides whether there is one.
+    /// 95 % confidence band at each intensity of `grid`; empty without a curve, or with [`BandKind::None`].
     pub band: Vec<Interval>,
-    /// The 95 % interval of the median.
+    /// 95 % interval of the median.
     pub median: Option<Interval>,
     /// Method of the band.
     pub band_kind: BandKind,
-    /// Curves with one record left out each, for uncertainties of derived results.
+    /// Curves fitted without one record each, from which the uncertainty of derived results follows.
     pub left_out: Option<LeaveOneOut>,
     /// Goodness of fit of the curve to the raw counts.
     pub goodness: Option<Goodness>,
-    /// Test of the raw counts against monotony, which every curve assumes.
+    /// Test of the assumption that failure becomes likelier with intensity.
     pub monotony: Monotony,
-    /// Curves of one motion that failed at one intensity and stood at a higher one; none of samples, each of
-    /// which is a curve of its own.
+    /// Curves of one motion on which the stack failed at one intensity and stood at a higher one.
+    ///
+    /// Empty for samples, since each is a curve of its own.
     pub returned: Vec<Returned>,
 }
 
 impl LimitCurve {
-    /// Counts failures, fits the curve and runs its tests.
+    /// Counts failures, fits a curve and tests the fit.
     pub fn of(cases: &Cases, limit: LimitState, measure: usize) -> Self {
         let known = cases.only(|case| limit.is_known(case));
         let cases = &known;
@@ -121,11 +122,12 @@ impl LimitCurve {
         }
     }
 
-    /// Returns the standard errors of the logarithms of median and dispersion: clustered by record where several
-    /// records shake the stack, for independent cases where there is one.
+    /// Returns the standard errors of the logarithms of median and dispersion.
+    ///
+    /// With several records they are clustered by record; with one record, cases are taken as independent.
     ///
     /// # Errors
-    /// If there is no curve.
+    /// If no curve could be fitted.
     pub fn standard_errors(&self) -> Result<[f64; 2], &FitError> {
         let fit = self.fit.as_ref()?;
         Ok(match &self.left_out {
@@ -134,13 +136,16 @@ impl LimitCurve {
         })
     }
 
-    /// `true` if the probability of failure decreases significantly somewhere, which every curve excludes.
+    /// `true` if the fraction of failures decreases significantly with intensity somewhere, which no fragility curve can
+    /// describe.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }
 
-    /// Returns the probability of failure by the raw fractions: between levels linear in the logarithm of the
-    /// intensity, constant above the highest, linear to zero at rest below the lowest.
+    /// Returns the probability of failure at an intensity, interpolated between the raw fractions.
+    ///
+    /// It is linear in the logarithm of the intensity between levels, constant above the highest level, and linear
+    /// between zero at zero intensity and the lowest level.
     pub fn raw(&self, intensity: f64) -> f64 {
         let points: Vec<(f64, f64)> =
             self.stripes.iter().map(|s| (s.intensity, s.fraction())).collect();
@@ -148,8 +153,9 @@ impl LimitCurve {
     }
 }
 
-/// Interpolates linearly in the logarithm of the abscissa between points; constant above the last, linear to zero
-/// at zero below the first.
+/// Interpolates between points linearly in the logarithm of the abscissa.
+///
+/// The value is constant above the last point, and linear between zero at zero and the first point.
 pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     let after = points.partition_point(|(x, _)| *x < at);
     match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
@@ -161,7 +167,7 @@ pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-/// Counts the failures of some cases at an intensity.
+/// Counts cases and failures, as a stripe at an intensity.
 pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> bool) -> Stripe {
     Stripe {
         intensity,
@@ -172,8 +178,9 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
 
 /// Returns the evidence of the cases on the capacity.
 ///
-/// Hunted levels depend on earlier results, so that counts at them would be biased: there each hunt bounds its first
-/// failure between two levels. Everywhere else each case states whether it failed.
+/// In general each case is evidence that it failed or stood at its intensity. The levels of hunts depend on earlier
+/// results, so that counts at them would be biased; each hunt is instead one observation of a capacity between two
+/// levels.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let measured = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
@@ -201,7 +208,7 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts hunts at eight levels: those that had failed there, among those whose state there is known.
+/// Counts hunts at eight levels: those that have failed up to a level, among those whose state at it is known.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);
@@ -212,7 +219,7 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     }
     let step = libm::log(last / first) / 7.0;
     (0..8)
-        // Use the last bound exactly: rounded down it would miss the failures there.
+        // The last level is used exactly: rounded down, it would miss the failures there.
         .map(|i| if i == 7 { last } else { first * libm::exp(step * f64::from(i)) })
         .map(|intensity| {
             let failures = bounds.iter().map(|(_, high)| u32::from(*high <= intensity)).sum();
@@ -226,7 +233,7 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
         .collect()
 }
 
-/// Returns intensities from below the lowest stripe to above the highest, evenly spaced in the logarithm.
+/// Returns intensities, evenly spaced in the logarithm, from below the lowest stripe to above the highest.
 fn grid(stripes: &[Stripe]) -> Vec<f64> {
     let (Some(first), Some(last)) = (stripes.first(), stripes.last()) else { return Vec::new() };
     let (low, high) = (0.6 * first.intensity, 1.4 * last.intensity);

@@ -1,4 +1,4 @@
-//! Fragility and loss for other programs, `OpenQuake` and Pelicun, with the provenance of the study.
+//! Export of fragility and loss to other programs (`OpenQuake` and Pelicun), with the provenance of the study.
 
 mod openquake;
 
@@ -11,38 +11,38 @@ use super::Decision;
 use crate::scenario::quantity::plain;
 use crate::study::Provenance;
 
-/// Files for other programs, with notes on what they cannot hold.
+/// Files for other programs, with notes on what could not be exported.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exported {
     /// Name and text of each file.
     pub files: Vec<(&'static str, String)>,
-    /// Missing parts, with reasons.
+    /// Notes on parts that are missing or were changed, with reasons.
     pub notes: Vec<String>,
 }
 
-/// Error of an export.
+/// Reason why a study cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
-    /// The other programs have no name for the measure.
+    /// The other programs do not support the intensity measure.
     #[error(
-        "neither OpenQuake nor Pelicun knows the intensity measure {0} of this study; run it over pga, pgv, \
+        "neither OpenQuake nor Pelicun supports the intensity measure {0} of this study; run the study with pga, pgv, \
          pgd or sa(T)"
     )]
     Measure(String),
-    /// No limit state has a curve.
+    /// No limit state has a fitted curve.
     #[error("no limit state of this study has a fitted curve ({0}), so there is nothing to export")]
     NoCurve(String),
 }
 
-/// A measure in the terms and the unit of other programs.
+/// Intensity measure in the names and units of the other programs.
 struct Foreign {
-    /// `OpenQuake`'s name.
+    /// Name in `OpenQuake`.
     imt: String,
-    /// Pelicun's demand type.
+    /// Demand type in Pelicun.
     demand: String,
-    /// Pelicun's unit.
+    /// Unit in Pelicun.
     unit: &'static str,
-    /// Its units per SI unit: g, cm/s, cm.
+    /// Factor from the SI unit to that unit (g, cm/s or cm).
     scale: f64,
 }
 
@@ -62,10 +62,10 @@ fn foreign(name: &str) -> Option<Foreign> {
     }
 }
 
-/// Exports the curves of a decision for other programs; `asset` is their name of one stack.
+/// Exports the curves of a decision for other programs; `asset` is the name of one stack in them.
 ///
 /// # Errors
-/// If the other programs have no name for the measure, or no limit state has a curve.
+/// If the other programs do not support the measure, or no limit state has a fitted curve.
 pub fn export(
     decision: &Decision,
     made: &Provenance,
@@ -84,7 +84,7 @@ pub fn export(
                 limits.push((name, Lognormal { median, ..fit.curve }));
                 if curve.violates_order() {
                     found.notes.push(format!(
-                        "{}: the raw fractions are not monotone, and the exported curve hides that",
+                        "{}: the raw fractions are not monotone, which the exported curve does not show",
                         curve.limit.words()
                     ));
                 }
@@ -105,7 +105,9 @@ pub fn export(
     let (openquake, in_pelicun) = (openquake::identity(asset), pelicun_identity(asset));
     for (program, name) in [("OpenQuake", &openquake), ("Pelicun", &in_pelicun)] {
         if name != asset {
-            found.notes.push(format!("{program} takes no name like {asset}: there it is {name}"));
+            found.notes.push(format!(
+                "{program} does not accept the name {asset}; it is exported as {name}"
+            ));
         }
     }
     let fragility = openquake::fragility(&limits, &imls, &foreign, &openquake, &about);
@@ -124,13 +126,13 @@ pub fn export(
     Ok(found)
 }
 
-/// Reports intensities at which a more severe limit state is more probable than the one before it.
+/// Returns notes on intensities at which the curve of a more severe limit state lies above that of a less severe one.
 fn crossings(limits: &[(String, Lognormal)], imls: &[f64], unit: &str) -> Vec<String> {
     let crosses = |pair: &[(String, Lognormal)]| {
         let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;
         let at = imls.iter().find(above)?;
         Some(format!(
-            "the curve of {} lies above that of {} at {} {unit}: programs that take limit states as nested refuse that",
+            "the curve of {} lies above that of {} at {} {unit}: programs that require nested limit states reject that",
             pair[1].0,
             pair[0].0,
             barrelstack_report::significant(*at, 3)
@@ -153,11 +155,11 @@ fn provenance(decision: &Decision, made: &Provenance) -> String {
     )
 }
 
-/// A fragility database of one component, a limit state a damage state.
+/// Returns a fragility database with one component, in which each limit state is a damage state.
 fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
     let mut head =
         "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();
-    // Directional: of a demand that is not, Pelicun takes 1.2 times the largest of all directions.
+    // The demand is directional; of a nondirectional one Pelicun takes 1.2 times the largest of all directions.
     let mut row = format!("{asset},0,{},{},0,1", foreign.demand, foreign.unit);
     for (number, (_, curve)) in (1..).zip(limits) {
         // Writing to a String cannot fail.
@@ -170,8 +172,8 @@ fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> St
     format!("{head}\n{row}\n")
 }
 
-/// Converts a name to a Pelicun identifier: up to 75 letters, digits, underscores and, after the first sign, points; a hyphen divides the
-/// parts of an identity there.
+/// Converts a name to a Pelicun identifier: up to 75 letters, digits and underscores, and points after the first
+/// character. Hyphens are not allowed, since they separate the parts of an identifier.
 fn pelicun_identity(text: &str) -> String {
     let known =
         |(at, c): &(usize, char)| c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && *c == '.');
@@ -195,14 +197,14 @@ fn readme(notes: &[String], about: &str, foreign: &Foreign, losses: bool) -> Str
         String::new()
     };
     format!(
-        "{about}\n{}\nIntensity: {} in {} of the horizontal component that the scenario names, as shaken, after processing \
-         and scaling. It is not the mean or the median of two components that most ground-motion models give: convert \
-         one to the other before they meet.\n\n\
+        "{about}\n{}\nIntensity: {} in {} of the horizontal component that the scenario names, after processing \
+         and scaling. Most ground-motion models give the mean or the median of two components instead: convert \
+         one to the other before you combine them.\n\n\
          OpenQuake: a job names exposure_file = {EXPOSURE}, taxonomy_mapping_csv = {MAPPING}, and for scenario_damage \
-         contents_fragility_file = {FRAGILITY}.{risk} The exposure is a stub, one stack at 0 E, 0 N: give places and \
-         numbers of your own. Its contents are wine (m3), what is nonstructural there are barrels.\n\n\
-         Pelicun: load pelicun-fragility.csv as a damage model. Demand-Directional is 1: a demand in the direction of \
-         the performance group is taken as it is.\n",
+         contents_fragility_file = {FRAGILITY}.{risk} The exposure is a template with one stack at 0 E, 0 N: replace its \
+         place and number. Its contents are wine (m3); its nonstructural value is barrels.\n\n\
+         Pelicun: load pelicun-fragility.csv as a damage model. Demand-Directional is 1: the demand in the direction of \
+         the performance group is used unchanged.\n",
         notes.concat(),
         foreign.imt,
         if foreign.unit == "cmps" { "cm/s" } else { foreign.unit },

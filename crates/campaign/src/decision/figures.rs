@@ -1,4 +1,4 @@
-//! Figures of the page.
+//! Figures of the report page of a study.
 
 use std::collections::BTreeMap;
 
@@ -70,12 +70,12 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let dots = raw(curve, measure.scale, "raw fractions, 95 % interval of each", 1);
     let series = line.into_iter().chain([dots]).collect();
     let caption = format!(
-        "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, with Wilson's interval; they stand for \
-         themselves and are not smoothed.{}",
+        "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, not smoothed, with Wilson's \
+         interval.{}",
         curve.limit.words(),
         measure.label,
         if curve.fit.is_ok() {
-            " Line: the lognormal curve of greatest likelihood, shaded its 95 % band."
+            " Line: the lognormal curve of maximum likelihood; shaded: its 95 % band."
         } else {
             ""
         }
@@ -87,7 +87,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     )
 }
 
-/// Plots one line per limit state.
+/// Plots the fitted curve or the raw fractions of each limit state.
 pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     let series_of = |(index, curve): (usize, &LimitCurve)| {
         let words = curve.limit.words();
@@ -100,13 +100,13 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     let series = curves.iter().enumerate().map(series_of).collect();
     Figure::new(
         "limit-states",
-        "Chance of each limit state. Lines are fitted curves; where the cases determine none, dots are the raw \
+        "Chance of each limit state. Lines are fitted curves; where the cases determine no curve, dots show the raw \
          fractions with their 95 % intervals.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
 
-/// Plots the cumulative incidence of each mode under the curve of collapse.
+/// Plots the cumulative incidence of each mode, and the curve of collapse in any mode.
 pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Measure) -> Figure {
     let grid = || collapse.grid.iter().map(|x| measure.shown(*x)).collect::<Vec<f64>>();
     let mut series = Vec::new();
@@ -124,17 +124,17 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     series.extend(line.map(|line| Series { style: style(0), ..line }));
     Figure::new(
         "modes",
-        "Chance of collapse in each mode (cumulative incidence). Modes compete: together they are the chance of collapse, \
-         and one may become rarer where another takes over. Smooth lines divide the curve of collapse among the modes by \
-         probit regression.",
+        "Chance of collapse in each mode (cumulative incidence). The modes compete: their chances add up to the chance of \
+         collapse, and one mode may become rarer where another takes over. The lines divide the curve of collapse among \
+         the modes by probit regression.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
 
-/// Maximum number of single curves in a plot of incremental dynamic analysis.
+/// Maximum number of curves of single motions in a plot of incremental dynamic analysis.
 const MOST_CURVES: usize = 60;
 
-/// Plots curves of incremental dynamic analysis with their fractiles; `None` where records have too few levels.
+/// Plots curves of incremental dynamic analysis with their fractiles; `None` if records have too few levels.
 pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     if !cases.leveled || cases.sampled {
         return None;
@@ -157,7 +157,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     let standing = all.iter().flat_map(Ida::points).map(|(_, d)| *d).filter(|d| d.is_finite());
     let edge = 1.15 * percent(standing.fold(0.0, f64::max)).max(1e-3);
     let top = all.iter().flat_map(Ida::points).map(|(x, _)| *x).fold(0.0, f64::max);
-    // Each return from collapse is a jump back from the edge.
+    // Collapse is drawn at the edge of the plot; a curve that stands again at a higher level leaves the edge.
     let place = |demand: f64| percent(demand).min(edge);
     let mut series: Vec<Series> = all
         .iter()
@@ -181,15 +181,15 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     let note = match returned.len() {
         0 => String::new(),
         count => format!(
-            " {count} of {} come back: they collapse at one level and stand at a higher one.",
+            " {count} of {} return: the stack collapses at one level and stands at a higher one.",
             cases.curves()
         ),
     };
     Some(Figure::new(
         "ida",
         format!(
-            "Incremental dynamic analysis: peak drift of the top while the stack stands against {}. A line that reaches \
-             the right edge has collapsed.{note}",
+            "Incremental dynamic analysis: peak drift of the top while the stack stands, against {}. A line reaches \
+             the right edge where the stack collapses.{note}",
             measure.label
         ),
         Plot {
@@ -201,13 +201,13 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     ))
 }
 
-/// Plots the effects of factors.
+/// Plots the effects of the factors on the share of collapse (tornado diagram).
 pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (row, effect) in effects.iter().enumerate() {
         let shares = || effect.groups.iter().map(Group::share);
         let (low, high) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
-        // A gap separates each bar from the next.
+        // NaN breaks the line between one bar and the next.
         x.extend([low, high, f64::NAN]);
         y.extend([Axis::row(row); 3]);
     }
@@ -216,8 +216,8 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
         vec![Series { style: bars, ..Series::new("lowest to highest share of collapse", x, y) }];
     Figure::new(
         "tornado",
-        "What the varied quantities change: the share of collapse at the least and the most favorable of their values, \
-         or thirds of their values, over all motions and levels. The upright line is the share of all cases.",
+        "Effect of the varied quantities: the share of collapse at their least and their most favorable value \
+         (or third of their values), over all motions and levels. The vertical line is the share of all cases.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
             y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),
@@ -247,8 +247,8 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     Figure::new(
         "losses",
         format!(
-            "Mean number of barrels, of {}, that fall and that burst. That a barrel bursts is an assumption over the \
-             height of its fall, with a range: see below.",
+            "Mean number of barrels, of {}, that fall and that burst. The chance that a barrel bursts is an assumption \
+             based on the height of its fall, with a range: see below.",
             losses.barrels
         ),
         Plot {
@@ -260,7 +260,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     )
 }
 
-/// Plots the contributions of intensities to the rate of collapse.
+/// Plots the contribution of each range of intensities to the annual rate of collapse.
 pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
     let total: f64 = site.contributions.iter().map(|part| part.rate).sum();
     let (mut x, mut y) = (Vec::new(), Vec::new());
@@ -272,8 +272,8 @@ pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
     let area = SeriesStyle { area: true, ..style(0) };
     Figure::new(
         "contributions",
-        "Where the annual rate of collapse comes from: the share of each stretch of intensity. Weak shaking is frequent, \
-         strong shaking fells more.",
+        "Contributions to the annual rate of collapse, by ranges of intensity. Weak shaking is more frequent; strong \
+         shaking fells more stacks.",
         Plot {
             x: axis(measure).log(),
             y: Axis::new("share of the rate", ""),

@@ -1,4 +1,4 @@
-//! Annual rates at a site, from its hazard curve.
+//! Annual rates of collapse and loss at a site, from its hazard curve.
 
 use std::path::Path;
 
@@ -12,18 +12,18 @@ use super::loss::{Losses, cost};
 use crate::measured::{Table, TableError};
 use crate::scenario::Dimension;
 
-/// Hazard curve of a site, as read from a file.
+/// Hazard curve of a site, read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SiteHazard {
     /// Name of the file.
     pub file: String,
-    /// Name of the measure, which is that of its column.
+    /// Name of the intensity measure, which is the name of its column.
     pub measure: String,
-    /// The curve, in SI units and 1/year.
+    /// Hazard curve, with intensities in SI units and rates in 1/year.
     pub hazard: Hazard,
 }
 
-/// Measures that a hazard curve may be over, with their dimensions.
+/// Intensity measures for which a hazard curve may be given, with their dimensions.
 const MEASURES: [(&str, Dimension); 8] = [
     ("pga", Dimension::ACCELERATION),
     ("pgv", Dimension::VELOCITY),
@@ -36,16 +36,18 @@ const MEASURES: [(&str, Dimension); 8] = [
 ];
 
 impl SiteHazard {
-    /// Reads a table (CSV) of two columns: the intensity with its unit, such as `pgv (cm/s)`, and `rate (1/year)`,
-    /// the annual rate at which it is exceeded.
+    /// Reads a hazard curve from a CSV file of two columns.
+    ///
+    /// The columns are the intensity with its unit, such as `pgv (cm/s)`, and `rate (1/year)`, the annual rate at which
+    /// that intensity is exceeded.
     ///
     /// # Errors
-    /// When the file cannot be read, a column or a unit is missing, or the rows are not a hazard curve.
+    /// If the file cannot be read, a column or a unit is missing, or the rows are not a hazard curve.
     pub fn load(path: &Path) -> Result<Self, TableError> {
         Self::of(&Table::load(path)?)
     }
 
-    /// Reads the table from a text; errors call it `file`.
+    /// Reads a hazard curve from a text; `file` is its name in errors.
     ///
     /// # Errors
     /// As [`SiteHazard::load`].
@@ -61,7 +63,7 @@ impl SiteHazard {
             let names: Vec<&str> = MEASURES.iter().map(|(name, _)| *name).collect();
             let found: Vec<&str> = table.names().collect();
             return Err(unsuited(format!(
-                "expected a column of one of the measures {}, with its unit, as in `pgv (cm/s)`; found {}",
+                "expected a column for one of the measures {}, with its unit, as in `pgv (cm/s)`; found {}",
                 names.join(", "),
                 found.join(", ")
             )));
@@ -74,51 +76,52 @@ impl SiteHazard {
     }
 }
 
-/// Annual rate of a limit state.
+/// Annual rate at which a limit state is reached.
 #[derive(Clone, Debug)]
 pub struct LimitRate {
-    /// The limit state.
+    /// Limit state.
     pub limit: LimitState,
-    /// Rate (1/year) by the fitted curve.
+    /// Rate (1/year) from the fitted curve; `None` without a curve.
     pub fitted: Option<Rate>,
-    /// 95 % interval of that rate, for the uncertainty of the curve alone.
+    /// 95 % interval of the rate from the fitted curve, which covers the uncertainty of the curve only.
     pub interval: Option<Interval>,
-    /// Rate (1/year) by the raw fractions.
+    /// Rate (1/year) from the raw fractions.
     pub raw: Rate,
-    /// Probability of at least one in the exposure time, by the fitted curve, or by the raw fractions without one.
+    /// Probability that the limit state is reached at least once in the exposure time, from the fitted curve, or from the
+    /// raw fractions if there is no curve.
     pub chance: f64,
 }
 
 /// Expected annual losses of one stack.
 #[derive(Clone, Debug)]
 pub struct Lost {
-    /// Barrels that fall.
+    /// Barrels that fall (1/year).
     pub fallen: Rate,
-    /// Barrels that burst, under the low, central and high assumptions.
+    /// Barrels that burst (1/year), under the low, central and high assumption of breakage.
     pub burst: [Rate; 3],
-    /// Wine (m³) that is lost, likewise.
+    /// Wine that is lost (m³/year), under the same assumptions.
     pub wine: [f64; 3],
-    /// Cost (US$) of those that burst under the central assumption, with their wine: lower and upper bound.
+    /// Lower and upper cost (US$/year) of the barrels that burst under the central assumption, with their wine.
     pub money: [f64; 2],
 }
 
 /// Annual rates of a study at a site.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// The hazard.
+    /// Hazard curve of the site.
     pub hazard: SiteHazard,
     /// Exposure time (years).
     pub years: f64,
-    /// One for each limit state.
+    /// Rate of each limit state.
     pub limits: Vec<LimitRate>,
-    /// Expected annual losses; `None` where the study does not record falls.
+    /// Expected annual losses; `None` if the study does not record falls.
     pub lost: Option<Lost>,
-    /// Contributions to the rate of collapse, by intensity.
+    /// Contributions of ranges of intensity to the rate of collapse.
     pub contributions: Vec<Contribution>,
 }
 
 impl Site {
-    /// Convolves the curves over the measure of the study, of which the first is of collapse, with the hazard.
+    /// Convolves the fragility curves of the study with the hazard; the first curve must be that of collapse.
     pub(super) fn of(
         cases: &Cases,
         curves: &[LimitCurve],
@@ -130,7 +133,7 @@ impl Site {
             return Err(TableError::Unsuited {
                 file: hazard.file.clone(),
                 reason: format!(
-                    "the hazard is over {}, but the curves of the study are over {}; give the hazard over that",
+                    "the hazard curve is for {}, but the study is for {}; give a hazard curve for that measure",
                     hazard.measure,
                     cases.measure().name
                 ),
@@ -178,7 +181,7 @@ fn rate(hazard: &Hazard, years: f64, curve: &LimitCurve) -> LimitRate {
     LimitRate { limit: curve.limit.clone(), fitted, interval, raw, chance }
 }
 
-/// Returns the edges of twelve intervals of the table, evenly spaced in the logarithm.
+/// Returns the edges of twelve intervals of intensity that cover the table, evenly spaced in the logarithm.
 fn edges(hazard: &Hazard) -> Vec<f64> {
     let rows = hazard.rows();
     let (first, last) = (rows[0].0, rows[rows.len() - 1].0);

@@ -1,32 +1,32 @@
-//! Sensitivity: first and total Sobol' indices of every varied quantity, on collapse and on the demands.
+//! First-order and total Sobol' indices of every varied quantity, for collapse and for the demands.
 
 use barrelstack_fragility::{Index, sobol_indices};
 
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Role, StudyTable};
 
-/// Sobol' indices of every varied quantity on one result.
+/// Sobol' indices of every varied quantity for one result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// The result: "collapse", or the name of a column of demands.
+    /// Name of the result: "collapse", or the column of a demand.
     pub result: String,
-    /// Number of complete blocks of the design; those with a case without the result are left out.
+    /// Number of blocks that are evaluated: those in which every case has the result.
     pub blocks: usize,
-    /// Number of blocks left out.
+    /// Number of blocks that are left out because a case lacks the result.
     pub left_out: usize,
-    /// Every varied quantity with its indices.
+    /// Name and indices of every varied quantity.
     pub inputs: Vec<(String, Index)>,
 }
 
-/// Results of every case of a design for sensitivity, by case number.
+/// Results of every case of a sensitivity design, by case number.
 #[derive(Debug, Default)]
 pub(super) struct Results {
-    /// Collapse (1 or 0) and the demands, each with its name; not a number where unknown.
+    /// Collapse (1 or 0) and the demands, each with its name; NaN if unknown.
     of: Vec<(String, Vec<f64>)>,
 }
 
 impl Results {
-    /// Adds the results of the next rows; ignores other designs.
+    /// Adds the results of the next rows; does nothing for other designs.
     pub(super) fn add(&mut self, made: &Provenance, table: &StudyTable) {
         let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome"))
         else {
@@ -62,7 +62,7 @@ impl Results {
         }
     }
 
-    /// Returns indices on collapse and on every demand that varies; empty for other designs.
+    /// Returns the indices for collapse and for every demand that varies; empty for other designs.
     pub(super) fn indices(self, made: &Provenance) -> Vec<Sensitivity> {
         let size = made.varied.len() + 2;
         let sensitivity = |(result, values): (String, Vec<f64>)| {

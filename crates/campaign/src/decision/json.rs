@@ -1,4 +1,4 @@
-//! The numbers of a decision for programs: SI units, chances from 0 to 1, rates a year.
+//! JSON document of a decision: SI units, probabilities from 0 to 1, rates per year.
 
 use barrelstack_fragility::{Contribution, Fall, Index, Interval, Rate, Stripe};
 use barrelstack_report::described;
@@ -12,336 +12,337 @@ use super::sensitivity::{Effect, Group, Level};
 use super::{Cases, Decision, Sensitivity};
 
 described! {
-    /// Results of a study. Intensities in the SI unit of their measure.
+    /// Evaluation of a study. Intensities are in the SI unit of their measure.
     pub struct DecisionDocument of decision: &Decision {
         /// Name and version of this layout.
         pub schema: &'static str ["decision/1"] = "decision/1",
-        /// The title of the study.
+        /// Title of the study.
         pub title: String = decision.cases.title.clone(),
-        /// The answer in a sentence.
+        /// Main result in a sentence.
         pub headline: String = decision.document.verdict.headline.clone(),
-        /// Cases with a verdict.
+        /// Number of cases with a verdict.
         pub cases: usize = decision.cases.all.len(),
-        /// Cases without one.
+        /// Number of cases without a verdict.
         pub cases_without_verdict: usize = decision.cases.left_out,
         /// Names of the motions.
         pub records: Vec<String> = decision.cases.records.clone(),
-        /// The intensity measure of the study.
+        /// Intensity measure of the study.
         pub measure: NamedMeasure = NamedMeasure::of(decision.cases.measure()),
-        /// A curve for every limit state, over that measure.
+        /// Fragility of every limit state against the measure of the study.
         pub fragility: Vec<Fragility> = decision.curves.iter().map(Fragility::of).collect(),
-        /// Efficiency of every measure as a predictor of collapse, the best first.
+        /// Efficiency of every intensity measure as a predictor of collapse, the best first.
         pub measures: Vec<MeasureEfficiency> =
             decision.measures.iter().map(|row| MeasureEfficiency::of(&(row, &decision.cases))).collect(),
-        /// Share of each collapse mode, the most frequent first.
+        /// Incidence of each collapse mode, the most frequent first.
         pub modes: Vec<ModeShare> =
             decision.modes.iter().map(|mode| ModeShare::of(&(mode, &decision.curves[0]))).collect(),
-        /// Cases that were followed until nothing moved.
+        /// Number of cases that were followed until nothing moved.
         pub followed_to_rest: u64 = decision.cases.endings.followed,
-        /// Cases that were stopped a while after their collapse.
+        /// Number of cases that were stopped a fixed time after their collapse.
         pub stopped_after_collapse: u64 = decision.cases.endings.stopped,
-        /// Cases that were ended by run.duration.
+        /// Number of cases that were ended by run.duration.
         pub ended_by_duration: u64 = decision.cases.endings.short,
-        /// Cases that were cut short while the ground still moved.
+        /// Number of cases that were cut short while the ground still moved.
         pub cut_while_the_ground_moved: u64 = decision.cases.endings.cut,
-        /// Cases in which something still moved when their time was over.
+        /// Number of cases in which something still moved at the time limit.
         pub still_moving_at_the_end: u64 = decision.cases.endings.moving,
-        /// Why there are no losses.
+        /// Reason why no losses are given; null if they are.
         pub no_losses: Option<String> = decision.losses.as_ref().err().cloned(),
-        /// Barrels and wine lost.
+        /// Barrels and wine lost; null if unknown.
         pub losses: Option<LossTable> = decision.losses.as_ref().ok().map(LossTable::of),
-        /// Sobol indices of the varied quantities for every result; empty unless the design is made for them.
+        /// Sobol indices of the varied quantities for every result; empty unless the design is "saltelli".
         pub sobol_indices: Vec<SobolIndices> =
             decision.sensitivities.iter().map(SobolIndices::of).collect(),
         /// Effects of the varied factors, the largest first.
         pub effects: Vec<FactorEffect> = decision.effects.iter().map(FactorEffect::of).collect(),
-        /// Rates at the site; null without a hazard curve.
+        /// Annual rates at the site; null without a hazard curve.
         pub site: Option<SiteRates> = decision.site.as_ref().map(SiteRates::of),
         /// Warnings.
         pub warnings: Vec<String> = decision.warnings.clone(),
     }
 
-    /// An intensity measure.
+    /// Name and unit of an intensity measure.
     pub struct NamedMeasure of measure: &super::Measure {
-        /// Its name.
+        /// Name of the measure.
         pub name: String = measure.name.clone(),
-        /// Its unit.
+        /// SI unit of the measure.
         pub unit: String = measure.unit.clone(),
     }
 
-    /// The fragility of a limit state.
+    /// Fragility of one limit state.
     pub struct Fragility of curve: &LimitCurve {
-        /// The limit state.
+        /// Name of the limit state.
         pub limit_state: String = curve.limit.name(),
-        /// Raw counts at every level.
+        /// Numbers of cases and failures at every level.
         pub raw: Vec<RawShare> = raw(&curve.stripes, &curve.intervals),
-        /// Median of the lognormal curve; null where the data support none.
+        /// Median of the lognormal curve; null if the data determine no curve.
         pub median: Option<f64> as "of the measure" =
             curve.fit.as_ref().ok().map(|fit| fit.curve.median),
-        /// Standard deviation of the logarithm.
+        /// Dispersion of the curve: standard deviation of the logarithm of the capacity.
         pub dispersion: Option<f64> as "1" = curve.fit.as_ref().ok().map(|fit| fit.curve.dispersion),
-        /// Standard error of the logarithm of the median: cases of one record go together (jackknife over records) where
-        /// `band` says so, and are taken as independent elsewhere.
+        /// Standard error of the logarithm of the median: by jackknife over records if `band` says so, otherwise for
+        /// independent cases.
         pub ln_median_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[median, _]| finite(median)),
-        /// Standard error of the logarithm of the dispersion, likewise.
+        /// Standard error of the logarithm of the dispersion, by the same method.
         pub ln_dispersion_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[_, dispersion]| finite(dispersion)),
-        /// 95 % interval of the median; an end is null where it is not bounded.
+        /// 95 % interval of the median; an end is null if it is unbounded.
         pub median_interval: Option<[Option<f64>; 2]> as "of the measure" =
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
-        /// Why there is no curve.
+        /// Reason why there is no curve; null if there is one.
         pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
-        /// Method of the band.
+        /// Method of the confidence band.
         pub band: &'static str ["jackknife over records", "profile likelihood", "none"] =
             match curve.band_kind {
                 BandKind::Records => "jackknife over records",
                 BandKind::Likelihood => "profile likelihood",
                 BandKind::None => "none",
             },
-        /// The 95 % band of the curve.
+        /// 95 % confidence band of the curve.
         pub band_at: Vec<BandAt> = curve.grid.iter().zip(&curve.band).map(|at| BandAt::of(&at)).collect(),
-        /// Chance of data that fit the curve worse than these.
+        /// p-value of the goodness-of-fit test: probability of data that fit worse if the curve is true.
         pub goodness_p: Option<f64> as "1" =
             curve.goodness.filter(|test| test.freedom > 0).map(|test| test.p),
-        /// Chance of falls as large as these if more shaking never does less.
+        /// p-value of the test of monotony: probability of decreases as large if failure never becomes less likely with
+        /// intensity.
         pub monotone_p: Option<f64> as "1" = finite(curve.monotony.p),
-        /// Where more shaking did less.
+        /// Ranges of intensity over which the fraction of failures decreases.
         pub falls: Vec<FallBetween> = curve.monotony.falls.iter().map(FallBetween::of).collect(),
-        /// Motions that brought a stack down at one level and not at a higher one.
+        /// Number of curves of one motion on which the stack fails at one level and stands at a higher one.
         pub returned: usize = curve.returned.len(),
     }
 
-    /// Raw counts at one level.
+    /// Numbers of cases and failures at one level.
     pub struct RawShare of at: &(&Stripe, &Interval) {
-        /// The level.
+        /// Intensity of the level.
         pub intensity: f64 as "of the measure" = at.0.intensity,
-        /// Cases.
+        /// Number of cases.
         pub cases: u32 = at.0.cases,
-        /// Cases that reached the limit state.
+        /// Number of cases that reached the limit state.
         pub failures: u32 = at.0.failures,
-        /// 95 % interval of the chance (Wilson).
+        /// 95 % interval of the probability (Wilson).
         pub interval: [Option<f64>; 2] as "1" = bounds(*at.1),
     }
 
-    /// The band of a curve at one intensity.
+    /// Confidence band of a curve at one intensity.
     pub struct BandAt of at: &(&f64, &Interval) {
-        /// The intensity.
+        /// Intensity.
         pub intensity: f64 as "of the measure" = *at.0,
-        /// The band of the chance.
+        /// 95 % interval of the probability.
         pub interval: [Option<f64>; 2] as "1" = bounds(*at.1),
     }
 
-    /// Two levels of which the higher did less.
+    /// Two levels between which the fraction of failures decreases.
     pub struct FallBetween of fall: &Fall {
-        /// The lower level.
+        /// Intensity of the lower level.
         pub from: f64 as "of the measure" = fall.from.intensity,
-        /// The higher one.
+        /// Intensity of the higher level.
         pub to: f64 as "of the measure" = fall.to.intensity,
-        /// Chance of such a fall if more shaking never does less.
+        /// p-value: probability of such a decrease if failure never becomes less likely with intensity.
         pub p: f64 as "1" = fall.p,
     }
 
     /// Efficiency of a measure as a predictor of collapse.
     pub struct MeasureEfficiency of row: &(&MeasureRow, &Cases) {
-        /// The measure.
+        /// Name of the measure.
         pub measure: String = row.1.measures[row.0.measure].name.clone(),
-        /// Its unit.
+        /// SI unit of the measure.
         pub unit: String = row.1.measures[row.0.measure].unit.clone(),
-        /// Median at collapse; null where no curve can be fitted.
+        /// Median intensity at collapse; null if no curve can be fitted.
         pub median: Option<f64> as "of the measure" =
             row.0.collapse.as_ref().ok().map(|found| found.fit.curve.median),
-        /// Standard deviation of the logarithm.
+        /// Dispersion: standard deviation of the logarithm of the intensity at collapse.
         pub dispersion: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().map(|found| found.fit.curve.dispersion),
         /// Logarithm of the likelihood.
         pub ln_likelihood: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().map(|found| found.fit.ln_likelihood),
-        /// Share of pairs that it puts in the right order.
+        /// Share of the pairs of a collapsed and a standing case in which the collapsed one has the higher intensity.
         pub concordance: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().and_then(|found| finite(found.concordance)),
         /// Other measure against which sufficiency was tested.
         pub beside: Option<String> = row.0.beside.map(|at| row.1.measures[at].name.clone()),
-        /// p-value of the hypothesis that the other measure adds nothing on collapse.
+        /// p-value of the hypothesis that the other measure adds no information on collapse.
         pub sufficiency_p: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().and_then(|found| found.sufficiency),
-        /// Why there is no curve.
+        /// Reason why there is no curve; null if there is one.
         pub no_curve: Option<String> = row.0.collapse.as_ref().err().map(ToString::to_string),
-        /// Slope of the logarithm of the drift of stacks that stand.
+        /// Slope of the regression of ln drift on ln intensity, for stacks that stand.
         pub drift_slope: Option<f64> as "1" = row.0.drift.map(|found| found.slope),
-        /// Scatter about it.
+        /// Standard deviation of ln drift about that regression.
         pub drift_dispersion: Option<f64> as "1" = row.0.drift.map(|found| found.dispersion),
-        /// p-value of the hypothesis that the other measure adds nothing on the drift.
+        /// p-value of the hypothesis that the other measure adds no information on the drift.
         pub drift_sufficiency_p: Option<f64> as "1" = row.0.drift.and_then(|found| found.sufficiency),
     }
 
-    /// One mode of collapse.
+    /// Incidence of one mode of collapse.
     pub struct ModeShare of mode: &(&ModeIncidence, &LimitCurve) {
-        /// The mode.
+        /// Name of the mode.
         pub mode: String = mode.0.mode.clone(),
-        /// Raw counts at every level.
+        /// Numbers of cases, and of collapses in this mode, at every level.
         pub raw: Vec<RawShare> = raw(&mode.0.stripes, &mode.0.intervals),
-        /// Cumulative incidence: the chance of collapse in this mode.
+        /// Cumulative incidence: the probability of collapse in this mode.
         pub cumulative_incidence_at: Vec<ChanceAt> =
             mode.1.grid.iter().zip(&mode.0.fitted).map(|at| ChanceAt::of(&at)).collect(),
     }
 
-    /// A chance at one intensity.
+    /// Probability at one intensity.
     pub struct ChanceAt of at: &(&f64, &f64) {
-        /// The intensity.
+        /// Intensity.
         pub intensity: f64 as "of the measure" = *at.0,
-        /// The chance.
+        /// Probability.
         pub chance: f64 as "1" = *at.1,
     }
 
-    /// Losses.
+    /// Losses of one stack.
     pub struct LossTable of losses: &Losses {
-        /// Barrels of a stack.
+        /// Number of barrels in a stack.
         pub barrels: u32 = losses.barrels,
         /// Fall height at which half of the barrels burst, under three assumptions.
         pub breakage_median_m: [f64; 3] as "m" = Breakage::RANGE.map(|breakage| breakage.median),
-        /// Standard deviation of its logarithm.
+        /// Standard deviation of the logarithm of that fall height.
         pub breakage_dispersion: [f64; 3] as "1" = Breakage::RANGE.map(|breakage| breakage.dispersion),
-        /// At every level.
+        /// Losses at every level.
         pub levels: Vec<LossAt> = losses.levels.iter().map(LossAt::of).collect(),
     }
 
     /// Losses at one level.
     pub struct LossAt of loss: &Loss {
-        /// The level.
+        /// Intensity of the level.
         pub intensity: f64 as "of the measure" = loss.intensity,
-        /// Cases.
+        /// Number of cases.
         pub cases: usize = loss.cases,
         /// Mean number of barrels that fall.
         pub barrels_fallen: f64 as "barrels" = loss.fallen,
-        /// Its 95 % interval.
+        /// 95 % interval of that mean.
         pub barrels_fallen_interval: [Option<f64>; 2] as "barrels" = bounds(loss.interval),
         /// Mean number of barrels that burst, under each assumption.
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
-        /// Wine lost in them, under each assumption.
+        /// Wine lost in burst barrels, under each assumption.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
-        /// Mean number of barrels that burst, by the largest force on them; null where the study does not record forces.
+        /// Mean number of barrels that burst, by the largest force on them; null if the study does not record forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 
     /// Sobol indices of the varied quantities for one result.
     pub struct SobolIndices of found: &Sensitivity {
-        /// The result.
+        /// Name of the result.
         pub result: String = found.result.clone(),
-        /// Blocks of cases that count.
+        /// Number of blocks of cases that are evaluated.
         pub blocks: usize = found.blocks,
-        /// Blocks that lack a verdict.
+        /// Number of blocks that are left out because a case lacks the result.
         pub blocks_left_out: usize = found.left_out,
-        /// Every varied quantity.
+        /// Indices of every varied quantity.
         pub inputs: Vec<SobolIndex> = found.inputs.iter().map(SobolIndex::of).collect(),
     }
 
-    /// One varied quantity.
+    /// Sobol indices of one varied quantity.
     pub struct SobolIndex of input: &(String, Index) {
-        /// Its name.
+        /// Name of the quantity.
         pub input: String = input.0.clone(),
-        /// First-order index, cut to 0 and 1.
+        /// First-order index, limited to 0 to 1.
         pub first: f64 as "1" = input.1.first,
-        /// Its 95 % interval (jackknife over blocks); 0 to 1 where the blocks are too few to say more.
+        /// 95 % interval of the first-order index (jackknife over blocks); 0 to 1 if there are too few blocks.
         pub first_interval: [Option<f64>; 2] as "1" = bounds(input.1.first_interval),
-        /// Total index, cut to 0 and 1.
+        /// Total index, limited to 0 to 1.
         pub total: f64 as "1" = input.1.total,
-        /// Its 95 % interval, likewise.
+        /// 95 % interval of the total index, by the same method.
         pub total_interval: [Option<f64>; 2] as "1" = bounds(input.1.total_interval),
     }
 
-    /// Effect of a varied factor.
+    /// Effect of a varied factor on collapse.
     pub struct FactorEffect of effect: &Effect {
-        /// The factor.
+        /// Name of the factor.
         pub factor: String = effect.factor.clone(),
-        /// Collapse by groups of its values.
+        /// Collapse by groups of values of the factor.
         pub groups: Vec<EffectGroup> = effect.groups.iter().map(EffectGroup::of).collect(),
     }
 
-    /// Cases with neighboring values of a factor.
+    /// Cases of one group of values of a factor.
     pub struct EffectGroup of group: &Group {
-        /// The values.
+        /// Values of the group.
         pub value: String = group.label.clone(),
-        /// Cases.
+        /// Number of cases.
         pub cases: u32 = group.cases,
-        /// Cases that collapse.
+        /// Number of cases that collapse.
         pub collapsed: u32 = group.collapsed,
-        /// 95 % interval of the share (Wilson); of one change at a time the cases of one motion go together.
+        /// 95 % interval of the share of collapse: Wilson's, or clustered by motion for one-at-a-time designs.
         pub interval: [Option<f64>; 2] as "1" = bounds(group.interval),
-        /// The same at each level, where one thing is changed at a time.
+        /// Collapse at each level, for one-at-a-time designs.
         pub levels: Vec<EffectLevel> = group.levels.iter().map(EffectLevel::of).collect(),
     }
 
-    /// Cases with neighboring values of a factor at one level.
+    /// Cases of one group of values of a factor at one level.
     pub struct EffectLevel of level: &Level {
-        /// The level.
+        /// Intensity of the level.
         pub intensity: f64 as "of the measure" = level.intensity,
-        /// Cases.
+        /// Number of cases.
         pub cases: u32 = level.cases,
-        /// Cases that collapse.
+        /// Number of cases that collapse.
         pub collapsed: u32 = level.collapsed,
-        /// 95 % interval of the share, for which the cases of one motion go together.
+        /// 95 % interval of the share of collapse, clustered by motion.
         pub interval: [Option<f64>; 2] as "1" = bounds(level.interval),
     }
 
-    /// Rates at a site.
+    /// Annual rates at a site.
     pub struct SiteRates of site: &Site {
-        /// File of the hazard curve.
+        /// Name of the file of the hazard curve.
         pub hazard: String = site.hazard.file.clone(),
-        /// Its measure.
+        /// Intensity measure of the hazard curve.
         pub measure: String = site.hazard.measure.clone(),
-        /// Years for which chances are given.
+        /// Exposure time, for which probabilities are given.
         pub years: f64 as "year" = site.years,
-        /// Every limit state.
+        /// Rate of every limit state.
         pub limit_states: Vec<LimitStateRate> = site.limits.iter().map(LimitStateRate::of).collect(),
-        /// Barrels that fall.
+        /// Barrels that fall per year; null if the study does not record falls.
         pub barrels_fallen_per_year: Option<YearlyRate> =
             site.lost.as_ref().map(|lost| YearlyRate::of(&lost.fallen)),
-        /// Barrels that burst, under each assumption.
+        /// Barrels that burst per year, under each assumption.
         pub barrels_burst_per_year: Option<Vec<YearlyRate>> =
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
-        /// Wine lost, under each assumption.
+        /// Wine lost per year, under each assumption.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
-        /// Range of the cost of barrels that burst under the central assumption, with their wine.
+        /// Lower and upper cost of the barrels that burst under the central assumption, with their wine.
         pub money_lost_per_year: Option<[f64; 2]> as "US$/year" = site.lost.as_ref().map(|lost| lost.money),
-        /// Shares of the rate of collapse by intensity.
+        /// Contributions of ranges of intensity to the rate of collapse.
         pub contributions: Vec<RatePart> = site.contributions.iter().map(RatePart::of).collect(),
     }
 
     /// Rate at which a limit state is reached.
     pub struct LimitStateRate of limit: &LimitRate {
-        /// The limit state.
+        /// Name of the limit state.
         pub limit_state: String = limit.limit.name(),
-        /// With the curve.
+        /// Annual rate from the fitted curve; null without a curve.
         pub annual_rate: Option<YearlyRate> = limit.fitted.as_ref().map(YearlyRate::of),
-        /// Its 95 % interval.
+        /// 95 % interval of that rate.
         pub annual_rate_interval: Option<[Option<f64>; 2]> as "1/year" = limit.interval.map(bounds),
-        /// With the raw shares.
+        /// Annual rate from the raw fractions.
         pub annual_rate_raw: YearlyRate = YearlyRate::of(&limit.raw),
-        /// Chance in the requested number of years.
+        /// Probability in the exposure time.
         pub chance: f64 as "1" = limit.chance,
     }
 
-    /// A number a year.
+    /// Annual rate, with bounds for shaking beyond the hazard curve.
     pub struct YearlyRate of rate: &Rate {
-        /// If shaking beyond the last row of the hazard curve did no more than that of the last row.
+        /// Rate if shaking stronger than the last row of the hazard curve has the effect of the last row.
         pub low: f64 as "1/year" = rate.low,
-        /// If it did the worst.
+        /// Rate if shaking stronger than the last row has the worst effect.
         pub high: f64 as "1/year" = rate.high,
-        /// Effect of shaking of the intensity of the first row.
+        /// Effect of shaking with the intensity of the first row.
         pub at_first_row: f64 as "1" = rate.at_first,
     }
 
-    /// A share of a rate by intensity.
+    /// Contribution of a range of intensities to a rate.
     pub struct RatePart of part: &Contribution {
-        /// From this intensity on.
+        /// Lower end of the range.
         pub from: f64 as "of the measure" = part.from,
-        /// Up to this one.
+        /// Upper end of the range.
         pub to: f64 as "of the measure" = part.to,
-        /// The rate.
+        /// Contribution to the rate.
         pub rate: f64 as "1/year" = part.rate,
     }
 }
 
-/// Returns a number, or `None`: JSON has no infinity.
+/// Returns a finite number, and `None` for any other, since JSON has no infinity.
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -1,4 +1,4 @@
-//! Limit states: definitions of failure.
+//! Limit states: definitions of the failure of a stack.
 
 use std::collections::BTreeSet;
 
@@ -9,12 +9,12 @@ use super::cases::{Case, Cases};
 pub enum LimitState {
     /// A barrel or rack loses its seat: collapse.
     SeatLost,
-    /// At least so many barrels fall.
+    /// At least this number of barrels falls.
     Fallen(u32),
 }
 
 impl LimitState {
-    /// `true` if a case is known to be beyond it or not.
+    /// `true` if it is known whether a case reached the limit state.
     pub(super) fn is_known(&self, case: &Case) -> bool {
         match self {
             Self::SeatLost => true,
@@ -22,7 +22,7 @@ impl LimitState {
         }
     }
 
-    /// `true` if a case is beyond it.
+    /// `true` if a case reached the limit state.
     pub fn reached(&self, case: &Case) -> bool {
         match self {
             Self::SeatLost => case.collapsed,
@@ -30,11 +30,11 @@ impl LimitState {
         }
     }
 
-    /// Returns words that follow "chance of".
+    /// Returns the name for display, such as after "chance of".
     pub fn words(&self) -> String {
         match self {
             Self::SeatLost => "collapse (first seat lost)".to_owned(),
-            Self::Fallen(1) => "a first barrel fallen".to_owned(),
+            Self::Fallen(1) => "one or more barrels fallen".to_owned(),
             Self::Fallen(count) => format!("{count} or more barrels fallen"),
         }
     }
@@ -47,7 +47,8 @@ impl LimitState {
         }
     }
 
-    /// Returns collapse and, where falls are known, the first fall, a quarter, half and all of the barrels.
+    /// Returns the limit states to be evaluated: collapse and, if falls are known, one barrel and a quarter, half and all
+    /// of the barrels fallen.
     pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
         let most = if cases.has_losses() { cases.most_barrels() } else { 0 };
         let counts: BTreeSet<u32> =

@@ -1,59 +1,62 @@
-//! Losses: barrels that fall, and the wine of those that burst.
+//! Losses: barrels that fall, and the wine of barrels that burst.
 
 use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 
 use super::cases::{Case, Cases};
 use super::curve::{LEVEL, interpolate};
 
-/// Probability that a full barrel bursts in a fall, by the height of the fall. An assumption.
+/// Assumed probability that a full barrel bursts in a fall, as a lognormal function of the height of the fall.
 ///
 /// No published drop tests of barrels were found. Of the barrels that toppled at Napa in 2014 about one in ten was
 /// lost (Wines & Vines 2016); from which levels is not recorded.
-/// A lognormal of median 5 m and dispersion 0.6 agrees with that: at 0.9 m a level 0.2 % from the second level, 4 %
-/// from the third, 15 %, 29 % and 43 % from the fourth to the sixth, which is 7 % to 18 % of the barrels above the
-/// lowest level of a stack of four to six levels that comes down whole. Results come with those of medians of 3.5 m
-/// and 7 m beside them.
+/// A lognormal function with a median of 5 m and a dispersion of 0.6 agrees with that. With 0.9 m per level, 0.2 % of the
+/// barrels burst that fall from the second level, 4 % from the third, and 15 %, 29 % and 43 % from the fourth to the
+/// sixth. In a stack of four to six levels that falls completely, this is 7 % to 18 % of the barrels above the lowest
+/// level. Results are also given for medians of 3.5 m and 7 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breakage {
-    /// Fall (m) at which half of the barrels burst.
+    /// Height of fall (m) at which half of the barrels burst.
     pub median: f64,
-    /// Standard deviation of the logarithm of the fall at which a barrel bursts.
+    /// Standard deviation of the logarithm of the height of fall at which a barrel bursts.
     pub dispersion: f64,
 }
 
 impl Breakage {
-    /// Few burst, the central assumption, many burst.
+    /// The three assumptions: few barrels burst, the central assumption, many barrels burst.
     pub const RANGE: [Self; 3] = [
         Self { median: 7.0, dispersion: 0.6 },
         Self { median: 5.0, dispersion: 0.6 },
         Self { median: 3.5, dispersion: 0.6 },
     ];
 
-    /// Returns the probability for a fall (m).
+    /// Returns the probability that a barrel bursts in a fall from a height (m).
     pub fn probability(&self, fall: f64) -> f64 {
         Lognormal { median: self.median, dispersion: self.dispersion }.probability(fall)
     }
 }
 
-/// Probability that a full barrel bursts by the largest force on it (N) since it fell. An assumption until it is
-/// tested: the central one of [`Breakage`], for a barrel of 269 kg that falls freely on the floor.
+/// Assumed probability that a full barrel bursts, as a function of the largest force on it (N) since it fell.
 ///
-/// By the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, such a fall from 5 m ends with 2.2 MN. The force grows as
-/// the height to the power of 0.6, and so does its dispersion.
-/// A landing on other barrels, or on a head of them, is softer than on the floor: there both differ.
+/// It is not tested. It corresponds to the central assumption of [`Breakage`] for a barrel of 269 kg that falls freely
+/// on the floor.
+///
+/// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The force grows
+/// as the height to the power of 0.6, so that its dispersion is 0.6 times that of the height.
+/// A landing on other barrels, or on their heads, is softer than on the floor, so that the two assumptions differ there.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
 
 /// Volume of wine in a bottle (m³).
 const BOTTLE: f64 = 0.75e-3;
 
-/// Lower and upper cost (US$) of a lost bottle of wine, as the cellar could sell it. An assumption; a barrel of
-/// 225 L holds 25 cases (The Californian 2014).
+/// Assumed lower and upper cost (US$) of a lost bottle of wine, as the cellar could sell it.
+///
+/// A barrel of 225 L holds 25 cases (The Californian 2014).
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
 
-/// Lower and upper cost (US$) of a burst barrel without its wine, whatever its size. An assumption.
+/// Assumed lower and upper cost (US$) of a burst barrel without its wine, for any size.
 const BARREL_COST: [f64; 2] = [400.0, 1200.0];
 
-/// Returns lower and upper cost (US$) of a number of burst barrels and the wine (m³) in them.
+/// Returns the lower and upper cost (US$) of a number of burst barrels with their wine (m³).
 pub(super) fn cost(barrels: f64, wine: f64) -> [f64; 2] {
     [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])
 }
@@ -61,44 +64,45 @@ pub(super) fn cost(barrels: f64, wine: f64) -> [f64; 2] {
 /// Expected losses of one stack at a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loss {
-    /// Intensity.
+    /// Intensity (SI) of the level.
     pub intensity: f64,
-    /// Cases.
+    /// Number of cases.
     pub cases: usize,
     /// Mean number of barrels that fall.
     pub fallen: f64,
-    /// 95 % interval of that mean, clustered by record.
+    /// 95 % interval of the mean number that fall, clustered by record.
     pub interval: Interval,
-    /// Barrels expected to burst, under the three assumptions of [`Breakage::RANGE`].
+    /// Expected number of barrels that burst, under the three assumptions of [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Expected loss of wine (m³), all that is in barrels that burst; leaks from bungs of intact barrels are not
-    /// counted.
+    /// Expected loss of wine (m³), under the same assumptions: the contents of the barrels that burst. Leaks from the
+    /// bungs of intact barrels are not counted.
     pub wine: [f64; 3],
-    /// Expected number of barrels that burst by the largest force on them; `None` where the study has no forces.
+    /// Expected number of barrels that burst by the largest force on them; `None` if the study does not record forces.
     pub burst_by_force: Option<f64>,
 }
 
-/// Expected losses of one stack against the measure of the study.
+/// Expected losses of one stack as a function of the intensity measure of the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Losses {
-    /// One for each level, ascending.
+    /// Losses at each level, in ascending order of intensity.
     pub levels: Vec<Loss>,
-    /// Number of barrels in a stack, the largest of any case.
+    /// Largest number of barrels in the stack of any case.
     pub barrels: u32,
-    /// Wine (m³) in a stack, the largest of any case.
+    /// Largest volume of wine (m³) in the stack of any case.
     pub most_wine: f64,
 }
 
 impl Losses {
-    /// Returns means over the cases of each level that were simulated until nothing moved, or the reason for none.
+    /// Returns the mean losses at each level, over the cases that were simulated until nothing moved, or the reason why
+    /// they are unknown.
     pub(super) fn of(cases: &Cases) -> Result<Self, String> {
         if let Some(reason) = cases.endings.no_losses() {
             return Err(reason);
         }
         if cases.hunted {
             return Err(
-                "levels were chosen by hunting for collapse, so that means over the cases are \
-                        those of no level of shaking"
+                "the levels are those of hunts for collapse, so that a mean over the cases \
+                        belongs to no level of shaking"
                     .to_owned(),
             );
         }

@@ -1,28 +1,28 @@
-//! Efficiency and sufficiency of intensity measures for collapse.
+//! Efficiency and sufficiency of intensity measures as predictors of collapse.
 
 use barrelstack_fragility::{Demanded, FitError, Measured, demand_against, failure_against};
 
 use super::cases::Cases;
 
-/// One measure.
+/// Efficiency and sufficiency of one intensity measure.
 #[derive(Clone, Debug)]
 pub struct MeasureRow {
-    /// Index of the measure.
+    /// Index of the measure in [`Cases::measures`].
     pub measure: usize,
-    /// Index of the measure that sufficiency is tested against.
+    /// Index of the other measure against which sufficiency is tested.
     pub beside: Option<usize>,
-    /// Collapse against it, or the reason why there is no curve.
+    /// Fit of collapse to the measure, or the reason why there is no curve.
     pub collapse: Result<Measured, FitError>,
-    /// Drift of the top of standing stacks against it.
+    /// Regression of the drift of the top on the measure, for stacks that stood.
     pub drift: Option<Demanded>,
 }
 
-/// Compares all measures, sorted by the likelihood of the observed collapses, the largest first.
+/// Compares all measures, and sorts them by the likelihood of the collapses, the largest first.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())
         .map(|measure| {
-            // Test each against the measure of the study, and that against PGA, or PGV if it is PGA.
+            // Each measure is tested against that of the study, which is tested against PGA, or against PGV if it is PGA.
             let beside = if measure == cases.main {
                 ["pga", "pgv"].into_iter().filter_map(by_name).find(|other| *other != measure)
             } else {
@@ -40,7 +40,7 @@ pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
 
 fn row(cases: &Cases, measure: usize, beside: Option<usize>) -> MeasureRow {
     let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
-    // There may be a million cases: keep only the needed numbers of each.
+    // There may be a million cases, so only the needed numbers of each are copied.
     let (mut outcomes, mut second) = (Vec::new(), Vec::new());
     let (mut demands, mut second_stood) = (Vec::new(), Vec::new());
     for case in &cases.all {

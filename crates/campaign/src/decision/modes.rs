@@ -1,21 +1,22 @@
-//! Modes of collapse as competing risks, by their cumulative incidence.
+//! Cumulative incidence of the modes of collapse, which are competing risks.
 
 use barrelstack_fragility::{Interval, Shares, Stripe, wilson};
 
 use super::cases::{Case, Cases};
 use super::curve::{LEVEL, LimitCurve, stripe};
 
-/// One mode against the measure of the study.
+/// Incidence of one collapse mode against the measure of the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeIncidence {
-    /// The mode.
+    /// Name of the mode.
     pub mode: String,
-    /// Cases that collapsed in it, of all cases of each group.
+    /// Number of collapses in this mode, among all cases of each level or bin.
     pub stripes: Vec<Stripe>,
     /// Wilson's interval of each fraction.
     pub intervals: Vec<Interval>,
-    /// Probability of collapse in it at each intensity of the grid of the curve of collapse; empty without such a
-    /// curve, or where the cases determine no shares.
+    /// Probability of collapse in this mode at each intensity of [`LimitCurve::grid`].
+    ///
+    /// Empty if collapse has no fitted curve, or if the cases do not determine the shares of the modes.
     pub fitted: Vec<f64>,
 }
 
@@ -23,7 +24,9 @@ fn is(case: &Case, mode: usize) -> bool {
     case.mode.map(usize::from) == Some(mode)
 }
 
-/// Returns every mode that occurs, the most frequent first; none for hunts, whose levels concentrate at collapses.
+/// Returns the incidence of every mode that occurs, the most frequent first.
+///
+/// Empty for hunts, since their levels concentrate near collapse.
 pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
     if cases.hunted {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The page of a study: first the answer, then its evidence.
+//! Report page of a study: first the result, then the evidence for it.
 
 use barrelstack_fragility::{Stripe, clopper_pearson};
 use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, measured, significant};
@@ -12,7 +12,7 @@ use super::words::{self, count, percent, range};
 use super::{Decision, figures, tables};
 use crate::study::Provenance;
 
-/// Builds the whole page.
+/// Builds the report page.
 pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     Document {
         title: decision.cases.title.clone(),
@@ -42,7 +42,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     let measure = cases.measure();
     let collapse = &decision.curves[0];
     let mut blocks = vec![
-        heading("How likely is collapse"),
+        heading("Probability of collapse"),
         Block::Figure(figures::fragility(collapse, measure)),
         Block::Table(raw(collapse, measure)),
     ];
@@ -61,13 +61,13 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(heading("Motion by motion"));
         blocks.push(Block::Figure(figure));
     }
-    blocks.push(heading("What is lost"));
+    blocks.push(heading("Losses"));
     match &decision.losses {
         Ok(found) => {
             blocks.push(Block::Figure(figures::losses(found, measure)));
             blocks.push(Block::Table(losses(found, measure)));
             blocks.push(Block::Details {
-                summary: "What is assumed of barrels that burst".into(),
+                summary: "Assumptions about barrels that burst".into(),
                 blocks: assumptions(),
             });
         }
@@ -76,37 +76,37 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     if let Some(site) = &decision.site {
         blocks.extend(at_site(site, measure));
     }
-    // Shares of a hunt depend on its path.
+    // Effects are not shown for hunts, since their shares of collapse depend on the levels that were tried.
     if !decision.sensitivities.is_empty() {
-        blocks.push(heading("What matters"));
+        blocks.push(heading("Influence of the varied quantities"));
         blocks.push(Block::Table(tables::indices(&decision.sensitivities)));
         blocks.push(text(
-            "The first index is the share of the variance that would go if the quantity were known, the total index the \
-             share that would stay if everything else were; what the total has more than the first it does together with \
-             others. Demands are those up to the collapse. A quantity that changed nothing in these blocks may in others, so that \
-             no interval ends at zero.",
+            "The first index is the share of the variance that would vanish if the quantity were known; the total index is the \
+             share that would remain if all other quantities were known. The total exceeds the first by the effect of \
+             interactions. Demands are those up to the collapse. A quantity without effect in these blocks may have one in \
+             others, so no interval ends at zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
         let overall = collapsed / cases.all.len() as f64;
-        blocks.push(heading("What matters"));
+        blocks.push(heading("Influence of the varied quantities"));
         blocks.push(Block::Figure(figures::tornado(&decision.effects, overall)));
         blocks.push(Block::Table(tables::effects(decision)));
     }
-    blocks.push(heading("Which measure of shaking predicts collapse best"));
+    blocks.push(heading("Measures of shaking as predictors of collapse"));
     blocks.push(Block::Table(tables::measures(decision)));
     blocks.push(text(
-        "Dispersion is what a measure leaves unexplained: the smaller, the fewer records are needed. Concordance is the \
-         chance that of two cases, one collapsed and one standing, the collapsed one had the stronger shaking by this \
-         measure (0.5 is no better than chance). A small p in the last columns says that the other measure \
+        "Dispersion is the scatter that a measure leaves unexplained: the smaller it is, the fewer records are needed. \
+         Concordance is the chance that of two cases, one collapsed and one standing, the collapsed one had the stronger \
+         shaking by this measure (0.5 is no better than chance). A small p in the last columns says that the other measure \
          still adds information: this one is then not sufficient.",
     ));
-    blocks.push(heading("What was run"));
+    blocks.push(heading("Motions"));
     blocks.push(Block::Table(motions(decision, made)));
     blocks
 }
 
-/// Tabulates raw counts and the fitted curve.
+/// Tabulates raw counts with their intervals, and the fitted curve.
 pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
     let exact = |of: &Stripe| clopper_pearson(of.failures, of.cases, LEVEL);
     let fitted = |of: &Stripe| {
@@ -114,7 +114,7 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
         Cell::maybe(fit.map(|fit| percent(fit.curve.probability(of.intensity))))
     };
     Table::of(
-        format!("Raw counts of {}, and the curve beside them.", curve.limit.words()),
+        format!("Raw counts of {}, and the fitted curve.", curve.limit.words()),
         curve.stripes.iter().zip(&curve.intervals),
         &[
             (&measure.label, measure.shown_unit, &|(of, _)| measure.cell(of.intensity)),
@@ -133,8 +133,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     let mut said = Vec::new();
     if !cases.hunted && !cases.shares_levels(cases.main) {
         said.push(format!(
-            "The cases share no levels, so they are counted in {} bins of about {} neighbors each, and the intensity of \
-             a bin is the geometric mean of theirs. The curve is fitted to the single cases.",
+            "The cases share no levels, so they are counted in {} bins of about {} neighboring cases; the intensity of \
+             a bin is the geometric mean over its cases. The curve is fitted to the single cases.",
             curve.stripes.len(),
             cases.all.len() / curve.stripes.len().max(1)
         ));
@@ -145,25 +145,25 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         }
         Ok([median, dispersion]) => {
             said.push(format!(
-                "The curve has the greatest likelihood of all lognormal ones (Baker 2015); standard errors: {} of ln θ, \
+                "The curve is the lognormal one of maximum likelihood (Baker 2015); standard errors: {} of ln θ, \
                  {} of ln β, {}.",
                 significant(median, 2),
                 significant(dispersion, 2),
                 if curve.left_out.is_some() {
-                    "cases of one record going together"
+                    "clustered by record"
                 } else {
-                    "as if the cases were independent"
+                    "for independent cases"
                 }
             ));
             said.push(match curve.band_kind {
                 BandKind::Records => {
-                    "The band comes from leaving out one record at a time, so that cases of one \
-                     record may depend on each other, with Student's t for their number."
+                    "The band is found by leaving out one record at a time (with Student's t), so that \
+                     cases of one record may depend on each other."
                         .to_owned()
                 }
                 BandKind::None => {
-                    "There is no band: without one of the records there is no curve, so that the \
-                     curve hangs on that record."
+                    "There is no band: without one of the records the cases determine no curve, so that the \
+                     curve depends on that record."
                         .to_owned()
                 }
                 BandKind::Likelihood => {
@@ -186,12 +186,12 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         });
     }
     said.push(format!(
-        "Raw counts against any order: the fractions {}.",
+        "Test of monotony: the raw fractions {}.",
         if curve.monotony.deviance == 0.0 {
-            "never fall with intensity".to_owned()
+            "never decrease with intensity".to_owned()
         } else {
             format!(
-                "fall somewhere, with p = {} if failure never becomes less likely",
+                "decrease somewhere (p = {} if failure never becomes less likely with intensity)",
                 significant(curve.monotony.p, 2)
             )
         }
@@ -238,14 +238,14 @@ fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
     )
 }
 
-/// Tabulates the cases that collapsed in each mode.
+/// Tabulates the numbers of cases that collapsed in each mode.
 fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
     let mut columns = vec![(measure.label.clone(), measure.shown_unit), ("cases".to_owned(), "")];
     columns.extend(modes.iter().map(|mode| (mode.mode.replace('-', " "), "")));
     let named: Vec<(&str, &str)> =
         columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
     let mut table = Table::new(
-        "Cases that collapse in each mode. A case that collapses in one can collapse in no other, so that each row adds \
+        "Cases that collapse in each mode. A case collapses in one mode only, so that each row adds \
          up to the collapses of its level.",
         &named,
     );
@@ -258,7 +258,7 @@ fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
 }
 
 fn losses(losses: &Losses, measure: &Measure) -> Table {
-    // Studies without contact forces have none.
+    // The column is omitted if the study does not record forces.
     let by_force = losses.levels.iter().any(|loss| loss.burst_by_force.is_some());
     let mut columns = vec![
         (measure.label.as_str(), measure.shown_unit),
@@ -271,7 +271,7 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
     columns.extend(by_force.then_some(("burst, by force", "")));
     columns.push(("wine lost, central", "L"));
     let mut table =
-        Table::new("Expected losses of one stack, means over the cases of each level.", &columns);
+        Table::new("Expected losses of one stack: means over the cases of each level.", &columns);
     for loss in &losses.levels {
         let [few, central, many] = loss.burst;
         let mut cells = vec![
@@ -291,7 +291,7 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
 
 fn assumptions() -> Vec<Block> {
     let mut table = Table::new(
-        "Chance that a full barrel bursts, by the height of its fall: an assumption.",
+        "Assumed chance that a full barrel bursts, by the height of its fall.",
         &[
             ("assumption", ""),
             ("0.9 m", ""),
@@ -309,23 +309,23 @@ fn assumptions() -> Vec<Block> {
     vec![
         Block::Table(table),
         Block::List(vec![
-            "No published test of dropped barrels with numbers was found. The central curve (lognormal, median fall 5 m, \
-             dispersion 0.6) was chosen so that of the barrels above the lowest level of stacks of four to six levels \
-             that come down whole 7 to 18 % burst, since about one in ten of the barrels that toppled at Napa in 2014 was \
-             lost (Wines & Vines 2016); from how high these fell is not known."
+            "No published drop tests of barrels with numbers were found. About one in ten of the barrels that toppled at Napa \
+             in 2014 was lost (Wines & Vines 2016); the heights of their falls are not known. The central curve (lognormal, \
+             median fall 5 m, dispersion 0.6) was chosen to agree: if stacks of four to six levels fall completely, 7 to \
+             18 % of the barrels above the lowest level burst."
                 .into(),
-            "By force a barrel bursts by the largest force on it since it fell (lognormal, median 2.2 MN, dispersion 0.36): \
-             the central assumption for a fall on the floor, in other words. The two differ where barrels land on each \
-             other, or on racks, and come down in steps; nobody has tested either."
+            "\"By force\" means that a barrel bursts by the largest force on it since it fell (lognormal, median 2.2 MN, \
+             dispersion 0.36), which equals the central assumption for a fall on the floor. The two assumptions differ where \
+             barrels land on each other or on racks, or fall in steps; neither has been tested."
                 .into(),
-            "A barrel that bursts costs its wine, at US$4 to US$20 a bottle of 0.75 L, and a barrel of US$400 to US$1,200 whatever \
-             its size; assumptions."
+            "A burst barrel is assumed to cost its wine, at US$4 to US$20 per bottle of 0.75 L, and US$400 to US$1,200 for the \
+             barrel of any size."
                 .into(),
-            "A barrel that bursts loses all its wine, by its size and fill in the scenario, and bursts like a full one however it \
-             is filled; barrels that hold lose nothing here, though bungs leak. What one stack \
-             does to its neighbors, and racks and buildings, are not counted."
+            "A burst barrel loses all its wine, by its size and fill in the scenario. Partly filled barrels are taken to burst \
+             like full ones. Barrels that do not burst lose nothing here, although bungs may leak. Damage to neighboring \
+             stacks, racks and buildings is not counted."
                 .into(),
-            "Every case that counts here was followed until nothing moved; in a plane model every barrel stands for those \
+            "Only cases that were followed until nothing moved are counted. In a plane model every barrel stands for those \
              beside it along the view."
                 .into(),
         ]),
@@ -340,7 +340,7 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
         Cell::number((used > 0.0).then(|| 1.0 / used), 2)
     };
     let table = Table::of(
-        format!("What it means at the site of {}, for one stack.", site.hazard.file),
+        format!("Annual rates at the site of {}, for one stack.", site.hazard.file),
         &site.limits,
         &[
             ("limit state", "", &|of| Cell::text(capital(&of.limit.words()))),
@@ -352,13 +352,13 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
         ],
     );
     let lost = site.lost.as_ref().map_or_else(
-        || "The expected loss of a stack in a year is not known, since the study does not record what falls.".to_owned(),
+        || "The expected annual loss of a stack is not known, since the study does not record falls.".to_owned(),
         |lost| {
             let [few, central, many] = lost.burst.map(|rate| measured(rate.low, 2));
             let wine = lost.wine.map(|wine| measured(1000.0 * wine, 0));
             format!(
-                "Expected for one stack in an average year: {} barrels fallen, {central} burst ({few} to {many}), {} L of \
-                 wine lost ({} to {} L), with the barrels worth US${} to US${}. Multiply by the number of stacks.",
+                "Expected annual loss of one stack: {} barrels fallen, {central} burst ({few} to {many}), {} L of \
+                 wine lost ({} to {} L); burst barrels and wine are worth US${} to US${}. Multiply by the number of stacks.",
                 measured(lost.fallen.low, 2),
                 wine[1],
                 wine[0],
@@ -374,9 +374,9 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
         text(lost),
         Block::Figure(figures::contributions(site, measure)),
         text(
-            "The interval is that of the curve alone; the hazard is taken as given. Between the rows of the hazard table \
-             the rate is read on logarithmic scales; weaker shaking than its first row is taken to do nothing, stronger \
-             than its last to do no more than that.",
+            "The interval covers the uncertainty of the curve only; the hazard is taken as exact. Between the rows of the hazard \
+             table the rate is interpolated on logarithmic scales. Shaking weaker than the first row is taken to have no \
+             effect, and shaking stronger than the last row to have the effect of the last row.",
         ),
     ]
 }
@@ -393,7 +393,7 @@ fn motions(decision: &Decision, made: &Provenance) -> Table {
         Cell::maybe(found.map(|motion| &motion.source))
     };
     Table::of(
-        "The motions, with the cases of each.",
+        "Motions, with the number of cases of each.",
         decision.cases.records.iter().zip(counts),
         &[
             ("motion", "", &|(name, _)| Cell::text(*name)),

@@ -1,4 +1,4 @@
-//! Effects of varied factors: shares of collapse at each of their values.
+//! Effects of the varied factors on collapse: the share of collapse at each value of a factor.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -9,35 +9,35 @@ use super::cases::{Case, Cases, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Cases of one value of a factor, or of a third of its values.
+/// Cases with one value of a factor, or with a third of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// The value or values.
+    /// Value or range of values, for display.
     pub label: String,
-    /// Cases.
+    /// Number of cases.
     pub cases: u32,
-    /// Number of them that collapsed.
+    /// Number of cases that collapsed.
     pub collapsed: u32,
-    /// Interval of the share of collapse.
+    /// 95 % interval of the share of collapse.
     pub interval: Interval,
-    /// Counts at each intensity (SI) that cases were scaled to, for one-at-a-time designs.
+    /// Counts at each level of intensity, for one-at-a-time designs; empty otherwise.
     pub levels: Vec<Level>,
 }
 
-/// Cases of a group at one intensity.
+/// Cases of a group at one level of intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
-    /// The intensity (SI).
+    /// Intensity (SI).
     pub intensity: f64,
-    /// Cases.
+    /// Number of cases.
     pub cases: u32,
-    /// Number of them that collapsed.
+    /// Number of cases that collapsed.
     pub collapsed: u32,
-    /// Interval of the share of collapse, clustered by motion.
+    /// 95 % interval of the share of collapse, clustered by motion.
     pub interval: Interval,
 }
 
-/// `true` if two intensities are one level; levels are rounded when written as text.
+/// `true` if two intensities are the same level up to rounding, since levels are rounded when written as text.
 pub(super) fn alike(one: f64, other: f64) -> bool {
     (one - other).abs() < 1e-6 * one
 }
@@ -49,17 +49,17 @@ impl Group {
     }
 }
 
-/// Effect of a factor.
+/// Effect of a factor on collapse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
     /// Name of the factor.
     pub factor: String,
-    /// Its values, ascending.
+    /// Cases by value of the factor, in ascending order.
     pub groups: Vec<Group>,
 }
 
 impl Effect {
-    /// Returns the largest difference of shares.
+    /// Returns the difference between the largest and the smallest share of collapse of the groups.
     pub fn range(&self) -> f64 {
         let shares = || self.groups.iter().map(Group::share);
         shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
@@ -71,7 +71,7 @@ const MOST: usize = 6;
 
 /// Returns the effects of all factors that vary, the largest first.
 pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
-    // One at a time: the cases of a factor are those in which all others have their base values.
+    // In a one-at-a-time design, the cases of a factor are those in which all other factors have their base values.
     let alone = made.design == "one-at-a-time";
     let drawn = |factor: &Column| made.drawn.contains(&factor.spec.name);
     let base: Vec<Option<Value>> = factors.iter().filter(|_| alone).map(most_frequent).collect();
@@ -105,7 +105,8 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
     found
 }
 
-/// Returns the most frequent value, the first of equals: in a one-at-a-time design, the base.
+/// Returns the most frequent value of a factor, the first if there are several; in a one-at-a-time design it is the
+/// base value.
 fn most_frequent(factor: &Column) -> Option<Value> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in 0..factor.values.len() {
@@ -122,7 +123,7 @@ fn group(label: String, of: Vec<&Case>) -> (Group, Vec<&Case>) {
     (Group { label, cases, collapsed, interval, levels: Vec::new() }, of)
 }
 
-/// Counts cases with an interval clustered by motion.
+/// Counts cases and collapses, with an interval clustered by motion.
 fn by_motion(of: &[&Case]) -> Level {
     let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     for case in of {
@@ -139,7 +140,7 @@ fn by_motion(of: &[&Case]) -> Level {
     }
 }
 
-/// Counts cases at each intensity, ascending; empty where cases were not scaled.
+/// Counts cases and collapses at each level, in ascending order; empty if cases were not scaled to levels.
 fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
     let leveled = of.iter().filter(|_| cases.leveled);
     let mut at: Vec<(f64, &Case)> =

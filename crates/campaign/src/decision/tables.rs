@@ -1,4 +1,4 @@
-//! Sensitivity tables: effects of varied quantities, and efficiency of intensity measures.
+//! Tables of the report page: effects of varied quantities, Sobol' indices, and intensity measures.
 
 use barrelstack_fragility::{Demanded, Interval, Measured};
 use barrelstack_report::{Cell, Column, Table};
@@ -11,7 +11,7 @@ use super::words::{count, percent, range};
 
 pub(super) fn effects(decision: &Decision) -> Table {
     let mut table = Table::new(
-        "Share of collapse at the values of every varied quantity, over all motions and levels.",
+        "Share of collapse at each value of every varied quantity, over all motions and levels.",
         &[("quantity", ""), ("value", ""), ("cases", ""), ("collapsed", ""), ("95 % interval", "")],
     );
     let levels = decision.effects.iter().flat_map(|effect| &effect.groups).map(|g| &g.levels);
@@ -21,7 +21,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
         Column::new(format!("{} {}", measure.label, measure.words(level.intensity)), "")
     }));
     if !levels.is_empty() {
-        table.caption += " Intervals count motions, not cases.";
+        table.caption += " Intervals are clustered by motion.";
     }
     let with_interval = |share: f64, interval: Interval| {
         format!("{} ({})", percent(share), range(interval, percent))
@@ -47,14 +47,14 @@ pub(super) fn effects(decision: &Decision) -> Table {
     table
 }
 
-/// Tabulates first and total indices of every varied quantity on every result.
+/// Tabulates the first and total index of every varied quantity for every result.
 pub(super) fn indices(all: &[Sensitivity]) -> Table {
     let rows = all.iter().flat_map(|of| of.inputs.iter().zip(0..).map(move |one| (of, one)));
     let result = |of: &Sensitivity, at: i32| {
         if at == 0 { of.result.replace('_', " ") } else { String::new() }
     };
     Table::of(
-        "Sobol' indices with 95 % intervals, by leaving out one block at a time.",
+        "Sobol' indices with 95 % intervals (jackknife over blocks).",
         rows.map(|(of, ((name, index), at))| (result(of, at), of.blocks, name, index)),
         &[
             ("result", "", &|(result, ..)| Cell::text(result)),
@@ -68,10 +68,10 @@ pub(super) fn indices(all: &[Sensitivity]) -> Table {
     )
 }
 
-/// Formats the interval of an index, or states that the blocks are too few for one.
+/// Formats the interval of an index, or states that there are too few blocks for one.
 fn known(interval: Interval) -> String {
     let whole = interval.low <= 0.0 && interval.high >= 1.0;
-    if whole { "too few blocks to say".to_owned() } else { range(interval, share) }
+    if whole { "too few blocks".to_owned() } else { range(interval, share) }
 }
 
 /// Formats a share with two decimals.
@@ -92,8 +92,8 @@ pub(super) fn measures(decision: &Decision) -> Table {
         |row: &MeasureRow, of: fn(Demanded) -> Option<f64>| Cell::number(row.drift.and_then(of), 2);
     let proficient = |of: Demanded| Some(of.proficiency).filter(|value| *value > 0.0);
     Table::of(
-        "Intensity measures against collapse and against the drift of stacks that stood, the one under which the \
-         outcomes are likeliest on top.",
+        "Intensity measures as predictors of collapse, and of the drift of stacks that stood; the measure with the \
+         largest likelihood is at the top.",
         &decision.measures,
         &[
             ("measure", "", &|row| Cell::text(&all[row.measure].label)),
@@ -103,7 +103,7 @@ pub(super) fn measures(decision: &Decision) -> Table {
             ("ln likelihood", "", &|row| collapse(row, 4, |of| Some(of.fit.ln_likelihood))),
             ("drift: dispersion", "", &|row| drift(row, |of| Some(of.dispersion))),
             ("drift: dispersion/slope", "", &|row| drift(row, proficient)),
-            ("beside", "", &|row| Cell::maybe(row.beside.map(|at| &all[at].label))),
+            ("tested against", "", &|row| Cell::maybe(row.beside.map(|at| &all[at].label))),
             ("p (collapse)", "", &|row| collapse(row, 2, |of| of.sufficiency)),
             ("p (drift)", "", &|row| drift(row, |of| of.sufficiency)),
         ],

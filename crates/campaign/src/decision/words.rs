@@ -1,4 +1,4 @@
-//! Text of the page: verdict and warnings.
+//! Sentences of the report page: verdict and warnings.
 
 use barrelstack_fragility::{FitError, Interval, wilson};
 use barrelstack_report::{Cell, capital, measured, significant};
@@ -19,18 +19,18 @@ pub(crate) fn percent(share: f64) -> String {
         v if v < 0.1 => "less than 0.1 %".to_owned(),
         v if v > 99.9 && v < 100.0 => "more than 99.9 %".to_owned(),
         v if v < 10.0 => format!("{} %", significant(v, 2)),
-        // Not all, so not 100 %.
+        // A share below 1 must not be shown as 100 %.
         v if v > 99.0 && v < 100.0 => format!("{} %", significant(v, 3)),
         v => format!("{v:.0} %"),
     }
 }
 
-/// Formats both ends of an interval with the same formatter.
+/// Formats an interval, with both ends formatted by `format`.
 pub(crate) fn range(of: Interval, format: impl Fn(f64) -> String) -> String {
     format!("{} to {}", format(of.low), format(of.high))
 }
 
-/// Returns a count as a cell with all of its digits.
+/// Returns a table cell with a count, with all its digits.
 pub(super) fn count(count: impl Into<f64>) -> Cell {
     let count: f64 = count.into();
     let digits = format!("{count:.0}").len();
@@ -40,11 +40,11 @@ pub(super) fn count(count: impl Into<f64>) -> Cell {
 /// Returns a note on runs without a verdict, if there are any.
 pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
     (lost > 0).then(|| {
-        format!("{lost} of {runs} runs have no verdict and are left out; the column `error` of the tables says why.")
+        format!("{lost} of {runs} runs have no verdict and are left out; the column `error` of the tables gives the reasons.")
     })
 }
 
-/// Returns the opening statement on stacks that fall under their own weight; empty if there are none.
+/// Returns a sentence on stacks that fall under their own weight, to open a statement; empty if there are none.
 pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     let (falls, they) = match fallen {
         0 => return String::new(),
@@ -62,7 +62,7 @@ fn recurrence(rate: f64) -> String {
     format!("a collapse once in {} years", significant(1.0 / rate, 2))
 }
 
-/// Explains why there is no curve; the caller formats intensities.
+/// Returns the reason why there is no curve, with intensities formatted by `format`.
 pub(crate) fn refusal(reason: &FitError, format: impl Fn(f64) -> String) -> String {
     match reason {
         FitError::NothingFailed { largest } => format!(
@@ -77,7 +77,7 @@ pub(crate) fn refusal(reason: &FitError, format: impl Fn(f64) -> String) -> Stri
             (above, below) if above == below => {
                 format!(
                     "no case failed below {above} and none survived above it, so the dispersion cannot be found; add cases \
-                     around it"
+                     around this intensity"
                 )
             }
             (above, below) => format!(
@@ -94,7 +94,7 @@ pub(crate) fn refusal(reason: &FitError, format: impl Fn(f64) -> String) -> Stri
     }
 }
 
-/// Returns the headline of the page.
+/// Returns the headline of the report page.
 pub(super) fn headline(decision: &Decision) -> String {
     let cases = &decision.cases;
     fallen_at_rest(cases.fallen_at_rest(), cases.all.len(), "cases") + &collapse(decision)
@@ -108,7 +108,7 @@ fn collapse(decision: &Decision) -> String {
     let collapsed = cases.all.iter().filter(|case| case.collapsed).count();
     if curve.violates_order() {
         return format!(
-            "{collapsed} of {} cases collapse, and collapse does not simply grow with {}: read the raw fractions.",
+            "{collapsed} of {} cases collapse, and collapse does not become steadily likelier with {}: use the raw fractions.",
             cases.all.len(),
             measure.label
         );
@@ -126,7 +126,7 @@ fn collapse(decision: &Decision) -> String {
             measure.label,
             measure.words(fit.curve.median)
         ),
-        // The share of samples is that of the sampled population; the share over levels has no meaning.
+        // The share of samples estimates that of the sampled population; a share over chosen levels has no meaning.
         (Err(_), _) if cases.sampled => {
             let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
             let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);
@@ -156,11 +156,11 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     match (&curve.fit, &curve.median) {
         (Ok(fit), Some(interval)) => {
             let dispersion = significant(fit.curve.dispersion, 2);
-            // The headline has the median, unless it warns of the curve.
+            // The headline states the median, unless it warns against the curve.
             said.push(if curve.violates_order() {
                 format!(
-                    "By a fitted curve, which hides that, the median {} of collapse is {} ({} with 95 % confidence), \
-                     its dispersion {dispersion}.",
+                    "A fitted curve, which does not show this, has a median {} of {} ({} with 95 % confidence) \
+                     and a dispersion of {dispersion}.",
                     measure.label,
                     measure.words(fit.curve.median),
                     measure.range(*interval)
@@ -222,22 +222,22 @@ pub(super) fn warnings(
     let measure = cases.measure();
     if !made.complete {
         said.push(format!(
-            "The study is not finished: {} of {} chunks are done. Run it again to go on.",
+            "The study is not finished: {} of {} chunks are done. Run it again to continue.",
             made.chunks_done, made.chunks
         ));
     }
     if cases.fallen_at_rest() > 0 {
         said.push(format!(
-            "{} of {} cases do not stand by themselves: they count as collapsed at every level of shaking, the level \
-             that fails and all above it as fallen to the floor. A fitted curve tends to nothing where shaking does, \
-             and theirs does not: read the raw fractions.",
+            "{} of {} cases do not stand under their own weight: they count as collapsed at every level of shaking, with the \
+             level that fails and all above it on the floor. A fitted curve tends to zero with the shaking, but their \
+             chance of collapse does not: use the raw fractions.",
             cases.fallen_at_rest(),
             cases.all.len()
         ));
     }
     if cases.left_out > 0 {
         said.push(format!(
-            "{} of {} cases have no verdict and are left out; the column `error` of the table says why.",
+            "{} of {} cases have no verdict and are left out; the column `error` of the table gives the reasons.",
             cases.left_out,
             cases.left_out + cases.all.len()
         ));
@@ -247,8 +247,8 @@ pub(super) fn warnings(
     }
     if cases.hunted {
         said.push(
-            "Levels were chosen by hunting for collapse, so that shares and means over all cases (losses, what matters) \
-             hold for the levels that were run and not for shaking of any given strength."
+            "The levels are those of hunts for collapse, so that shares and means over all cases apply to the levels that were \
+             run, and not to shaking of a given strength."
                 .to_owned(),
         );
     }
@@ -256,42 +256,42 @@ pub(super) fn warnings(
     if collapse.limit == LimitState::SeatLost {
         if let Some(test) = collapse.goodness.filter(|test| test.freedom > 0 && test.p < 0.05) {
             said.push(format!(
-                "The lognormal curve of collapse does not describe the raw fractions (p = {}): use these, or another \
+                "The lognormal curve of collapse does not describe the raw fractions (p = {}): use the raw fractions, or another \
                  measure.",
                 significant(test.p, 2)
             ));
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::Likelihood {
             said.push(
-                "All cases are of one record, and the band takes them as independent: it says nothing of other \
+                "All cases are of one record, and the band takes them as independent: it does not cover the scatter between \
                  records."
                     .to_owned(),
             );
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::None {
             said.push(format!(
-                "The curve hangs on a single one of the {} records, without which there is none, so that no interval \
-                 is given: add records.",
+                "The curve depends on a single one of the {} records: without it the cases determine no curve, so that no \
+                 interval is given. Add records.",
                 cases.records.len()
             ));
         }
         let returned = &collapse.returned;
         if let Some(first) = returned.first() {
             let why = if cases.endings.cut > 0 {
-                "Motions were cut short, which alone can do that".to_owned()
+                "Motions were cut short, which alone can cause this".to_owned()
             } else if cases.drawn.is_empty() {
-                "That is the nature of rocking and sliding stacks; a single run proves little"
+                "This is typical of rocking and sliding stacks; a single run proves little"
                     .to_owned()
             } else {
                 format!(
-                    "Rocking and sliding stacks do that, and {} is drawn anew for each case; a single run proves \
+                    "This is typical of rocking and sliding stacks, and {} is drawn for each case; a single run proves \
                      little",
                     cases.drawn.join(", ")
                 )
             };
             said.push(format!(
-                "{} of {} {} {} the stack standing at a higher level than one at which it falls (the first collapses \
-                 at {} and stands at {}). {why}.",
+                "{} of {} {} {} the stack standing at a higher level than one at which it falls (the first: collapse \
+                 at {}, standing at {}). {why}.",
                 returned.len(),
                 cases.curves(),
                 cases.curves_are(),
@@ -311,7 +311,7 @@ pub(super) fn warnings(
 fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     let measure = &cases.measures[curve.measure];
     let falls = curve.monotony.significant(0.05);
-    let meaning = "Below the stable window lies an island of it that a fitted curve smooths away";
+    let meaning = "A fitted curve hides that failure is likelier at the lower intensity";
     falls
         .map(|fall| {
             format!(
@@ -336,16 +336,16 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let of = rate.fitted.as_ref().unwrap_or(&rate.raw);
     if of.high > 1.1 * of.low {
         said.push(format!(
-            "The hazard table ends too early: shaking beyond its last row leaves the rate of collapse between {} and \
-             {} a year. Add stronger shaking.",
+            "The hazard table ends too early: because of shaking beyond its last row, the rate of collapse lies between {} and \
+             {} per year. Add rows of stronger shaking.",
             significant(of.low, 2),
             significant(of.high, 2)
         ));
     }
     if of.at_first > 0.01 {
         said.push(format!(
-            "The hazard table begins too late: its first row already fells {} of the stacks, and weaker shaking is not \
-             counted. Add weaker shaking.",
+            "The hazard table begins too late: the shaking of its first row already fells {} of the stacks, and weaker shaking \
+             is not counted. Add rows of weaker shaking.",
             percent(of.at_first)
         ));
     }
@@ -354,7 +354,7 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
     if rows[rows.len() - 1].0 > 1.5 * last {
         said.push(format!(
-            "The hazard reaches {}, the study {} only: losses beyond are held at those of its last level.",
+            "The hazard table reaches {}, but the study only {}: losses beyond are taken as those of its last level.",
             cases.measure().words(rows[rows.len() - 1].0),
             cases.measure().words(last)
         ));

@@ -1,4 +1,4 @@
-//! Comparison with field observations: Napa in 2014.
+//! Comparison of the results with field observations at Napa in 2014.
 
 use barrelstack_report::{Block, Cell, Table};
 
@@ -8,7 +8,7 @@ use super::{AtLevel, Heights};
 use crate::decision::percent;
 use crate::scenario::View;
 
-/// Levels of the lowest stacks that are compared with the observations.
+/// Number of levels of the lowest stacks that are compared with the observations.
 const LOWEST_OBSERVED: u32 = 4;
 
 /// Compares the results with observations at Napa.
@@ -19,28 +19,28 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     }
     blocks.push(Block::Table(recorded(all)));
     blocks.push(Block::List(vec![
-        "In the field: peak accelerations above 0.5 g and velocities above 50 cm/s near Napa (USGS 2015); half of the \
-         18,000 barrels of one store fell, and in one of its rooms almost every stack (Wines & Vines 2014). Most of what \
+        "Observed near Napa: peak accelerations above 0.5 g and velocities above 50 cm/s (USGS 2015). Half of the \
+         18,000 barrels of one store fell, and in one of its rooms almost every stack (Wines & Vines 2014). Most stacks that \
          collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as reported by Wines & Vines 2017)."
             .into(),
-        "That is a weak check. No share by height was ever published, the shaking at the stores was not recorded, and \
-         stacks there stood in rows that knock each other down, which is not modeled here and fells more."
+        "This is a weak check. No shares by height were published, the shaking at the stores was not recorded, and the \
+         stacks stood in rows that knock each other down, which fells more stacks and is not modeled here."
             .into(),
-        "Each of our runs shakes one plane. A real stack is shaken across and along at once and has both chances to fall: \
-         between the larger of the two and their sum."
+        "Each run is in one plane. A real stack is shaken across and along the barrels at once, so that its chance of \
+         collapse lies between the larger of the two chances and their sum."
             .into(),
     ]));
     blocks
 }
 
-/// Tabulates shares of high stacks beside those observed at Napa.
+/// Tabulates the simulated shares for high stacks beside those observed at Napa.
 fn observations(all: &Heights) -> Table {
     let mut table = Table::new(
         format!(
-            "Stacks of {}: ours at the strength of shaking of Napa, and what was found there.",
+            "Stacks of {}: simulated at the strength of shaking at Napa, and observed there.",
             span(LOWEST_OBSERVED, all.request.highest)
         ),
-        &[("", ""), ("ours", ""), ("found at Napa", "")],
+        &[("", ""), ("simulated", ""), ("observed at Napa", "")],
     );
     let range = |of: fn(&AtLevel) -> f64| {
         let found: Vec<f64> = VELOCITIES
@@ -80,14 +80,14 @@ fn observations(all: &Heights) -> Table {
     table
 }
 
-/// Tabulates runs under the bundled record, unscaled.
+/// Tabulates the runs under the bundled record, unscaled.
 fn recorded(all: &Heights) -> Table {
     let names: Vec<String> =
         all.request.heights().map(|levels| format!("{levels} levels")).collect();
     let mut columns = vec![("component", ""), ("PGV", "cm/s"), ("PGA", "g"), ("shaken", "")];
     columns.extend(names.iter().map(|name| (name.as_str(), "")));
     let mut table = Table::new(
-        "South Napa 2014 as recorded at Napa College, unscaled: what becomes of each stack (friction of the catalog).",
+        "South Napa 2014 as recorded at Napa College, unscaled: outcome for each stack (friction of the catalog).",
         &columns,
     );
     let mut rows: Vec<(&str, View)> = Vec::new();

@@ -1,4 +1,4 @@
-//! The numbers of the page for programs, in SI units.
+//! JSON document of a study of heights, in SI units.
 
 use barrelstack_fragility::Stripe;
 use barrelstack_report::described;
@@ -7,45 +7,45 @@ use super::{AsRecorded, Height, Heights, known};
 use crate::decision::{LimitCurve, bounds};
 
 described! {
-    /// Collapse of stacks by height.
+    /// Probability of collapse of stacks by height, direction and strength of shaking.
     pub struct HeightsDocument of all: &Heights {
         /// Name and version of this layout.
         pub schema: &'static str ["heights/1"] = "heights/1",
-        /// Rack of the catalog.
+        /// Name of the rack in the catalog.
         pub rack: String = all.request.rack.clone(),
-        /// Barrel of the catalog.
+        /// Name of the barrel in the catalog.
         pub barrel: String = all.request.barrel.clone(),
         /// Seed of motions and friction.
         pub seed: u32 = all.request.seed,
-        /// Motions that shook every stack.
+        /// Number of motions under which every stack was run.
         pub motions: usize = all.motions,
-        /// Runs in all.
+        /// Number of all runs.
         pub runs: usize = all.runs,
-        /// Runs without a verdict.
+        /// Number of runs without a verdict.
         pub runs_without_verdict: usize = all.left_out,
-        /// Runs whose stack fell under its own weight, before it was shaken; they count as collapsed.
+        /// Number of runs whose stack fell under its own weight, before it was shaken; they count as collapsed.
         pub runs_fallen_at_rest: usize = all.fallen_at_rest,
-        /// The answer in a sentence.
+        /// Main result in a sentence.
         pub headline: String = all.document.verdict.headline.clone(),
-        /// Every height in every direction.
+        /// Results of every height in every direction.
         pub heights: Vec<HeightRow> = all.heights.iter().map(HeightRow::of).collect(),
-        /// The bundled record as it was recorded.
+        /// Runs under the bundled record, unscaled.
         pub as_recorded: Vec<RecordedRow> = all.recorded.iter().map(RecordedRow::of).collect(),
         /// Warnings.
         pub warnings: Vec<String> = all.warnings.clone(),
     }
 
-    /// One run under the bundled record as it was recorded.
+    /// Run of a stack under the bundled record, unscaled.
     pub struct RecordedRow of run: &AsRecorded {
-        /// Levels of the stack.
+        /// Number of levels of the stack.
         pub levels: u32 = run.levels,
         /// Direction of the shaking: across or along the barrels.
         pub direction: &'static str ["transverse", "longitudinal"] = run.view.name(),
-        /// The component.
+        /// Name of the horizontal component.
         pub motion: String = run.motion.clone(),
-        /// `true` if it collapsed.
+        /// `true` if the stack collapsed.
         pub collapsed: bool = run.collapsed,
-        /// Share of its barrels that fell.
+        /// Share of the barrels that fell.
         pub fallen_share: f64 as "1" = run.fallen,
         /// Peak ground velocity.
         pub pgv: f64 as "m/s" = run.velocity,
@@ -53,20 +53,20 @@ described! {
         pub pga: f64 as "m/s2" = run.acceleration,
     }
 
-    /// The stacks of one height in one direction.
+    /// Results of stacks of one height in one direction of shaking.
     pub struct HeightRow of height: &Height {
-        /// Levels of the stack.
+        /// Number of levels of the stack.
         pub levels: u32 = height.levels,
         /// Direction of the shaking: across or along the barrels.
         pub direction: &'static str ["transverse", "longitudinal"] = height.view.name(),
-        /// Steady horizontal acceleration that they bear at most, with the friction and the seats of the catalog; null
-        /// where they bear 1 g.
+        /// Largest steady horizontal acceleration that the stack bears, with the friction and the seats of the catalog;
+        /// null if it bears 1 g.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
         /// Results at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),
-        /// Collapse over peak ground velocity (m/s).
+        /// Fragility curve against peak ground velocity (m/s).
         pub pgv: FittedCurve = FittedCurve::of(&height.by_velocity),
-        /// Collapse over peak ground acceleration (m/s2).
+        /// Fragility curve against peak ground acceleration (m/s2).
         pub pga: FittedCurve = FittedCurve::of(&height.by_acceleration),
     }
 
@@ -74,19 +74,19 @@ described! {
     pub struct LevelRow of at: &(&Stripe, &f64) {
         /// Peak ground velocity.
         pub pgv: f64 as "m/s" = at.0.intensity,
-        /// Runs with a verdict.
+        /// Number of runs with a verdict.
         pub cases: u32 = at.0.cases,
-        /// Runs that collapse.
+        /// Number of runs that collapse.
         pub collapsed: u32 = at.0.failures,
-        /// Ends of the chance of collapse, each of which holds with 95 % confidence (Clopper and Pearson).
+        /// Lower and upper bound of the probability of collapse; each holds with 95 % confidence (Clopper and Pearson).
         pub interval: [Option<f64>; 2] as "1" = bounds(known(at.0)),
         /// Mean share of the barrels that fall.
         pub fallen_share: f64 as "1" = *at.1,
     }
 
-    /// A lognormal curve of the chance of collapse.
+    /// Lognormal fragility curve of collapse.
     pub struct FittedCurve of curve: &LimitCurve {
-        /// Intensity at which half collapse; null where no curve can be fitted.
+        /// Intensity at which half of the stacks collapse; null if no curve can be fitted.
         pub median: Option<f64> as "of the intensity" =
             curve.fit.as_ref().ok().map(|fit| fit.curve.median),
         /// Standard deviation of the logarithm of the intensity at collapse.
@@ -94,7 +94,7 @@ described! {
         /// 95 % interval of the median.
         pub median_interval: Option<[Option<f64>; 2]> as "of the intensity" =
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
-        /// Why there is no curve.
+        /// Reason why there is no curve; null if there is one.
         pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
     }
 }

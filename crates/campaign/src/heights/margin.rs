@@ -1,4 +1,4 @@
-//! Static margins: the steady horizontal acceleration that a stack bears, which is that of a tilted floor.
+//! Static margins: the largest steady horizontal acceleration that a stack bears, found by tilting the floor.
 
 use std::ops::ControlFlow;
 
@@ -10,7 +10,7 @@ use crate::run::RunFailure;
 use crate::scenario::{Scenario, View};
 use crate::study::StudyError;
 
-/// Returns the static margin (m/s²) of a stack; none where it stands at 1 g, zero where it falls under its own weight.
+/// Returns the static margin (m/s²) of a stack; `None` if it stands at 1 g, zero if it falls under its own weight.
 fn margin(
     request: &Request,
     (levels, view): (u32, View),
@@ -22,7 +22,7 @@ fn margin(
     let text = format!("schema = 1\nmotion.none = true\n{}", plan::stack(request, view, levels)?);
     let scenario = Scenario::from_str(&text).map_err(StudyError::from)?;
     match stability(&scenario) {
-        // Gravity on a tilted floor is that of a level one and a push of `g tan` of the tilt.
+        // A tilted floor acts like a level floor with a steady horizontal acceleration of g times the tangent of the tilt.
         Ok(found) => {
             Ok(found.tilt.map(|tilt| barrelstack_motion::STANDARD_GRAVITY * libm::tan(tilt)))
         }
@@ -31,8 +31,8 @@ fn margin(
     }
 }
 
-/// Returns the static margins (m/s²) of stacks by their levels and directions, in their order; none for one that stands
-/// at 1 g.
+/// Returns the static margins (m/s²) of stacks, given by levels and direction, in the same order; `None` for a stack
+/// that stands at 1 g.
 pub(super) fn margins(
     request: &Request,
     stacks: &[(u32, View)],
@@ -65,7 +65,7 @@ mod tests {
             margins(&request, &stacks, &going).unwrap().into_iter().map(Option::unwrap).collect();
         println!("{found:?} m/s²");
         for ((levels, view), margin) in stacks.iter().zip(&found) {
-            // Accelerations that grow to less and to more, and stay near that for ten seconds.
+            // An acceleration that grows to a share of the margin and stays near it for ten seconds.
             let falls = |share: f64| {
                 let text = format!(
                     "schema = 1\n{}[motion.pulse]\nkind = \"half-sine\"\namplitude = \"{} m/s^2\"\nperiod = \"80 s\"\n\
@@ -77,7 +77,7 @@ mod tests {
             };
             assert_eq!([falls(0.8), falls(1.15)], [false, true], "{levels} {view:?}");
         }
-        // The higher stack has less.
+        // The higher stack has the smaller margin.
         assert!(found[2] < found[1], "{found:?}");
     }
 }

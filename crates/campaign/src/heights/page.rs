@@ -1,4 +1,4 @@
-//! The page on safe heights.
+//! Report page of a study of heights.
 
 use barrelstack_fragility::{Fit, Interval, at_most};
 use barrelstack_report::{
@@ -14,14 +14,15 @@ use crate::decision::{
 use crate::scenario::title::{counted, number};
 use crate::scenario::{View, catalog};
 
-/// Largest share of collapse that is called low, and the largest upper bound of the probability with it: a probability
-/// above that is called low in at most one of 20 tries, whatever the number of motions.
+/// Largest share of collapse that is rated low, and the largest upper bound of the probability of collapse that is.
+///
+/// A probability above that bound is rated low in at most one of 20 tries, for any number of motions.
 const LOW: (f64, f64) = (0.05, 0.12);
 
-/// Largest share that is called medium.
+/// Largest share of collapse that is rated medium.
 const MEDIUM: f64 = 0.25;
 
-/// Builds the whole page.
+/// Builds the report page.
 pub(super) fn document(all: &Heights) -> Document {
     Document {
         title: format!("How high is safe: stacks on {} racks", all.request.rack),
@@ -47,8 +48,9 @@ fn rack_source(name: &str) -> String {
     catalog::rack(name).map_or_else(String::new, |rack| format!("{name}: {}", rack.source))
 }
 
-/// Returns the perceived shaking of a peak ground velocity (m/s), in the terms of shaking maps: an assumption, since
-/// the classes are averages of earthquakes in California (Wald et al. 1999).
+/// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of shaking maps.
+///
+/// The classes are averages over earthquakes in California (Wald et al. 1999), so that they are an assumption elsewhere.
 fn felt(velocity: f64) -> &'static str {
     match 100.0 * velocity {
         v if v < 8.1 => "moderate (V)",
@@ -60,7 +62,7 @@ fn felt(velocity: f64) -> &'static str {
     }
 }
 
-/// Names stacks of some heights: "two levels", "two to six levels".
+/// Returns a range of heights in words, such as "two levels" or "two to six levels".
 pub(super) fn span(from: u32, to: u32) -> String {
     if from == to {
         counted(from, "level")
@@ -73,13 +75,14 @@ fn shaking(velocity: f64) -> String {
     format!("{:.0} cm/s", 100.0 * velocity)
 }
 
-/// Formats shaking with its perceived class: "severe shaking (40 cm/s)".
+/// Formats a level of PGV (m/s) with its perceived shaking, such as "severe shaking (40 cm/s)".
 fn named(velocity: f64) -> String {
     let felt = felt(velocity).split(' ').take_while(|word| !word.starts_with('('));
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// Returns the results of a height at a level of PGV (m/s) in the direction with the larger upper bound of collapse.
+/// Returns the results of a height at a level of PGV (m/s), in the direction with the larger upper bound of the
+/// probability of collapse.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     View::ALL
         .into_iter()
@@ -98,7 +101,7 @@ fn rating(at: &AtLevel) -> Rating {
     }
 }
 
-/// Returns the highest stack that is rated low at a level of PGV (m/s) together with all lower ones.
+/// Returns the largest height that is rated low at a level of PGV (m/s) along with all smaller heights.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     all.request
         .heights()
@@ -108,7 +111,7 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
         .last()
 }
 
-/// Returns the smallest number of motions that can prove a low probability if no stack collapses.
+/// Returns the smallest number of motions with which a height can be rated low if no stack collapses.
 fn fewest_motions() -> u32 {
     (1..1_000_000).find(|n| at_most(0, *n, 0.95) <= LOW.1).unwrap_or(u32::MAX)
 }
@@ -122,8 +125,8 @@ fn headline(all: &Heights) -> String {
             "Too few motions to call any stack {racks} low in risk: {motions} shook every stack, and {more} more would do."
         );
     }
-    // From the weakest shaking up to the first level that is not low: if each level were tested independently,
-    // one too many would pass.
+    // Go from the weakest shaking up to the first level that is not rated low. If each level were judged
+    // independently, one of them could pass by chance.
     let low =
         VELOCITIES.into_iter().map_while(|velocity| Some((velocity, highest_low(all, velocity)?)));
     let Some((velocity, levels)) = low.last() else {
@@ -145,7 +148,7 @@ fn headline(all: &Heights) -> String {
     )
 }
 
-/// Names the directions in which two levels are not low in risk at a level of PGV (m/s): ", along the barrels".
+/// Returns the directions in which two levels are not rated low at a level of PGV (m/s), such as ", along the barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |view: &View| {
         let at = all.of(LOWEST, *view).and_then(|height| height.at(velocity));
@@ -155,7 +158,7 @@ fn weaker(all: &Heights, velocity: f64) -> String {
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
-/// Describes the worst of all stacks of up to some levels at a level of PGV (m/s), all of which were counted:
+/// Returns the worst result of all heights up to `levels` at a level of PGV (m/s), such as
 /// "in 24 motions none fell: at most 12 % (95 %)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
@@ -170,7 +173,7 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     format!("in {} motions {fell}: at most {} (95 %)", stripe.cases, bound(interval.high))
 }
 
-/// Formats a bound in whole percent, understated by at most half a percent.
+/// Formats a bound in whole percent, so that rounding may understate it by half a percent.
 fn bound(high: f64) -> String {
     format!("{:.0} %", 100.0 * high)
 }
@@ -196,13 +199,13 @@ fn sentences(all: &Heights) -> Vec<String> {
             percent(high)
         ));
     }
-    // None has no limit below 1 g.
+    // A height without a margin stands at 1 g.
     let least = |height: &&Height| height.static_margin.unwrap_or(f64::INFINITY);
     let weakest = all.heights.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
     if let Some((height, margin)) = weakest.and_then(|height| Some((height, height.static_margin?)))
     {
         said.push(format!(
-            "{} levels have the smallest static margin, {}: they come apart under a steady push of {}, as on a floor \
+            "Stacks of {} levels have the smallest static margin, {}: they collapse under a steady push of {}, as on a floor \
              tilted by {:.0} degrees.",
             height.levels,
             height.view.words(),
@@ -213,12 +216,12 @@ fn sentences(all: &Heights) -> Vec<String> {
     said
 }
 
-/// An acceleration (m/s²) over gravity: "0.12 g".
+/// Formats an acceleration (m/s²) in units of gravity, such as "0.12 g".
 fn gravities(acceleration: f64) -> String {
     format!("{:.2} g", acceleration / barrelstack_motion::STANDARD_GRAVITY)
 }
 
-/// The tilt (degrees) of a floor on which gravity pulls sideways as an acceleration (m/s²) does.
+/// Returns the tilt (degrees) of a floor that acts like a steady horizontal acceleration (m/s²).
 fn tilt(acceleration: f64) -> f64 {
     libm::atan(acceleration / barrelstack_motion::STANDARD_GRAVITY).to_degrees()
 }
@@ -228,18 +231,18 @@ fn blocks(all: &Heights) -> Vec<Block> {
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
-            "Each cell is the share of stacks that collapse in the direction in which more may, and the range of the true \
-             chance, of which each end holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
-             below, so that a higher chance passes for low in one of 20 tries at most. ! medium: at most {:.0} %. ✗ high: \
-             more. These limits are a choice.",
+            "Each cell shows the share of stacks that collapse, in the direction with the higher bound, and in brackets the range \
+             of the true chance; each end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range \
+             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 tries. ! medium: at most \
+             {:.0} %. ✗ high: more. These limits are a choice.",
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * MEDIUM
         )),
         text(
-            "Find your site's line: request the peak ground velocity of your design earthquake, or read it off a \
-             ShakeMap of a past one. The Roman numeral is an assumption: the intensity that goes with such a velocity in \
-             California on average (Wald et al. 1999).",
+            "To find the row of your site, ask for the peak ground velocity of your design earthquake, or read it from a \
+             ShakeMap of a past earthquake. The Roman numeral is the intensity that corresponds to the velocity on average \
+             in California (Wald et al. 1999); elsewhere it is an assumption.",
         ),
         Block::Figure(chart(all)),
         heading("Both directions"),
@@ -250,14 +253,14 @@ fn blocks(all: &Heights) -> Vec<Block> {
     }
     blocks.push(Block::Figure(medians(all)));
     blocks.push(Block::Table(median_table(all)));
-    blocks.push(heading("Against what happened at Napa in 2014"));
+    blocks.push(heading("Comparison with Napa in 2014"));
     blocks.extend(field::napa(all));
-    blocks.push(heading("What this rests on"));
+    blocks.push(heading("Basis and limits"));
     blocks.push(Block::List(rests_on(all)));
     blocks
 }
 
-/// Builds a table with one row per level of shaking and one column per height.
+/// Returns a table with one row per level of shaking and one column per height.
 fn by_height(all: &Heights, caption: String, cell: impl Fn(u32, f64) -> Cell) -> Table {
     let names: Vec<String> =
         all.request.heights().map(|levels| format!("{levels} levels")).collect();
@@ -305,7 +308,10 @@ fn card(all: &Heights) -> Table {
 fn direction(all: &Heights, view: View) -> Table {
     by_height(
         all,
-        format!("Collapse under shaking {}: collapsed stacks of those run.", view.words()),
+        format!(
+            "Collapse under shaking {}: number of stacks that collapse, of those run.",
+            view.words()
+        ),
         |levels, velocity| {
             let found = all.of(levels, view).and_then(|height| height.at(velocity));
             Cell::maybe(
@@ -317,7 +323,7 @@ fn direction(all: &Heights, view: View) -> Table {
     )
 }
 
-/// Returns the steady push that each height bears, beside the shaking at which it begins to collapse.
+/// Tabulates the static margin of each height, and the weakest shaking in which some stacks collapse.
 fn static_margins(all: &Heights) -> Table {
     let first = |height: &Height| {
         let falls = |at: &AtLevel| at.stripe.failures > 0;
@@ -325,9 +331,9 @@ fn static_margins(all: &Heights) -> Table {
         level.map_or_else(|| "at none".to_owned(), shaking)
     };
     Table::of(
-        "Static margin: the steady horizontal acceleration that a stack bears at most, and the tilt of a floor that does the \
-         same; with the friction and the seats of the catalog. Shaking whose pulses last as long as the stack takes to tip \
-         fells it little above that.",
+        "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
+         with the friction and the seats of the catalog. Shaking with pulses as long as the stack takes to tip over \
+         fells it at little more.",
         &all.heights,
         &[
             ("levels", "", &|height| Cell::text(height.levels.to_string())),
@@ -346,11 +352,11 @@ fn level_axis(all: &Heights) -> Axis {
     Axis { range: Some(range), ..Axis::new("levels", "") }
 }
 
-/// Plots the probability against height at three levels of shaking, with intervals.
+/// Plots the share of collapse against height at three levels of shaking, with intervals.
 fn chart(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
-        // Side by side, so that the bars do not overlap.
+        // Points are shifted sideways so that their bars do not overlap.
         let shift = 0.07 * (index as f64 - 1.0);
         let found: Vec<(f64, f64, Interval)> = all
             .request
@@ -366,7 +372,7 @@ fn chart(all: &Heights) -> Figure {
     }
     Figure::new(
         "height-chart",
-        "Chance of collapse against height in the weaker direction, at three strengths of shaking. Each end of an upright bar \
+        "Chance of collapse against height in the weaker direction, at three strengths of shaking. Each end of a vertical bar \
          holds with 95 % confidence.",
         Plot {
             x: level_axis(all),
@@ -403,7 +409,7 @@ fn medians(all: &Heights) -> Figure {
     Figure::new(
         "medians",
         "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. A height \
-         without a dot has no curve: the table says why.",
+         without a dot has no curve; the table gives the reason.",
         Plot {
             x: level_axis(all),
             y: Axis::new("median PGV of collapse", "cm/s"),
@@ -428,7 +434,7 @@ fn median_table(all: &Heights) -> Table {
     };
     let g = 1.0 / barrelstack_motion::STANDARD_GRAVITY;
     Table::of(
-        "Fragility by height and direction: lognormal curves of greatest likelihood.",
+        "Fragility by height and direction: lognormal curves of maximum likelihood.",
         all.heights.iter().map(|height| (height, &height.by_velocity, &height.by_acceleration)),
         &[
             ("levels", "", &|(height, ..)| Cell::text(height.levels.to_string())),
@@ -450,24 +456,24 @@ fn rests_on(all: &Heights) -> Vec<String> {
              (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of near faults){}, each scaled to \
              every level of PGV.",
             all.request.synthetic,
-            if all.request.records.is_empty() { "" } else { ", and the records that were named" }
+            if all.request.records.is_empty() { "" } else { ", and the given records" }
         ),
         format!(
             "Full barrels, `{}` of the catalog. Friction is drawn for every run: rack on floor about 0.5 (scatter 20 %), \
              barrel on rack about 0.3 (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure \
-             yours.",
+             your own.",
             all.request.barrel
         ),
-        "One stack alone in a plane: no neighbors, no walls, no straps. Collapse is the loss of the first seat of a barrel \
-         or a rack."
+        "Each stack stands alone, in a plane model: no neighbors, no walls, no straps. Collapse is the first loss of a seat \
+         by a barrel or a rack."
             .into(),
-        "Scaled motions are not the motions of stronger earthquakes: real ones are longer and have longer periods. Levels far \
-         from a motion's own strength are the least certain."
+        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. Results at \
+         levels far from a motion's own strength are the least certain."
             .into(),
-        "Ranges count every motion as one observation and hold for motions like these, not for what the model leaves out."
+        "Ranges count every motion as one observation. They apply to motions like these and do not cover errors of the model."
             .into(),
-        "Racks are those of the catalog, of which several dimensions are assumptions. A study runs the same for \
-         racks and rooms of your own: the folder holds the studies of this page."
+        "The racks are those of the catalog; several of their dimensions are assumptions. The folder holds the studies of this \
+         page, which you can change and run for racks and rooms of your own."
             .into(),
     ]
 }
@@ -480,7 +486,7 @@ pub(super) fn warnings(all: &Heights) -> Vec<String> {
         for fall in height.by_velocity.monotony.significant(0.05) {
             said.push(format!(
                 "{} levels shaken {}: {} of {} collapse at {}, but only {} of {} at {} (p = {}). Stronger shaking is not \
-                 always worse for this stack; do not read safety into that.",
+                 always worse for this stack; this does not make the stack safe.",
                 height.levels,
                 height.view.words(),
                 fall.from.failures,

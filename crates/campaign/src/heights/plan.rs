@@ -1,4 +1,4 @@
-//! The studies behind the page: stacks, motions and random factors.
+//! Study files of a study of heights: stacks, motions and random factors.
 
 use std::fmt::Write as _;
 
@@ -8,20 +8,21 @@ use crate::scenario::{Scenario, View, catalog};
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Levels of the lowest stacks.
+/// Number of levels of the lowest stacks.
 pub const LOWEST: u32 = 2;
-/// Levels of the highest stacks that may be requested.
+/// Largest number of levels that may be requested.
 pub const HIGHEST: u32 = 6;
 
 /// Levels of peak ground velocity (m/s) to which every motion is scaled.
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
 
-/// Returns the name of a study and of its folder.
+/// Returns the name of a study, which is also that of its folder.
 pub(super) fn name(view: View, recorded: bool) -> String {
     format!("{}{}", view.name(), if recorded { "-as-recorded" } else { "" })
 }
 
-/// Returns the text of a study: every height under every motion at every level, or under the bundled record unscaled.
+/// Returns the text of a study file: every height under every motion at every level, or under the bundled record
+/// unscaled.
 pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
     let (columns, rack) = columns_and_rack(request, view)?;
     let levels: Vec<String> = request.heights().map(|levels| levels.to_string()).collect();
@@ -72,7 +73,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
     Ok(text)
 }
 
-/// Returns the columns of a stack in a direction, and its rack as TOML.
+/// Returns the number of columns of a stack in a direction, and its rack as TOML.
 fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), HeightsError> {
     let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
         let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
@@ -82,8 +83,8 @@ fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), Heig
         let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
         return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
     }
-    // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge needs
-    // only a closer node spacing.
+    // Along the barrels one rack is one column. A rail that touches a bulged stave at its inner edge needs only a
+    // closer node spacing.
     Ok(match view {
         View::Transverse => (rack.barrels, format!("\"{}\"", rack.base)),
         View::Longitudinal => {
@@ -92,7 +93,7 @@ fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), Heig
     })
 }
 
-/// Returns the table `[stack]` of a number of levels.
+/// Returns the table `[stack]` of a scenario, for a number of levels.
 pub(super) fn stack(request: &Request, view: View, levels: u32) -> Result<String, HeightsError> {
     let (columns, rack) = columns_and_rack(request, view)?;
     Ok(format!(
@@ -102,15 +103,17 @@ pub(super) fn stack(request: &Request, view: View, levels: u32) -> Result<String
     ))
 }
 
-/// Returns a path as a string of TOML, absolute so that it is valid wherever the study lies.
+/// Returns a path as a TOML string, made absolute so that it does not depend on the folder of the study.
 pub(crate) fn quoted(path: &std::path::Path) -> String {
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let text = whole.display().to_string().replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{text}\"")
 }
 
-/// Returns synthetic motions: half of a moderate earthquake nearby, a quarter of a large one further off, a quarter
-/// with a velocity pulse of near faults; names end with a suffix.
+/// Returns the tables `[[motion]]` of synthetic motions, with a suffix to their names.
+///
+/// Half of them are of a moderate earthquake nearby, a quarter of a large one further away, and a quarter have a velocity
+/// pulse as near faults.
 pub(crate) fn synthetic(count: u32, suffix: &str) -> String {
     let large = count / 4;
     let pulses = count / 4;

@@ -1,4 +1,4 @@
-//! Sentences of the page of heights for given counts.
+//! Tests of the sentences of the report page of heights.
 
 use barrelstack_fragility::{FitError, Monotony, Stripe};
 use barrelstack_report::{Document, markdown};
@@ -7,7 +7,7 @@ use super::page::document;
 use super::*;
 use crate::decision::BandKind;
 
-/// A curve of counts alone, of 24 motions at each level of shaking.
+/// Returns a curve without a fit, from counts for 24 motions at each level of shaking.
 fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     let stripe =
         |velocity: f64| Stripe { intensity: velocity, cases: 24, failures: failures(velocity) };
@@ -36,7 +36,7 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
-/// Heights of which `failures` fall at a level of shaking, by levels and direction.
+/// Returns results in which `failures` stacks collapse, as a function of levels, direction and level of shaking.
 fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
     let height = |levels: u32, view: View| Height {
         levels,
@@ -65,7 +65,7 @@ fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
 
 #[test]
 fn every_headline_says_the_rack_and_the_direction() {
-    // Along the barrels all fall beyond 24 cm/s, and one stack of six levels at 24 cm/s.
+    // Along the barrels all stacks collapse beyond 24 cm/s, and one stack of six levels at 24 cm/s.
     let along = |levels: u32, view: View, velocity: f64| match view {
         View::Transverse => 0,
         View::Longitudinal if velocity > 0.3 => 24,
@@ -78,7 +78,7 @@ fn every_headline_says_the_rack_and_the_direction() {
          along them: in 24 motions none fell: at most 12 % (95 %); in severe shaking (36 cm/s) not even two levels are, \
          along the barrels."
     );
-    // One of 24 leaves up to 18 % possible and is not low.
+    // One collapse in 24 leaves up to 18 % possible, which is not rated low.
     let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
     assert_eq!(
         one.verdict.headline,
@@ -100,8 +100,8 @@ fn static_margins_stand_beside_each_height() {
     let last = page.verdict.sentences.last().unwrap();
     assert_eq!(
         last,
-        "6 levels have the smallest static margin, along the barrels: they come apart under a steady push of 0.10 g, as \
-         on a floor tilted by 6 degrees."
+        "Stacks of 6 levels have the smallest static margin, along the barrels: they collapse under a steady push of \
+         0.10 g, as on a floor tilted by 6 degrees."
     );
     let text = markdown(&page, "figures").text.replace('\u{a0}', " ");
     for row in [

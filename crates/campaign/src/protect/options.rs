@@ -1,4 +1,4 @@
-//! Protections of a stack: changes of the scenario, their cost, and their worn states.
+//! Protections of a stack: changes of the scenario, with their cost and their worn states.
 
 use barrelstack::device::{Cost, DEVICES, Each, Setting};
 
@@ -13,14 +13,14 @@ pub enum Kind {
     Height,
     /// Other racks.
     Rack,
-    /// A device, by the word for one of it.
+    /// A device, identified by its name in the singular.
     Device(&'static str),
-    /// Two of these at once.
+    /// Two protections of different kinds at once.
     Pair,
 }
 
 impl Kind {
-    /// Returns the word in documents.
+    /// Returns the name used in JSON documents.
     pub fn name(self) -> &'static str {
         match self {
             Self::AsItIs => "as-it-is",
@@ -32,38 +32,39 @@ impl Kind {
     }
 }
 
-/// One protection of a stack, or two at once.
+/// Protection of a stack, single or combined from two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protection {
-    /// Its kind.
+    /// Kind of the protection.
     pub kind: Kind,
-    /// Name of its folder, of letters, digits and dashes.
+    /// Name of the folder of its studies: letters, digits and dashes.
     pub key: String,
-    /// Its name for display.
+    /// Name for display.
     pub name: String,
-    /// Overrides of the scenario.
+    /// Changes, as overrides of the scenario.
     pub changes: Vec<String>,
-    /// Lower and upper cost for a stack (US$).
+    /// Lower and upper cost for one stack (US$).
     pub cost: [f64; 2],
     /// Source of the cost.
     pub source: String,
     /// Number of barrels that have to be stored elsewhere.
     pub moved: u32,
-    /// States of wear: in words, and as further overrides.
+    /// Worn states: a description, and further overrides of the scenario.
     pub degraded: Vec<(String, Vec<String>)>,
 }
 
-/// Price (US$) of a new rack for two barrels: about 100 in 2009 (cedarrivercellars.com); the upper value, twice that by
-/// now, is an assumption.
+/// Lower and upper price (US$) of a new rack for two barrels.
+///
+/// The price was about 100 in 2009 (cedarrivercellars.com); that it has doubled since is an assumption.
 const RACK: [f64; 2] = [100.0, 200.0];
 
-/// Price (US$) of a rack on posts, which has about twice the steel: an assumption.
+/// Assumed lower and upper price (US$) of a rack on posts, which has about twice the steel.
 const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 
-/// Cost (US$) of storing a barrel elsewhere, half a rack and its floor: an assumption.
+/// Assumed lower and upper cost (US$) of storing a barrel elsewhere: half a rack and its floor space.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
-/// Returns all single protections of a stack, the first of which is the stack as it is.
+/// Returns all single protections of a stack; the first is the stack as it is.
 pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let Some(stack) = scenario.stack() else { return Vec::new() };
     let (levels, columns) = (stack.levels, stack.columns);
@@ -85,7 +86,7 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
         all.push(Protection {
             changes: vec![format!("stack.levels={kept}")],
             cost: times(PLACE, moved),
-            source: "places for the barrels elsewhere; assumption".to_owned(),
+            source: "storage of the barrels elsewhere; assumption".to_owned(),
             moved,
             ..none(
                 Kind::Height,
@@ -122,7 +123,9 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     all
 }
 
-/// Returns the price of a device (US$) on the number of levels that it is set to, by default on all.
+/// Returns the lower and upper price of a device (US$).
+///
+/// A price per level is multiplied by the number of levels that the changes state, by default all.
 fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     let set = |change: &String| change.split_once(".levels=")?.1.parse::<u32>().ok();
     let count = match cost.each {
@@ -132,15 +135,16 @@ fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     times(cost.dollars, count)
 }
 
-/// Converts a name to that of a folder.
+/// Converts a name to a folder name of lower-case letters, digits and dashes.
 pub(crate) fn slug(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let dashed: String = name.chars().map(plain).collect();
     dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
-/// Combines two protections, the second for the stack that the first leaves; `None` for two of one kind, since they
-/// change the same fields, and where the second does not fit that stack.
+/// Combines two protections: the second is applied to the stack that results from the first.
+///
+/// Returns `None` for two of one kind, since they change the same fields, and if the second does not fit that stack.
 pub(super) fn pair(
     scenario: &Scenario,
     one: &Protection,
@@ -168,7 +172,7 @@ pub(super) fn pair(
     })
 }
 
-/// Applies overrides to a scenario, whatever its source; reads no file.
+/// Applies overrides to a scenario from any source, without reading a file.
 pub(crate) fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
@@ -181,12 +185,12 @@ impl Protection {
     /// Applies the protection to a scenario.
     ///
     /// # Errors
-    /// If it does not fit.
+    /// If the protection does not fit the stack.
     pub fn on(&self, scenario: &Scenario) -> Result<Scenario, ScenarioError> {
         changed(scenario, &self.changes)
     }
 
-    /// Returns its worn states: in words, and as protections in its place.
+    /// Returns the worn states: a description of each, and the protection in that state.
     pub(super) fn worn(&self) -> impl Iterator<Item = (&str, Self)> {
         self.degraded.iter().enumerate().map(|(at, (words, changes))| {
             let field = |change: &String| change.split('=').next().map(str::to_owned);

@@ -1,4 +1,4 @@
-//! The page: a table to act on, a figure, before and after, and what was not modeled.
+//! Report page of a ranking of protections.
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
@@ -10,18 +10,18 @@ use crate::decision::{fallen_at_rest, heading, left_out, percent, points, text};
 
 pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
     let mut blocks = before_and_after;
-    blocks.push(heading("What it comes to"));
+    blocks.push(heading("Comparison of the protections"));
     blocks.push(Block::Table(table(all)));
     blocks.push(text(legend(all)));
     blocks.push(Block::Figure(chart(all)));
-    blocks.push(heading("How to try one"));
+    blocks.push(heading("How to try a protection"));
     blocks.push(Block::Table(changes(all)));
     if !all.not_tried.is_empty() {
-        blocks.push(heading("What was not tried"));
+        blocks.push(heading("Protections that were not tried"));
         let row = |(name, reason): &(String, String)| format!("{name}: {reason}");
         blocks.push(Block::List(all.not_tried.iter().map(row).collect()));
     }
-    blocks.push(heading("What this rests on"));
+    blocks.push(heading("Basis and limits"));
     blocks.push(Block::List(rests_on(all)));
     Document {
         title: format!("What protects best: {}", all.request.scenario.title),
@@ -32,7 +32,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
         },
         blocks,
         provenance: vec![
-            ("protections tried beside the stack as it is".into(), all.tries().to_string()),
+            ("protections tried (not counting the stack as it is)".into(), all.tries().to_string()),
             ("runs".into(), all.runs.to_string()),
             ("seed".into(), all.request.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
@@ -42,7 +42,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
     }
 }
 
-/// Returns "a year at this site", or "when shaken to 25, 50, 75 cm/s".
+/// Returns the reference of the estimates, such as "a year at this site" or "in shaking of 25, 50, 75 cm/s".
 fn per(all: &Ranking) -> String {
     match &all.request.shaking {
         Shaking::Site(_) => "a year at this site".to_owned(),
@@ -65,7 +65,7 @@ fn collapse(all: &Ranking, value: f64) -> String {
     if is_site(all) { format!("{} times a year", significant(value, 2)) } else { percent(value) }
 }
 
-/// Returns the opening statement if the stack as it is, or as recommended, falls without any shaking.
+/// Returns a sentence if the stack as it is, or with the best protection, falls under its own weight; empty otherwise.
 fn by_themselves(all: &Ranking) -> String {
     let of = |one: Option<&Ranked>, name: &str| {
         let said = one.map(|one| fallen_at_rest(one.fallen_at_rest, one.runs, "runs"));
@@ -88,12 +88,12 @@ fn headline(all: &Ranking) -> String {
         );
     }
     let Some(best) = all.best() else {
-        return "Nothing that was tried helps beyond doubt.".to_owned();
+        return "No protection that was tried helps significantly.".to_owned();
     };
     let shaken = |one: &Ranked| format!(", shaken {}", one.direction.words());
     let other = if best.direction == base.direction { String::new() } else { shaken(base) };
     format!(
-        "Most is saved for its cost by this: {}. With it {} loses {} barrels on average {}{}; as it is {}{other}.{}",
+        "The best protection for its cost: {}. With it, {} loses {} barrels on average {}{}; as it is, {}{other}.{}",
         best.protection.name,
         stack(all),
         significant(best.fallen.mean, 2),
@@ -104,7 +104,7 @@ fn headline(all: &Ranking) -> String {
     )
 }
 
-/// States how often a stack collapses, how often at most, and how many motions say so.
+/// Returns a sentence with the chance or rate of collapse, its upper bound, and the number of motions.
 fn known(all: &Ranking, one: &Ranked) -> String {
     let (mean, high) = (one.collapse.mean, collapse(all, one.collapse.high));
     if mean <= 0.0 {
@@ -121,7 +121,7 @@ fn known(all: &Ranking, one: &Ranked) -> String {
     )
 }
 
-/// Describes the stack: "a stack of 4 levels on `two-barrel` racks".
+/// Describes the stack, such as "a stack of 4 levels on two-barrel racks".
 fn stack(all: &Ranking) -> String {
     let stack = all.request.scenario.stack();
     stack.map_or_else(
@@ -136,32 +136,32 @@ fn sentences(all: &Ranking) -> Vec<String> {
     if let Some((best, saved)) = best.and_then(|best| Some((best, best.saved_together?))) {
         let shown = |x: f64| significant(x, 2);
         said.push(format!(
-            "It keeps {} barrels from falling in the mean, {} to {} with 95 % confidence for all {} protections that were \
-             tried at once: the mean of the best of many is likely to be somewhat too good.",
+            "It keeps {} barrels from falling on average ({} to {} with 95 % confidence, for all {} protections that were \
+             tried simultaneously). The mean of the best of many tends to be somewhat too good.",
             shown(saved.mean),
             shown(saved.low),
             shown(saved.high),
             all.tries()
         ));
         said.push(format!(
-            "It costs US${:.0} to {:.0} a stack, and collapse comes to {} instead of {}.",
+            "It costs US${:.0} to {:.0} per stack; the frequency of collapse is {} instead of {}.",
             best.protection.cost[0],
             best.protection.cost[1],
             collapse(all, best.collapse.mean),
             collapse(all, base.collapse.mean)
         ));
         if best.protection.moved > 0 {
-            said.push(format!("{} barrels have to stand elsewhere.", best.protection.moved));
+            said.push(format!("{} barrels have to be stored elsewhere.", best.protection.moved));
         }
         if let Some((words, worn)) = &best.worn {
             said.push(format!(
-                "Badly kept ({words}) {} fall, under the motions of the first round.",
+                "In its worst state ({words}) {} barrels fall, under the motions of the first round.",
                 significant(worn.mean, 2)
             ));
         }
         if let Some(fewest) = all.all.first().filter(|one| one.protection != best.protection) {
             said.push(format!(
-                "Fewest fall in the mean of those that were tried, {}, with this: {}, for US${:.0} to {:.0}.",
+                "The fewest barrels fall on average, {}, with this protection: {}, for US${:.0} to {:.0}.",
                 significant(fewest.fallen.mean, 2),
                 fewest.protection.name,
                 fewest.protection.cost[0],
@@ -177,11 +177,12 @@ fn sentences(all: &Ranking) -> Vec<String> {
     said
 }
 
-/// Formats barrels of an event with two decimals, of a year with two digits, since they may be far below one.
+/// Formats a number of barrels with its interval: two decimals per event, or two significant digits per year, since
+/// annual numbers may be far below one.
 fn interval(all: &Ranking, estimate: &Estimate) -> String {
     let shown = |x: f64| match format!("{x:.2}") {
         _ if is_site(all) => significant(x, 2),
-        // A rounded zero has no sign.
+        // A negative value that rounds to zero is shown without a sign.
         text if text == "-0.00" => "0.00".to_owned(),
         text => text,
     };
@@ -216,7 +217,7 @@ fn table(all: &Ranking) -> Table {
     };
     Table::of(
         format!(
-            "The stack as it is and every one of the {} protections that were tried, {}; in brackets 95 % intervals.",
+            "The stack as it is and all {} protections that were tried, {}; 95 % intervals in brackets.",
             all.tries(),
             per(all)
         ),
@@ -230,7 +231,7 @@ fn table(all: &Ranking) -> Table {
             (burst, "", &|one| Cell::text(interval(all, &one.burst))),
             ("fewer fall, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
             ("the same for all tries at once", "", &|one| Cell::maybe(shown(&one.saved_together))),
-            ("fallen when badly kept", "", &|one| Cell::maybe(worn(one))),
+            ("fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
             ("weaker", "", &|one| Cell::text(one.direction.words())),
             ("motions", "", &|one| Cell::text(one.motions.to_string())),
         ],
@@ -239,12 +240,12 @@ fn table(all: &Ranking) -> Table {
 
 fn legend(all: &Ranking) -> String {
     format!(
-        "✓: nothing that went through all rounds costs no more and loses less. Those below with fewer motions were \
-         dropped early, because a cheaper one is better beyond doubt or half of the others did better; their numbers \
-         are those of fewer motions. \"Fewer fall\" compares run by run under the same {} and is surer than the \
-         difference of two means. Its second interval holds for all {} protections at once: what helps beyond doubt is \
-         judged by that one, since the best of many tries would look better than it is. No interval is narrower than so \
-         few motions allow, however alike they are. Numbers are those of the direction of shaking in which more barrels fall.",
+        "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections with \
+         fewer motions were dropped early, because a cheaper one is significantly better or half of the others did better. \
+         \"Fewer fall\" compares run by run under the same {}, which is more precise than the difference of two means. \
+         The next column has an interval that holds for all {} protections at once; it decides whether a protection helps \
+         significantly, since the best of many tries looks better than it is. All intervals allow for the small number of \
+         motions. Numbers are for the direction of shaking in which more barrels fall.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -254,10 +255,10 @@ fn legend(all: &Ranking) -> String {
     )
 }
 
-/// Plots loss against cost.
+/// Plots the number of fallen barrels against cost.
 fn chart(all: &Ranking) -> Figure {
     let last = all.all.iter().map(|one| one.round).max();
-    let series = [(true, "nothing beats it in both"), (false, "others")]
+    let series = [(true, "best for their cost"), (false, "others")]
         .into_iter()
         .enumerate()
         .map(|(index, (front, label))| {
@@ -273,8 +274,8 @@ fn chart(all: &Ranking) -> Figure {
     Figure::new(
         "cost-and-loss",
         format!(
-            "Barrels that fall against what a protection costs, {}, of those that went through all rounds. Upright \
-             bars: 95 % intervals. The table names them.",
+            "Barrels that fall against the cost of a protection, {}, for the protections that were run in all rounds. Vertical \
+             bars: 95 % intervals. The table names the protections.",
             per(all)
         ),
         Plot {
@@ -286,11 +287,11 @@ fn chart(all: &Ranking) -> Figure {
     )
 }
 
-/// Tabulates the changes of each protection, for manual trials.
+/// Tabulates the changes of each protection, so that a reader can try them.
 fn changes(all: &Ranking) -> Table {
     let tried = all.all.iter().map(|one| &one.protection);
     Table::of(
-        "What each protection changes in the scenario, and where its cost comes from.",
+        "Changes of each protection in the scenario, and the source of its cost.",
         tried.filter(|one| one.kind != Kind::AsItIs),
         &[
             ("protection", "", &|one| Cell::text(&one.name)),
@@ -303,8 +304,7 @@ fn changes(all: &Ranking) -> Table {
 fn rests_on(all: &Ranking) -> Vec<String> {
     let own = !all.request.records.is_empty() || all.request.folder.is_some();
     let motions = if own {
-        "Motions: the records that were named, each scaled to every level of peak ground velocity."
-            .to_owned()
+        "Motions: the given records, each scaled to every level of peak ground velocity.".to_owned()
     } else {
         "Motions: both components of South Napa 2014 at Napa College with its vertical, and synthetic ones (earthquakes \
          of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every level of peak ground velocity."
@@ -312,18 +312,18 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     };
     vec![
         motions,
-        "Friction is drawn for every run about that of the scenario: rack on floor with a scatter of 20 %, barrel on rack \
-         of 25 %, both assumptions. All protections draw the same quantiles."
+        "Friction is drawn for every run about that of the scenario, with an assumed scatter of 20 % for rack on floor and of \
+         25 % for barrel on rack. All protections draw the same quantiles."
             .into(),
-        "Costs are for one stack, bought and put on once; most are assumptions, listed in the table. Work, lost time \
-         and what a fall does to people are not counted."
+        "Costs are for one stack, for purchase and installation once; most are assumptions, listed in the table. Labor, lost \
+         time and injuries are not counted."
             .into(),
-        "Barrels burst by the height of their fall, by the central assumption of three; nobody has tested that.".into(),
-        "One stack alone in a plane: no neighbors that knock it down, no walls, no ropes between stacks. Straps tear at no \
-         force unless the scenario gives one."
+        "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; none is tested.".into(),
+        "The stack stands alone, in a plane model: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
+         do not tear unless the scenario states a strength."
             .into(),
-        "Between two levels of shaking the loss is interpolated over the logarithm of the velocity, and nothing is \
-         lost below half of the lowest level; above the highest it is that of the highest."
+        "Between two levels of shaking the loss is interpolated over the logarithm of the velocity. Below half of the lowest \
+         level nothing is lost; above the highest level the loss is that of the highest."
             .into(),
     ]
 }
@@ -334,7 +334,7 @@ fn warnings(all: &Ranking) -> Vec<String> {
     let fallen = (fallen > 0).then(|| {
         let said = fallen_at_rest(fallen, all.runs, "runs of all protections");
         format!(
-            "{said}They count as collapsed, and the level that fails and all above it as fallen."
+            "{said}They count as collapsed, with the level that fails and all above it on the floor."
         )
     });
     left_out(lost, all.runs).into_iter().chain(fallen).collect()

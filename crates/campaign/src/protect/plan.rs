@@ -1,4 +1,4 @@
-//! The studies behind the ranking: one per protection, direction and round, equal but for the stack.
+//! Studies of a ranking: one per protection, direction and round, which differ in the stack only.
 
 use std::fmt::Write as _;
 
@@ -9,25 +9,27 @@ use crate::study::Study;
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Runs of a chunk, the unit that is kept or lost at an interruption.
+/// Number of runs of a chunk, the unit that is kept or lost at an interruption.
 const CHUNK: usize = 24;
 
-/// Both components of the bundled record, with its vertical.
+/// Table `[[motion]]` with both horizontal components of the bundled record and its vertical.
 pub(crate) const NAPA: &str = "[[motion]]\n\
      bundled = \"napa-college-2014\"\n\
      components = [\"horizontal-1\", \"horizontal-2\"]\n\
      each = { vertical = \"UP\" }\n\n";
 
-/// Returns the name of the folder of a study below that of its protection.
+/// Returns the name of the folder of a study, below the folder of its protection.
 pub(super) fn name(direction: &str, round: u32) -> String {
     format!("{direction}-{}", round + 1)
 }
 
-/// Returns the study of a stack in one direction in a round, counted from 0: its draws depend on the round alone, so
-/// that all protections have the same motions and the same quantiles of friction and of the constants of seats.
+/// Returns the study of a stack in one direction, in a round counted from 0.
+///
+/// Random draws depend on the round only, so that all protections have the same motions and the same quantiles of
+/// friction and of the constants of seats.
 ///
 /// # Errors
-/// When a record cannot be read.
+/// If a record cannot be read.
 pub(super) fn study(
     request: &Request,
     scenario: &Scenario,
@@ -35,15 +37,16 @@ pub(super) fn study(
     round: u32,
 ) -> Result<Study, StudyError> {
     let seed = request.seed.wrapping_add(round);
-    // Losses are those of cases followed to rest.
+    // Runs go on to rest, since losses need all falls.
     shaken("protection", (scenario, Until::Rest), seed, &motions(request, round), levels)
 }
 
-/// Returns the study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with uncertain
-/// parameters drawn for each run by a seed; its runs end by themselves as given.
+/// Returns the study of a stack under motions that are scaled to levels of peak ground velocity (m/s).
+///
+/// Uncertain parameters are drawn for each run from the seed. Runs end as `Until` states.
 ///
 /// # Errors
-/// When a record cannot be read.
+/// If a record cannot be read.
 pub(crate) fn shaken(
     title: &str,
     (scenario, until): (&Scenario, Until),
@@ -66,8 +69,8 @@ pub(crate) fn shaken(
     Study::parse(&format!("{title}.toml"), &text)
 }
 
-/// Returns the motions of a round: the named records, or else synthetic ones, with the bundled record in the first
-/// round.
+/// Returns the tables `[[motion]]` of a round: the given records, or synthetic motions and, in the first round, the
+/// bundled record.
 fn motions(request: &Request, round: u32) -> String {
     let mut text = String::new();
     for record in &request.records {

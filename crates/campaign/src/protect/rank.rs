@@ -1,4 +1,4 @@
-//! Comparison of protections under the same motions: estimates, paired differences, and selection for the next round.
+//! Statistics of a ranking: estimates, paired differences under the same motions, and selection for the next round.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::decision::{Breakage, Case, Cases};
 /// Confidence level of all intervals.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// Results of one run, as shares of the barrels.
+/// Results of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outcome {
     pub(super) collapsed: f64,
@@ -28,42 +28,42 @@ impl Outcome {
     }
 }
 
-/// The quantity by which protections are judged: barrels that fall.
+/// Quantity by which protections are judged: the barrels that fall.
 pub(super) const FALLEN: Quantity = |run| run.fallen;
 
-/// All runs of a stack in one direction: by motion, then by level of shaking.
+/// All runs of a stack in one direction, by motion and level of shaking.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Runs {
     by_motion: BTreeMap<String, Vec<Vec<Outcome>>>,
     pub(super) count: usize,
     pub(super) left_out: usize,
-    /// Runs whose stack fell under its own weight, before it was shaken.
+    /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub(super) fallen_at_rest: usize,
 }
 
-/// Estimate of one quantity.
+/// Mean of one quantity, with its interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// The mean over all motions, weighted over the levels of shaking.
+    /// Mean over all motions, weighted over the levels of shaking.
     pub mean: f64,
-    /// Lower end of its 95 % interval, clustered by motion.
+    /// Lower end of the 95 % interval, clustered by motion.
     pub low: f64,
-    /// Upper end of that interval.
+    /// Upper end of the 95 % interval.
     pub high: f64,
 }
 
-/// A quantity of a run.
+/// Function that returns a quantity of a run.
 pub(super) type Quantity = fn(&Outcome) -> f64;
 
 impl Runs {
-    /// Adds the cases of a round at levels of shaking (m/s).
+    /// Adds the cases of a round; `levels` are the levels of shaking (m/s).
     pub(super) fn add(&mut self, cases: &Cases, levels: &[f64]) {
         self.left_out += cases.left_out;
         self.fallen_at_rest += cases.fallen_at_rest();
         self.count += cases.all.len() + cases.left_out;
         for case in &cases.all {
             let Some(velocity) = case.intensity(cases.main) else { continue };
-            // Levels are rounded when written as text, and motions were scaled to these.
+            // Motions were scaled to levels that were rounded when written as text, so the comparison has a tolerance.
             let off = |level: &f64| (velocity / level - 1.0).abs();
             let nearest =
                 (0..levels.len()).min_by(|a, b| off(&levels[*a]).total_cmp(&off(&levels[*b])));
@@ -74,7 +74,7 @@ impl Runs {
         }
     }
 
-    /// Returns the mean of each motion, weighted over the levels; motions that lack a level are left out.
+    /// Returns the mean of a quantity for each motion, weighted over the levels; motions that lack a level are left out.
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
@@ -91,12 +91,12 @@ impl Runs {
         motions.filter_map(|(name, levels)| Some((name.as_str(), weighted(levels)?))).collect()
     }
 
-    /// Returns the number of motions under which it ran at all levels.
+    /// Returns the number of motions that have a run at every level.
     pub(super) fn motions(&self) -> usize {
         self.by_motion.values().filter(|levels| levels.iter().all(|runs| !runs.is_empty())).count()
     }
 
-    /// Estimates a quantity, weighted over the levels; `most` is its maximum in one run.
+    /// Estimates a quantity, weighted over the levels; `most` is its largest possible value in one run.
     pub(super) fn estimate(&self, quantity: Quantity, weights: &[f64], most: f64) -> Estimate {
         let values: Vec<f64> = self.by_motion(quantity, weights).into_values().collect();
         let scale = most * weights.iter().sum::<f64>();
@@ -109,9 +109,10 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// Estimates by how much a quantity is less than in other runs under the same motions: the mean of the differences
-    /// and its 95 % interval ([`mean_difference`]), as the best of a number of tries; `most` is its maximum in one run.
-    /// `None` with fewer than two motions in common.
+    /// Estimates by how much a quantity is smaller than in other runs under the same motions.
+    ///
+    /// The result is the mean of the differences with its 95 % interval ([`mean_difference`]), as the best of a number of
+    /// tries; `most` is the largest possible value in one run. `None` if fewer than two motions are common to both.
     pub(super) fn less_than(
         &self,
         other: &Self,
@@ -121,7 +122,7 @@ impl Runs {
     ) -> Option<Estimate> {
         let (own, other) = (self.by_motion(quantity, weights), other.by_motion(quantity, weights));
         let most = most * weights.iter().sum::<f64>();
-        // What rounding leaves of two that are equal is no difference.
+        // A difference that is due to rounding counts as zero.
         let exact = |less: f64| if less.abs() > 1e-12 * most { less } else { 0.0 };
         let differences: Vec<f64> =
             own.iter().filter_map(|(name, value)| Some(exact(other.get(name)? - value))).collect();
@@ -131,10 +132,11 @@ impl Runs {
     }
 }
 
-/// Returns weights of levels of shaking (m/s): the annual rate that each represents, or equal weights without a hazard.
+/// Returns the weights of levels of shaking (m/s): the annual rate that each level represents, or equal weights without
+/// a hazard curve.
 ///
-/// Results are interpolated linearly in the logarithm of the shaking between two levels, constant above the highest,
-/// and fall to zero at half of the lowest.
+/// The weights assume that results are linear in the logarithm of the shaking between two levels, constant above the
+/// highest level, and decrease to zero at half of the lowest level.
 pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
     let Some(hazard) = hazard else { return vec![1.0 / levels.len() as f64; levels.len()] };
     let share = |at: usize, x: f64| {
@@ -153,11 +155,12 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
     (0..levels.len()).map(|at| hazard.expected(1.0, |x| share(at, x)).low).collect()
 }
 
-/// Returns the trials that go on to the next round: of those not significantly worse than a cheaper one, the better
-/// half by mean, and at least four; always the first, the stack as it is.
+/// Returns the indices of the trials that continue in the next round.
 ///
-/// Each is given by its runs and the middle of its cost; `most` is the maximum of the quantity in one run. Significance
-/// is simultaneous over all pairs.
+/// Trials that are significantly worse than a cheaper one are dropped. Of the others the better half by mean continues,
+/// at least four. The first trial, the stack as it is, always continues.
+/// Each trial is given by its runs and the middle of its cost; `most` is the largest number of fallen barrels in one run.
+/// Significance is simultaneous over all pairs.
 pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;
     let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;
@@ -176,7 +179,7 @@ pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Ve
     left
 }
 
-/// Returns the Pareto front of cost and mean, as indices, the cheapest first.
+/// Returns the indices on the Pareto front of cost and mean, the cheapest first.
 pub(super) fn front(all: &[(f64, f64)]) -> Vec<usize> {
     let better = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
     let mut front: Vec<usize> =
@@ -199,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_difference_under_the_same_motions_is_surer_than_the_means_are() {
-        // Motions differ by far more than the two stacks.
+        // The scatter between motions is much larger than the difference of the two stacks.
         let (mild, hard): (Vec<f64>, Vec<f64>) = ((0..6).map(f64::from).collect(), vec![]);
         assert!(hard.is_empty());
         let names = ["a", "b", "c", "d", "e", "f"];
@@ -215,7 +218,7 @@ mod tests {
         let less = one.less_than(&other, FALLEN, (&[1.0], 8.0), 1).unwrap();
         assert!((less.mean - 1.25).abs() < 1e-12, "{less:?}");
         let [a, b] = [&one, &other].map(|runs| runs.estimate(FALLEN, &[1.0], 8.0));
-        // Six motions are too few to exclude that a seventh would do the opposite.
+        // Six motions are too few to exclude that a seventh has the opposite effect.
         assert!(less.low < 0.0 && less.high - less.low < a.high - a.low + b.high - b.low);
         assert!(a.high > b.low, "{a:?} {b:?}");
     }
@@ -232,10 +235,10 @@ mod tests {
         let less = |own: &[f64], other: &[f64], tries: usize| {
             of(own).less_than(&of(other), FALLEN, (&[1.0], 8.0), tries).unwrap()
         };
-        // Two records once gave 2.00 (2.00 to 2.00) as significant.
+        // Two equal differences must not count as significant.
         let two = less(&[2.0, 2.0], &[4.0, 4.0], 1);
         assert!(two.mean == 2.0 && two.low < 0.0 && two.high > 4.0, "{two:?}");
-        // Two that differ by rounding alone do not differ, and zero has no sign.
+        // A difference due to rounding counts as zero, and zero has no sign.
         let same = less(&[0.1 + 0.2, 0.3], &[0.3, 0.3], 1);
         assert!(same.mean == 0.0 && same.mean.is_sign_positive(), "{same:?}");
         let falls = [0.0, 1.0, 2.0, 0.0, 3.0, 1.0, 0.0, 2.0, 4.0, 0.0, 1.0, 2.0];
@@ -247,7 +250,7 @@ mod tests {
 
     #[test]
     fn weights_of_a_site_are_the_rate_at_which_something_happens_that_always_does() {
-        // An intensity of x is exceeded once in x² × 10⁴ years.
+        // An intensity x is exceeded once in x² × 10⁴ years.
         let rows: Vec<(f64, f64)> =
             (0..60).map(|i| 0.01 * 1.1_f64.powi(i)).map(|x| (x, 1e-4 / (x * x))).collect();
         let hazard = Hazard::new(&rows).unwrap();

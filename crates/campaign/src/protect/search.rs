@@ -1,4 +1,4 @@
-//! Trials: a protected stack in every direction, and its rounds of studies.
+//! Trials of a ranking: a protected stack in every direction, run in rounds of studies.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -16,10 +16,10 @@ use crate::scenario::{Scenario, View};
 use crate::study::{RunOptions, Study, StudyError};
 use crate::system;
 
-/// A protection under trial.
+/// Protection under trial, with its stacks and runs.
 pub(super) struct Trial {
     pub(super) protection: Protection,
-    /// The stack in each direction.
+    /// Scenario of the protected stack in each direction.
     pub(super) stacks: Vec<(View, Scenario)>,
     pub(super) runs: Vec<Runs>,
     pub(super) round: u32,
@@ -32,19 +32,19 @@ impl Trial {
             .into_iter()
             .filter_map(|plane| Some((plane.view()?, plane.scenario)))
             .collect();
-        // It must stand by itself in every direction.
+        // The stack must stand under its own weight in every direction.
         stacks.iter().try_for_each(|(_, stack)| check(stack).map(drop))?;
         let runs = stacks.iter().map(|_| Runs::default()).collect();
         Ok(Self { protection, stacks, runs, round: 0 })
     }
 
-    /// Returns the number of barrels of the stack, in the direction with the larger number.
+    /// Returns the number of barrels of the stack, in the direction in which it is larger.
     pub(super) fn barrels(&self) -> f64 {
         let stacks = self.stacks.iter().filter_map(|(_, scenario)| scenario.stack());
         stacks.map(|stack| f64::from(stack.levels * stack.columns)).fold(0.0, f64::max)
     }
 
-    /// Returns the direction in which more barrels fall.
+    /// Returns the index of the direction in which more barrels fall.
     pub(super) fn worse(&self, weights: &[f64]) -> usize {
         let fallen = |at: usize| self.runs[at].estimate(FALLEN, weights, 1.0).mean;
         (0..self.runs.len()).max_by(|a, b| fallen(*a).total_cmp(&fallen(*b))).unwrap_or(0)
@@ -63,7 +63,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns trials of those that can be built and paid for; records the reasons for the others.
+    /// Returns trials of the protections that can be built within the budget, and records why the others cannot.
     pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
         let mut trials = Vec::new();
         for protection in protections {
@@ -76,7 +76,7 @@ impl Search<'_> {
             }
             match Trial::new(self.base, protection) {
                 Ok(trial) => trials.push(trial),
-                // The place of a field in a generated text is of no use to the reader.
+                // The location in a generated text is of no use to the reader, so only the first line is kept.
                 Err(error) => {
                     let reason = error.to_string();
                     self.not_tried
@@ -87,7 +87,7 @@ impl Search<'_> {
         trials
     }
 
-    /// Runs a round of some trials.
+    /// Runs a round of the trials with the indices `open`.
     pub(super) fn round(
         &self,
         trials: &mut [Trial],
@@ -108,7 +108,7 @@ impl Search<'_> {
         }
         let of: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
         let done = AtomicU64::new(0);
-        // Each on one thread, and as many at once as there are cores.
+        // Each study runs on one thread, and as many studies at once as there are cores.
         let options = RunOptions { threads: Some(NonZero::<usize>::MIN), ..*self.options };
         let work = |(.., folder, study): &(usize, usize, PathBuf, Study)| {
             let before = AtomicU64::new(0);
@@ -128,7 +128,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Tries the worn states of those on the front, under the motions of the first round.
+    /// Tries the worn states of the protections on the Pareto front, under the motions of the first round.
     pub(super) fn worn(
         &mut self,
         trials: &[Trial],

@@ -1,4 +1,4 @@
-//! The score sheet: the number, every state in every direction, the curves, the protocol.
+//! Report page of a score: the score, all states and directions, the curves, and the protocol.
 
 use barrelstack_report::{Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict};
 
@@ -19,14 +19,14 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         blocks: vec![
             Block::Table(table(sheet)),
             text(
-                "Velocity at which one in ten collapses: of the lognormal curve of greatest likelihood through all runs, in \
-                 brackets its 95 % interval, for which the runs of one motion go together. The least of all, rounded down, \
+                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood through all runs, \
+                 with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, rounded down, \
                  is the score.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
             Block::List(rules(sheet)),
-            heading("What was scored"),
+            heading("Scored stack"),
             Block::Table(inputs(sheet)),
         ],
         provenance: vec![
@@ -40,7 +40,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
     }
 }
 
-/// Describes what is scored: "`two-barrel` racks with chocks and straps".
+/// Describes the scored rack and devices, such as "two-barrel racks with chocks and straps".
 fn scored(sheet: &Sheet) -> String {
     let Some(stack) = sheet.scenario.stack() else { return sheet.scenario.title.clone() };
     let devices: Vec<&str> = stack.devices.present().iter().map(|words| words.many).collect();
@@ -53,7 +53,7 @@ fn shown(velocity: f64) -> String {
     format!("{:.0}", 100.0 * velocity)
 }
 
-/// Returns the opening statement if stacks fall without any shaking.
+/// Returns a sentence on stacks that fall under their own weight; empty if there are none.
 fn by_themselves(sheet: &Sheet) -> String {
     let sum = |of: fn(&Scored) -> usize| sheet.rows.iter().map(of).sum();
     fallen_at_rest(sum(|row| row.fallen_at_rest), sum(|row| row.runs), "runs")
@@ -72,7 +72,7 @@ fn headline(sheet: &Sheet) -> String {
             "RockScore {score} at least: under the strongest shaking of the protocol nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
-            "RockScore 0: of {stacks} more than one in ten collapses when shaken {direction} to {} cm/s, the weakest \
+            "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} to {} cm/s, the weakest \
              shaking of the protocol.",
             shown(lowest)
         ),
@@ -90,7 +90,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     said
 }
 
-/// Formats a capacity: "42 cm/s".
+/// Formats a capacity, such as "42 cm/s".
 fn bears(capacity: Capacity) -> String {
     match capacity {
         Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),
@@ -106,7 +106,7 @@ fn table(sheet: &Sheet) -> Table {
     let mut columns = vec![("state", ""), ("shaken", ""), ("one in ten collapses at", "")];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));
     let mut table = Table::new(
-        "What the stack bears in every state and direction, and the share that collapses at every level of shaking.",
+        "Velocity that the stack bears in every state and direction, and the share that collapses at every level of shaking.",
         &columns,
     );
     let weakest = sheet.weakest();
@@ -136,8 +136,8 @@ fn chart(sheet: &Sheet) -> Figure {
     });
     Figure::new(
         "rockscore",
-        "Chance of collapse against peak ground velocity. Lines are fitted curves; where the runs determine none, dots \
-         are the shares with their 95 % intervals.",
+        "Chance of collapse against peak ground velocity. Lines are fitted curves; where the runs determine no curve, dots \
+         show the shares with their 95 % intervals.",
         Plot {
             x: Axis::new("peak ground velocity", "cm/s"),
             y: chance_axis("chance of collapse"),
@@ -182,16 +182,16 @@ fn rules(sheet: &Sheet) -> Vec<String> {
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction is drawn for every run about that of the scenario, rack on floor with a scatter of 20 %, barrel on rack of \
-         25 %; all racks meet the same quantiles and the same motions."
+        "Friction is drawn for every run about that of the scenario, with a scatter of 20 % for rack on floor and of 25 % for \
+         barrel on rack; all racks get the same quantiles and the same motions."
             .into(),
-        "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device as use leaves it, \
+        "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
          one at a time."
             .into(),
         "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once the stack has come to rest on \
          ground that stays below 0.02 g."
             .into(),
-        "A protocol never changes under its name; what is changed gets the next number.".into(),
+        "A protocol never changes; any change gets a new version number.".into(),
     ]
 }
 

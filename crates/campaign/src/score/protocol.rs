@@ -1,4 +1,6 @@
-//! The protocol of a score, which must not change under its name: scores compare only within one protocol.
+//! Protocol of a score.
+//!
+//! A protocol must not change under its name, since only scores of the same protocol are comparable.
 
 use std::fmt::Write as _;
 
@@ -6,42 +8,45 @@ use crate::heights::synthetic;
 use crate::protect::NAPA;
 use crate::scenario::Scenario;
 
-/// A protocol.
+/// Protocol of a score: stack, motions, levels and seed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protocol {
-    /// Its name and version.
+    /// Name and version of the protocol.
     pub name: &'static str,
-    /// Levels of the stack.
+    /// Number of levels of the stack.
     pub levels: u32,
     /// Levels of peak ground velocity (m/s) to which every motion is scaled, ascending.
     pub velocities: Vec<f64>,
-    /// Periods (s) of the pulses.
+    /// Periods (s) of the velocity pulses.
     pub periods: Vec<f64>,
     /// Number of synthetic motions.
     pub synthetic: u32,
-    /// Seed of these and of friction.
+    /// Seed of the synthetic motions and of friction.
     pub seed: u32,
-    /// Probability of collapse at which the velocity is the score.
+    /// Probability of collapse that defines the score.
     pub chance: f64,
 }
 
-/// Friction of barrels on wet cradles, as condensation and washing leave them: tables give about 0.2 for wet metal on
-/// dry wood. An assumption for barrels, for which no wet tests are known.
+/// Friction coefficient of barrels on cradles that are wet from condensation or washing.
+///
+/// Tables give about 0.2 for wet metal on dry wood. For barrels this is an assumption, since no wet tests are known.
 const WET: f64 = 0.2;
 
-/// A state in which a stack is scored.
+/// State in which a stack is scored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// In words.
+    /// Name for display.
     pub name: String,
-    /// Overrides of the scenario.
+    /// Changes, as overrides of the scenario.
     pub changes: Vec<String>,
 }
 
 impl Protocol {
-    /// Returns the protocol of the RockScore: stacks of four levels; six velocity pulses, both components of the
-    /// bundled record and sixteen synthetic motions, at six levels; friction, stiffness and damping of seats drawn as
-    /// for variants. Version 1 drew friction alone, less widely, and stated constants per contact element.
+    /// Returns the protocol of the RockScore.
+    ///
+    /// Stacks of four levels are shaken by six velocity pulses, both components of the bundled record and sixteen
+    /// synthetic motions, at six levels. Friction, stiffness and damping of seats are drawn as for variants. Version 1
+    /// drew friction only, with less scatter, and stated constants per contact element.
     pub fn rockscore() -> Self {
         Self {
             name: "rockscore/2",
@@ -54,7 +59,7 @@ impl Protocol {
         }
     }
 
-    /// Returns the overrides that stack a scenario by the protocol.
+    /// Returns the overrides that give a scenario the stack of the protocol.
     pub(super) fn stacked(&self) -> Vec<String> {
         vec![format!("stack.levels={}", self.levels)]
     }
@@ -83,7 +88,7 @@ impl Protocol {
         states
     }
 
-    /// Returns the motions, as sets of a study.
+    /// Returns the motions, as tables `[[motion]]` of a study.
     pub(super) fn motions(&self) -> String {
         let mut text = String::new();
         for period in &self.periods {

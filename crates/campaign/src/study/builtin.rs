@@ -1,4 +1,4 @@
-//! The studies shipped with the program.
+//! Studies that are built into the program.
 
 const ALL: &[(&str, &str)] = &[
     ("napa-four-levels", include_str!("../../studies/napa-four-levels.toml")),
@@ -16,7 +16,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     ALL.iter().map(|(name, _)| *name)
 }
 
-/// Returns the text of a built-in study.
+/// Returns the text of the built-in study with a name; `None` if there is none.
 pub fn get(name: &str) -> Option<&'static str> {
     ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

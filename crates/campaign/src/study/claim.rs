@@ -1,9 +1,9 @@
-//! Claims: a process works on a chunk as long as it holds a file of the folder locked.
+//! Claims of chunks: a process locks a file in the folder as long as it works on a chunk.
 //!
-//! The lock is one of the operating system (`flock`, on network file systems too), so it ends with its process
-//! however that ends, and another process takes over the chunk.
-//! A stopped process (`kill -STOP`) keeps its lock; the file names it.
-//! File systems without locks exclude nobody: a chunk may be run twice, and either shard will do.
+//! The operating system holds the lock (`flock`, also on network file systems) and releases it when the process ends in
+//! any way, so that another process can take over the chunk.
+//! A stopped process (`kill -STOP`) keeps its lock; the file contains the name of the process.
+//! On file systems without locks a chunk may be run twice, which does no harm since both shards are equal.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
@@ -17,37 +17,37 @@ use crate::system;
 #[derive(Debug)]
 pub(super) struct Claim {
     path: PathBuf,
-    // Dropped, and so unlocked, after its name is removed.
+    // Dropped last, so that the file is removed before it is unlocked.
     _file: File,
 }
 
-/// Holder of a chunk.
+/// Process that has claimed a chunk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
-    /// The process and its machine: "process 4711 on node-3".
+    /// Name of the process and its machine, such as "process 4711 on node-3".
     pub who: String,
-    /// Time since it claimed the chunk.
+    /// Time since the process claimed the chunk.
     pub age: Duration,
 }
 
 impl Claim {
-    /// Claims the chunk; `None` while another process or thread holds it.
+    /// Claims a chunk by locking the file at `path`; `None` while another process or thread holds it.
     pub(super) fn take(path: PathBuf) -> Result<Option<Self>, StudyError> {
         let failed = StudyError::system("claim a chunk by", &path);
         remove_foreign(&path).map_err(failed)?;
         let mut file = system::open_to_change(&path).map_err(failed)?;
         match file.try_lock() {
-            // Any other error means that the file system has no locks, each in its own words.
+            // Any other error means that the file system does not support locks.
             Ok(()) | Err(TryLockError::Error(_)) => {}
             Err(TryLockError::WouldBlock) => return Ok(None),
         }
-        // For information only: a full disk must not prevent the work.
+        // The content is for information only, so errors such as a full disk are ignored.
         drop(file.set_len(0).and_then(|()| file.write_all(this_process().as_bytes())));
         Ok(Some(Self { path, _file: file }))
     }
 }
 
-/// Removes anything in the place of a claim that is not one: a link, or a second name of another file.
+/// Removes a link, or a second name of another file, that stands in the place of a claim.
 fn remove_foreign(path: &Path) -> std::io::Result<()> {
     let found = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -73,7 +73,7 @@ fn has_other_names(_: &fs::Metadata) -> bool {
     false
 }
 
-/// Names this process and its machine.
+/// Returns the name of this process and its machine.
 fn this_process() -> String {
     let host = ["/proc/sys/kernel/hostname", "/etc/hostname"]
         .iter()
@@ -83,7 +83,7 @@ fn this_process() -> String {
     host.map_or(process.clone(), |host| format!("{process} on {host}"))
 }
 
-/// Returns the holder of a chunk by its claim; `None` if there is no claim or this process has it.
+/// Returns the process that has claimed a chunk; `None` if there is no claim, or this process holds it.
 pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
     let path = folder.join("shards").join(format!("{chunk:06}.claim"));
     let text = String::from_utf8(system::read_result(&path, 1000).ok()?).ok()?;
@@ -98,7 +98,7 @@ pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // A process that opened the file before and locks it later looks for the shard once more, and finds it.
+        // A process may have opened the file before and lock it later; it then looks for the shard again, and finds it.
         drop(fs::remove_file(&self.path));
     }
 }

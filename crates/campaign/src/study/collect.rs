@@ -1,4 +1,6 @@
-//! Reads the rows of a study from the shards of a folder, in parts: memory does not grow with the number of cases.
+//! Reading of the rows of a study from the shards of its folder.
+//!
+//! Rows are read in parts, so that memory does not grow with the number of cases.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -15,30 +17,30 @@ use super::shard;
 use super::stop::Tally;
 use super::table::StudyTable;
 
-/// The rows of a study, with their provenance.
+/// Rows of a study with their provenance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collected {
-    /// One row per case.
+    /// Table with one row per finished case.
     pub table: StudyTable,
-    /// Their provenance.
+    /// Provenance of the rows.
     pub provenance: Provenance,
 }
 
-/// Progress of a study.
+/// Progress of a study in a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// Provenance of the folder.
     pub provenance: Provenance,
-    /// Counts of finished cases by outcome.
+    /// Numbers of finished cases by outcome.
     pub tally: Tally,
-    /// Chunks still to be run, ascending.
+    /// Numbers of the chunks still to be run, ascending.
     pub missing: Vec<usize>,
 }
 
-/// The shards that count, in the order of their first cases.
+/// Reader of the shards of a folder, in the order of their first cases.
 ///
-/// Of a Monte Carlo design the contiguous finished chunks count, up to the one that completes the required number of
-/// cases: which later ones happen to be run changes nothing.
+/// In a Monte Carlo design only the contiguous finished chunks are read, up to the one with which the stop rule is met,
+/// so that the result does not depend on which later chunks were run.
 struct Shards {
     provenance: Provenance,
     paths: BTreeMap<usize, PathBuf>,
@@ -77,21 +79,22 @@ impl Shards {
     }
 }
 
-/// Reads the finished rows of a study, complete or not: `visit` receives all rows in the order of the cases, in tables
-/// of some chunks each, with the provenance of the folder.
+/// Reads the finished rows of a study, complete or not, and returns its provenance.
+///
+/// `visit` receives all rows in the order of the cases, as tables of one or several chunks, with the provenance so far.
 ///
 /// # Errors
-/// If the folder is not that of a study, or a shard is damaged.
+/// If the folder is not that of a study, a shard is damaged, or `visit` fails.
 pub fn read_shards<E: From<StudyError>>(
     folder: &Path,
     visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), E>,
 ) -> Result<Provenance, E> {
     let mut parts = Shards::open(folder)?;
     let specs = parts.provenance.columns.clone();
-    // Rows before which a later chunk may have cases.
+    // Rows that are held back, since a later chunk may have cases that precede them.
     let mut open = StudyTable::empty(&specs);
     while let Some(part) = parts.read()? {
-        // Chunks are opened in the order of their first cases, so no later row precedes the first of this one.
+        // Chunks are ordered by their first cases, so no later row precedes the first row of this chunk.
         if let Some(Some(first)) = part.integers("case").and_then(|cases| cases.first()) {
             let later = open.split_off(open.rows_before(*first));
             let ready = std::mem::replace(&mut open, later);
@@ -107,11 +110,12 @@ pub fn read_shards<E: From<StudyError>>(
     Ok(parts.provenance)
 }
 
-/// Writes the rows of a study into its folder: `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`;
-/// `visit` receives them meanwhile, as from [`read_shards`].
+/// Writes the rows of a study into its folder, as `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`.
+///
+/// `visit` receives the rows meanwhile, as in [`read_shards`].
 ///
 /// # Errors
-/// As [`read_shards`], and when a file cannot be written.
+/// As [`read_shards`], or if a file cannot be written.
 pub fn collect(
     folder: &Path,
     visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), StudyError>,
@@ -141,7 +145,7 @@ pub fn collect(
     drop(csv);
     let provenance = serde_json::to_string_pretty(&made)
         .map_err(|error| StudyError::Table(error.to_string()))?;
-    // The table may be copied alone: it carries its provenance.
+    // The Parquet file contains its provenance, since it may be copied without the other files.
     let study = study_text(folder, &made)?;
     let about = [("study", study), ("provenance", provenance.clone())];
     parquet.finish(&about).map_err(|error| encode(&error))?;
@@ -153,7 +157,7 @@ pub fn collect(
 }
 
 impl Collected {
-    /// Reads the finished rows of a study, complete or not, at once.
+    /// Reads all finished rows of a study, complete or not, into memory.
     ///
     /// # Errors
     /// As [`read_shards`].
@@ -167,7 +171,7 @@ impl Collected {
         Ok(Self { table, provenance })
     }
 
-    /// Returns the progress of a study.
+    /// Returns the progress of the study in a folder.
     ///
     /// # Errors
     /// As [`read_shards`].

@@ -1,4 +1,4 @@
-//! Designs of studies, each a deterministic list of cases.
+//! Designs of studies: how the list of cases follows from motions, levels and factors.
 
 use barrelstack_fragility::sobol::Axis;
 use barrelstack_motion::Random;
@@ -14,52 +14,55 @@ use barrelstack_report::column::Value;
 pub enum Design {
     /// Every combination of all values, levels and motions.
     FullFactorial,
-    /// The base, and every other value of one factor at a time, for every level and motion.
+    /// The base values, and every other value of one factor at a time, for every level and motion.
     OneAtATime {
         /// Quantiles that represent a distribution.
         quantiles: Vec<f64>,
-        /// Draws for each motion of factors with distributions; 0 to use quantiles instead.
+        /// Number of draws, per motion, of the factors with distributions; 0 to use quantiles instead.
         draws: u32,
     },
-    /// Samples with one in each of `count` equal shares of every factor.
+    /// Latin hypercube: one sample lies in each of `count` equally probable parts of every factor.
     LatinHypercube {
         /// Number of samples.
         count: u32,
     },
-    /// Points of Sobol', shifted at random.
+    /// Points of a Sobol' sequence, shifted at random.
     Sobol {
         /// Number of points.
         count: u32,
     },
-    /// Blocks of points of Sobol' for first and total sensitivity indices (Saltelli et al. 2010): two samples
-    /// and, for every varied quantity, the first with that quantity of the second.
+    /// Blocks of Sobol' points for first-order and total sensitivity indices (Saltelli et al. 2010).
+    ///
+    /// A block has two samples and, for every varied quantity, the first sample with that quantity taken from the second.
     Saltelli {
         /// Number of blocks.
         count: u32,
     },
-    /// Random samples until the probability of collapse is known precisely enough.
+    /// Random samples, until the probability of collapse is known precisely enough.
     MonteCarlo {
-        /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+        /// Half-width of the 95 % interval (Wilson) of the collapse probability at which to stop; `None` to run all cases.
         half_width: Option<f64>,
         /// Number of cases before the interval is first tested.
         least: u32,
         /// Maximum number of cases.
         most: u32,
     },
-    /// Every motion at every level; factors crossed where they have values, drawn where they have a distribution.
+    /// Every motion at every level. Factors with listed values are crossed; those with a distribution are drawn.
     Stripes,
     /// Incremental dynamic analysis by hunt and fill.
     Ida(super::ida::Hunt),
 }
 
 impl Design {
-    /// `true` if the cases are a sample of the stated distributions, so that the share of collapse among them estimates
-    /// its probability; `false` if they have requested levels or differ from others in one thing.
+    /// `true` if the cases are a sample of the stated distributions, so that the share that collapses estimates the
+    /// probability of collapse.
+    ///
+    /// `false` if cases are at requested levels, or differ from each other in a single quantity.
     pub fn is_sample(&self) -> bool {
         matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::MonteCarlo { .. })
     }
 
-    /// Returns the word used in files.
+    /// Returns the name of the design in study files.
     pub fn name(&self) -> &'static str {
         match self {
             Self::FullFactorial => "full-factorial",
@@ -74,53 +77,53 @@ impl Design {
     }
 }
 
-/// A case before it is built.
+/// Case before its model is built.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Case {
-    /// Its number in the table; of an adaptive design with gaps.
+    /// Number of the case in the table; numbers of an adaptive design have gaps.
     pub(super) number: u64,
-    /// Its identity, independent of the number of cases; also the seed of its draws.
+    /// Identity of the case, independent of the number of cases; also the seed of its draws.
     pub(super) id: u64,
     /// Index of the motion in the study.
     pub(super) motion: usize,
-    /// The intensity (SI) that it is scaled to.
+    /// Intensity (SI) to which the motion is scaled, if any.
     pub(super) level: Option<f64>,
-    /// A value for each factor; `None` where it keeps that of the base.
+    /// Value of each factor; `None` to keep the value of the base.
     pub(super) settings: Vec<Option<Setting>>,
 }
 
-/// Source of the cases of a design: crossed lists, or samples.
+/// Enumeration of the cases of a design: crossed lists, or samples.
 #[derive(Clone, Debug)]
 pub(super) enum Cases {
-    /// Every combination: the motion slowest, then the factors in order, the level fastest.
+    /// Every combination, in the order of motion (slowest), factors, and level (fastest).
     Crossed,
-    /// The base and one change at a time: the motion slowest, then the draw, then the level, then the changes.
+    /// The base and one change at a time, in the order of motion (slowest), draw, level, and change (fastest).
     OneAtATime {
-        /// Factor and value of each change.
+        /// Index of the factor, and value, of each change.
         changes: Vec<(usize, Setting)>,
-        /// Draws of all other factors for each motion, equal for all changes and levels.
+        /// Number of draws of all other factors per motion, equal for all changes and levels.
         draws: u64,
     },
-    /// Points of the unit cube whose axes are motion, level and factors.
+    /// Points of the unit cube, whose axes are motion, level and factors.
     Sampled(Sampling),
 }
 
 /// Method of sampling the unit cube.
 #[derive(Clone, Debug)]
 pub(super) enum Sampling {
-    /// From the seed of each case.
+    /// Random numbers from the seed of each case.
     Random,
-    /// A permutation of the strata for each axis.
+    /// Latin hypercube: a permutation of the strata for each axis.
     LatinHypercube(Vec<Vec<u32>>),
-    /// A sequence for each axis.
+    /// Sobol' sequence: one dimension for each axis.
     Sobol(Vec<Axis>),
-    /// Two sequences for each axis, and the axes that are exchanged.
+    /// Two dimensions of the Sobol' sequence for each axis, and the axes that are exchanged.
     Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
 }
 
-/// Derives a seed from a seed and words.
+/// Derives a seed from another seed and a text.
 pub(super) fn seed_of(seed: u64, words: &str) -> u64 {
-    // The generator's seeding mixes bits that the hash leaves correlated.
+    // The seeding of the generator mixes the bits, which the hash leaves correlated.
     Random::new(fnv1a(format!("{seed}|{words}").as_bytes())).bits()
 }
 
@@ -179,7 +182,7 @@ impl Cases {
         }
     }
 
-    /// Returns the number of cases; of an incremental dynamic analysis, hunts; of Monte Carlo, the maximum.
+    /// Returns the number of cases; for an incremental dynamic analysis, of hunts; for Monte Carlo, the maximum.
     pub(super) fn count(&self, study: &Study) -> u64 {
         let motions = study.motions.len() as u64;
         let levels = study.crossed_levels().len() as u64;
@@ -202,7 +205,7 @@ impl Cases {
         }
     }
 
-    /// Returns a case by its number; of an incremental dynamic analysis a hunt, without its level.
+    /// Returns the case with a number; for an incremental dynamic analysis, a hunt without its level.
     pub(super) fn case(&self, study: &Study, number: u64) -> Case {
         match self {
             Self::Crossed => crossed(study, number),
@@ -212,7 +215,7 @@ impl Cases {
     }
 }
 
-/// Removes the last digit of a number in a base and returns it.
+/// Removes the last digit of a number in the given base and returns it.
 #[expect(clippy::cast_possible_truncation, reason = "below the length of a list")]
 fn digit(rest: &mut u64, base: usize) -> usize {
     let digit = *rest % base as u64;
@@ -251,7 +254,7 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     rest /= draws.max(1);
     let motion = digit(&mut rest, study.motions.len());
     let mut settings = vec![None; study.factors.len()];
-    // Draws depend on the motion alone, so that rows differ in their change only.
+    // Draws depend on the motion only, so that rows of a motion differ only in the change.
     for (factor, setting) in study.factors.iter().zip(&mut settings).filter(|_| draws > 0) {
         if let Variation::Distribution(distribution) = &factor.variation {
             let words = format!("draw {draw} of {}", study.motions[motion].name);
@@ -265,7 +268,7 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     Case { number, id: study.identity(motion, level, &settings), motion, level, settings }
 }
 
-/// Returns every value of every factor other than that of the base, except for drawn factors.
+/// Returns every change from the base: each factor, except drawn ones, with each of its other values.
 fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Setting)> {
     let mut changes = Vec::new();
     for (index, factor) in factors.iter().enumerate() {
@@ -285,7 +288,7 @@ fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Se
 
 fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
     let id = seed_of(study.seed, &format!("sample {number}"));
-    // Numbers of sampled designs fit the 32 bits of their count.
+    // A sampled design has at most 2³² cases, since its count is a 32-bit number.
     let point = u32::try_from(number).unwrap_or(u32::MAX);
     let axes = study.axes();
     let coordinate = |axis: usize| {
@@ -326,13 +329,13 @@ fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
 }
 
 impl Study {
-    /// Returns the axes of the unit cube of samples.
+    /// Returns the names of the axes of the unit cube of samples.
     pub(super) fn axes(&self) -> Vec<String> {
         let factors = self.factors.iter().map(|factor| format!("factor {}", factor.name));
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).collect()
     }
 
-    /// Returns the axes that take more than one value, with their names for display.
+    /// Returns the axes that take more than one value: their indices, and their names for display.
     pub(super) fn varied(&self) -> Vec<(usize, String)> {
         let level = self.intensity.as_ref().is_some_and(|intensity| match &intensity.levels {
             Levels::List(levels) => levels.len() > 1,
@@ -346,12 +349,12 @@ impl Study {
         always.into_iter().enumerate().filter_map(of).chain(factors).collect()
     }
 
-    /// Returns the levels that are crossed with the rest; a single `None` without levels.
+    /// Returns the levels that are crossed with motions and factors; a single `None` without levels.
     pub(super) fn crossed_levels(&self) -> &[Option<f64>] {
         &self.levels
     }
 
-    /// Returns the identity of a case of a crossed design: its contents, not its position.
+    /// Returns the identity of a case of a crossed design, which depends on its contents and not on its position.
     fn identity(&self, motion: usize, level: Option<f64>, settings: &[Option<Setting>]) -> u64 {
         let mut words = vec![format!("case of {}", self.motions[motion].name)];
         words.extend(
@@ -363,7 +366,7 @@ impl Study {
         seed_of(self.seed, &words.join("|"))
     }
 
-    /// Returns the value of a factor in a case, as in the table.
+    /// Returns the value of a factor in a case, in the form of the table.
     pub(super) fn factor_value(&self, case: &Case, factor: usize) -> Option<Value> {
         match &case.settings[factor] {
             Some(setting) => Some(setting.value.clone()),

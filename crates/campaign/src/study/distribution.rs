@@ -1,4 +1,4 @@
-//! Distributions of values, given by their quantiles.
+//! Distributions from which the values of a factor are drawn.
 
 use barrelstack_fragility::{normal, normal_quantile};
 
@@ -9,12 +9,12 @@ use crate::scenario::tree::Origin;
 use super::fields::Form;
 use super::setting::{Domain, Setting};
 
-/// A distribution of the values of a field.
+/// Distribution of the values of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution {
     shape: Shape,
     domain: Domain,
-    /// Its place in the file.
+    /// Place of the distribution in the file.
     origin: Origin,
 }
 
@@ -39,16 +39,16 @@ enum Shape {
         dispersion: f64,
         cut: Cut,
     },
-    /// Values, each with its cumulative probability.
+    /// Values, each with the cumulative probability up to it.
     Discrete(Vec<(f64, Setting)>),
 }
 
 /// Truncation of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
-    /// Least and greatest value.
+    /// Smallest and largest value.
     values: [f64; 2],
-    /// Probabilities below each, before truncation.
+    /// Probability below each of these values, before truncation.
     below: [f64; 2],
 }
 
@@ -62,7 +62,7 @@ impl Distribution {
         let number = |name| domain.number(&reader, name);
         let form: Form = reader.choice("kind")?;
         if form != Form::Discrete && !domain.continuous() {
-            let message = "only a field of numbers or quantities has a distribution of another kind; list its values: \
+            let message = "only a field of numbers or quantities can have a continuous distribution; use a list of values: \
                            distribution = { kind = \"discrete\", values = […] }"
                 .to_owned();
             return Err(reader.inconsistent("kind", message));
@@ -100,7 +100,7 @@ impl Distribution {
         Ok(Self { shape, domain, origin })
     }
 
-    /// Returns the quantile for a probability `u`, from 0 up to but not including 1.
+    /// Returns the quantile for a probability `u` in `0..1`.
     pub(super) fn quantile(&self, u: f64) -> Setting {
         let value = match &self.shape {
             Shape::Uniform { from, to } => from + u * (to - from),
@@ -119,7 +119,7 @@ impl Distribution {
         self.domain.setting(value, self.origin)
     }
 
-    /// Returns the values of a discrete distribution.
+    /// Returns the values of a discrete distribution; `None` for a continuous one.
     pub(super) fn settings(&self) -> Option<impl Iterator<Item = &Setting>> {
         if let Shape::Discrete(values) = &self.shape {
             Some(values.iter().map(|(_, setting)| setting))
@@ -149,9 +149,9 @@ impl Cut {
         Ok(Self { values, below })
     }
 
-    /// Converts a probability of the truncated distribution to one of the untruncated distribution.
+    /// Converts a probability of the truncated distribution to that of the same value in the untruncated distribution.
     fn uncut(&self, u: f64) -> f64 {
-        // Keep short of 0 and 1, where quantiles are infinite; no draw of 53 bits lies beyond.
+        // The result stays away from 0 and 1, where quantiles are infinite; no draw of 53 bits is changed.
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)
     }
 

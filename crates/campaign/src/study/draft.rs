@@ -1,4 +1,4 @@
-//! Files that get their names only when they are complete and on the disk.
+//! Draft files, which get their final names only when they are complete and on the disk.
 
 use std::fs::{self, File, TryLockError};
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
@@ -26,17 +26,18 @@ const TRIES: u32 = 10;
 /// Temporary files of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the temporary files of this process before it exits; the lock stays held, so that no other files are
-/// begun.
+/// Removes the temporary files of this process before it exits.
+///
+/// The lock stays held, so that no thread begins another file.
 pub fn remove_drafts() {
     let drafts = system::taken(&DRAFTS);
     for draft in drafts.iter().flat_map(|drafts| drafts.iter()) {
-        // If it was renamed in the meantime it is complete, and there is nothing to remove.
+        // Errors are ignored: a draft that was renamed in the meantime is complete.
         drop(fs::remove_file(draft));
     }
 }
 
-/// A temporary file, removed on drop unless it was renamed.
+/// Temporary file that is removed on drop unless it was renamed.
 pub(super) struct Draft {
     pub(super) file: File,
     path: PathBuf,
@@ -44,13 +45,14 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Creates a temporary file under a unique name: cleanup after a draft that was renamed in the meantime must not
-    /// find another draft in its place.
+    /// Creates a temporary file for the file `whole`.
+    ///
+    /// Its name is unique, so that a process that cleans the folder never removes another draft of the same name.
     pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
         let name = whole.file_name().unwrap_or_default().to_string_lossy();
         let mut tries = 0_u32;
         loop {
-            // Random keys of the system make the name unique.
+            // The random keys of the hasher make the name unique.
             let number = RandomState::new().build_hasher().finish();
             let path = whole.with_file_name(format!(".{name}.{number:016x}.part"));
             tries += 1;
@@ -58,14 +60,15 @@ impl Draft {
             let file = match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => file,
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
-                // Another process that only tested write access removed its empty folder again.
+                // Another process, which only tested write access, has removed its empty folder again.
                 Err(error) if error.kind() == ErrorKind::NotFound && tries < TRIES => {
                     whole.parent().map_or(Ok(()), fs::create_dir_all)?;
                     continue;
                 }
                 Err(error) => return Err(error),
             };
-            // The lock shows processes that clean the folder that the writer is alive. One may have been faster.
+            // The lock shows processes that clean the folder that the writer is alive. Such a process may have locked the
+            // file first.
             let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
             if !taken && path.exists() {
                 drafts.push(path.clone());
@@ -74,7 +77,7 @@ impl Draft {
         }
     }
 
-    /// Syncs the file to the disk and renames it.
+    /// Syncs the file to the disk and gives it its final name.
     pub(super) fn name(self) -> std::io::Result<()> {
         system::replaceable(&self.whole)?;
         self.file.sync_all()?;
@@ -85,7 +88,7 @@ impl Draft {
 
 impl Drop for Draft {
     fn drop(&mut self) {
-        // Already gone if it was renamed.
+        // Fails if the file was renamed, which is intended.
         drop(fs::remove_file(&self.path));
         if let Ok(mut drafts) = DRAFTS.lock() {
             drafts.retain(|path| *path != self.path);
@@ -93,7 +96,7 @@ impl Drop for Draft {
     }
 }
 
-/// Syncs the entries of a folder to the disk, where the system supports that.
+/// Syncs the entries of a folder to the disk, if the system supports that.
 #[cfg(unix)]
 fn sync_folder(folder: &Path) -> std::io::Result<()> {
     File::open(folder)?.sync_all()
@@ -110,8 +113,7 @@ mod tests {
 
     use super::*;
 
-    /// Between the renaming of a draft and the end of its writer, another writer may begin a draft of the same
-    /// name.
+    /// Another writer may begin a draft of the same file after a draft is renamed and before its writer ends.
     #[test]
     fn writers_of_one_file_leave_the_drafts_of_the_others_alone() {
         let folder = tempfile::tempdir().unwrap();

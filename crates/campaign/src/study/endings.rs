@@ -1,4 +1,4 @@
-//! Counts of cases by how they ended: followed until nothing moved, or stopped before.
+//! Endings of cases: how many were followed until nothing moved, and how many were stopped earlier.
 
 use std::fmt::Write as _;
 
@@ -13,25 +13,26 @@ use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::{Ending, after_collapse};
 
-/// Counts of cases with a verdict by how they ended.
+/// Numbers of cases with a verdict, by how they ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Endings {
-    /// All cases with a verdict.
+    /// Number of all cases with a verdict.
     pub judged: u64,
-    /// Cases followed until the ground was still, or calm after a collapse, and nothing moved; includes those
-    /// that fell under their own weight before any shaking.
+    /// Number of cases followed until the ground was still (after a collapse: calm) and nothing moved.
+    ///
+    /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,
-    /// Cases stopped a fixed time after their collapse, as the study states.
+    /// Number of cases stopped a fixed time after their collapse, as the study states.
     pub stopped: u64,
-    /// Cases ended by the duration that the study states.
+    /// Number of cases ended by the duration that the study states.
     pub short: u64,
-    /// Of these, cases in which the ground still moved.
+    /// Number of cases ended by the duration while the ground still moved.
     pub cut: u64,
-    /// Of these, cases in which the stack still stood.
+    /// Number of cases ended by the duration while the ground still moved and the stack still stood.
     pub open: u64,
-    /// Longest part of a motion that was cut off (s).
+    /// Longest part of a motion that was cut off by the duration (s).
     pub longest_cut: f64,
-    /// Cases in which something still moved at the time limit of the study.
+    /// Number of cases in which something still moved at the time limit of the study.
     pub moving: u64,
 }
 
@@ -63,42 +64,41 @@ impl Endings {
         }
     }
 
-    /// Largest share of cases in which something still moves at the time limit for which means over the others
-    /// are reported.
+    /// Largest share of cases with something moving at the time limit for which losses of the others are still reported.
     const MOST_MOVING: f64 = 0.02;
 
-    /// Returns the reason why falls are unknown in these cases; `None` where they are known.
+    /// Returns the reason why the falls in these cases are unknown; `None` if they are known.
     pub fn no_losses(&self) -> Option<String> {
         let Self { judged, stopped, short, moving, .. } = *self;
         if stopped > 0 {
             return Some(format!(
-                "{stopped} of {judged} cases were stopped a while after their collapse \
-                 (run.stop_after_collapse, or run.until = \"verdict\"), before all had fallen that falls; leave that out, and \
-                 each is followed until nothing moves"
+                "{stopped} of {judged} cases were stopped a fixed time after their collapse \
+                 (run.stop_after_collapse, or run.until = \"verdict\"), before everything had fallen; leave that out to \
+                 follow every case until nothing moves"
             ));
         }
         if short > 0 {
             return Some(format!(
-                "{short} of {judged} cases were ended by run.duration before what moved had come to \
-                 rest; leave that out, and each is followed until nothing moves"
+                "{short} of {judged} cases were ended by run.duration before everything had come to \
+                 rest; leave that out to follow every case until nothing moves"
             ));
         }
         (moving as f64 > Self::MOST_MOVING * judged as f64).then(|| {
             format!(
-                "in {moving} of {judged} cases something still moved when their time was over; a \
-                 longer run.patience follows them to their end"
+                "in {moving} of {judged} cases something still moved at the time limit; use a \
+                 longer run.patience to follow them to the end"
             )
         })
     }
 
-    /// Returns caveats for the reader of any result; empty where every case was followed to its end.
+    /// Returns warnings for the reader of results; empty if every case was followed to its end.
     pub fn sentences(&self) -> Vec<String> {
         let mut said = Vec::new();
         if self.cut > 0 {
             said.push(format!(
                 "{} of {} cases were cut short by run.duration while the ground still moved, by up to {:.1} s; \
-                 {} of them stood until then, and what the rest of their motions does to them is not \
-                 known. Leave run.duration out to see all of every motion.",
+                 {} of them stood until then, and the effect of the rest of their motions is not \
+                 known. Leave run.duration out to run every motion to its end.",
                 self.cut, self.judged, self.longest_cut, self.open
             ));
         }
@@ -106,8 +106,8 @@ impl Endings {
             said.push(format!("No losses are given: {reason}."));
         } else if self.moving > 0 {
             said.push(format!(
-                "In {} of {} cases something still moved when their time was over; losses are those of the \
-                 others.",
+                "In {} of {} cases something still moved at the time limit; losses are those of the \
+                 other cases.",
                 self.moving, self.judged
             ));
         }
@@ -119,19 +119,19 @@ described! {
     /// End conditions of the cases of a study.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Following {
-        /// `true` if a case goes on until nothing moves.
+        /// `true` if a case is followed until nothing moves.
         pub to_rest: bool,
         /// `true` if a case ends once its verdict is known.
         pub by_verdict: bool,
-        /// Longest time (s) after the end of the motion, where nothing else ends a case.
+        /// Time limit (s) after the end of the motion, if nothing else ends a case.
         pub patience: f64 as "s",
-        /// The length (s) that the study gives its cases; none where the motion does.
+        /// Duration (s) of the cases that the study states; none if it follows from the motion.
         pub duration: Option<f64> as "s",
-        /// Time (s) after a collapse at which the study stops its cases; none where it does not.
+        /// Time (s) after a collapse at which the study stops a case; none if it does not.
         pub after_collapse: Option<f64> as "s",
-        /// Motions that are longer than that length.
+        /// Names of the motions that are longer than the duration.
         pub cut: Vec<String>,
-        /// The longest time (s) that is cut off.
+        /// Longest time (s) by which a motion is cut short.
         pub longest_cut: f64 as "s",
     }
 }
@@ -140,7 +140,7 @@ impl Study {
     /// Returns how long the cases are followed, and which motions are cut short.
     ///
     /// # Errors
-    /// When a motion cannot be read.
+    /// If a motion cannot be read.
     pub fn following(&self) -> Result<Following, StudyError> {
         let base = self.scenario(&[])?;
         let (run, cache) = (&base.run, MotionCache::default());
@@ -161,7 +161,7 @@ impl Study {
                     Shaking::Synthetic(made) => Some(&**made),
                     Shaking::Base | Shaking::Spec(_) => None,
                 };
-                // Realizations of one ensemble have one duration whatever their seeds, and may be a hundred thousand.
+                // Realizations of one ensemble have equal durations and may be a hundred thousand, so only the first is made.
                 let end = match (made, last) {
                     (Some(made), Some((other, end))) if made.is_of_ensemble(other) => end,
                     _ => cache.unscaled(motion, &base.motion, run.similitude)?.ground.end(),
@@ -179,15 +179,15 @@ impl Study {
 }
 
 impl Following {
-    /// Describes it in a sentence; `motions` is the number of motions.
+    /// Describes the end conditions in a sentence; `motions` is the number of motions of the study.
     pub fn words(&self, motions: usize) -> String {
         let mut said = match self.duration {
             None if self.to_rest => format!(
-                "every case is followed through its motion (what has collapsed until the ground stays below 0.02 g) and until nothing moves, at most {} s longer",
+                "every case is followed through its motion (after a collapse: until the ground stays below 0.02 g) and until nothing moves, for at most {} s more",
                 self.patience
             ),
             None if self.by_verdict => format!(
-                "every case is followed until its verdict is known: a stack that stands until it rests on ground that stays below 0.02 g, at most {} s after its motion",
+                "every case is followed until its verdict is known; a standing stack is followed until it rests and the ground stays below 0.02 g, at most {} s after its motion",
                 self.patience
             ),
             None => "every case is followed through its motion and 5 s more".to_owned(),

@@ -1,4 +1,4 @@
-//! Reads `[[motion]]`: lists and folders of records, formulas, ensembles.
+//! Reading of the tables `[[motion]]` of a study file: records, folders of records, formulas, and synthetic ensembles.
 
 use std::path::{Path, PathBuf};
 
@@ -15,10 +15,10 @@ use super::design::seed_of;
 use super::fields::{Maker, Soil};
 use super::motions::{Making, Motion, Shaking, Synthetic};
 
-/// Maximum number of motions of a study, and of files of a folder.
+/// Maximum number of motions of a study, and of files in a folder of records.
 pub(super) const MOST: usize = 100_000;
 
-/// Reads the motions of one `[[motion]]`, given by its number from 1.
+/// Reads the motions of one table `[[motion]]`; `number` is its position in the file, from 1.
 pub(super) fn read(
     set: &Reader<'_>,
     opened: &Opened,
@@ -31,13 +31,14 @@ pub(super) fn read(
     let pattern = set.text("pattern")?;
     let bundled = set.optional_catalog_name("bundled")?;
     let components = set.texts("components")?;
-    // The scenario's own reader reads these.
+    // These tables are read later, by the reader of scenarios.
     let tables = ["sine", "pulse", "each", "scale"];
     for table in tables {
         set.skip(table);
     }
     if let Some(synthetic) = set.optional_section("synthetic")? {
-        // A formula stands in to read the scale alone: scaling that needs a record is refused.
+        // Only the scale is read here, with a formula as a placeholder motion, so that scaling that needs a record is
+        // refused.
         let stand_in = "{ amplitude = \"1 g\", period = \"1 s\", cycles = 1 }";
         let stand_in = parse_value(stand_in, set.origin_of("synthetic")).value;
         let scale = motion_of(set, opened, number, &[("sine", stand_in)])?.scale;
@@ -67,7 +68,7 @@ pub(super) fn read(
     }
     if sources.len().saturating_mul(components.len()) > MOST {
         let message = format!(
-            "{} components of {} records are more motions than the {MOST} that a study has at most: take fewer",
+            "{} components of {} records give more motions than the maximum of {MOST}: use fewer",
             components.len(),
             sources.len()
         );
@@ -98,7 +99,7 @@ pub(super) fn read(
     Ok(motions)
 }
 
-/// Reads the motion that `each`, `sine`, `pulse` and `scale` of a set describe, with further entries.
+/// Reads the motion that results from `each`, `sine`, `pulse` and `scale` of a table `[[motion]]` and further entries.
 fn motion_of(
     set: &Reader<'_>,
     opened: &Opened,
@@ -114,7 +115,8 @@ fn motion_of(
         for entry in &set.table("each")?.entries {
             if ["record", "bundled", "sine", "pulse", "none", "scale"].contains(&entry.key.as_str())
             {
-                let message = format!("`{}` stands in [[motion]] itself, not in `each`", entry.key);
+                let message =
+                    format!("`{}` belongs directly in [[motion]], not in `each`", entry.key);
                 return Err(set.error_at(entry.origin, Problem::Inconsistent { message }));
             }
             table.set(entry.clone());
@@ -134,8 +136,9 @@ fn motion_of(
     template::motion(&opened.sources, &format!("motion.{number}"), &table, origin)
 }
 
-/// Returns the paths, relative to the study and sorted, of all entries of a folder whose names match a pattern, without
-/// folders and names that begin with a period. Entries that are no files are refused where they are read.
+/// Returns the sorted paths, relative to the study, of the files in a folder whose names match a pattern.
+///
+/// Folders and names that begin with a period are skipped. Other entries that are not files fail when they are read.
 fn matching(
     set: &Reader<'_>,
     folder: &Path,
@@ -177,12 +180,12 @@ fn matching(
     Ok(names.into_iter().map(path).collect())
 }
 
-/// `true` if a name matches a pattern: `*` matches any characters, `?` one; case is ignored.
+/// `true` if a name matches a pattern, in which `*` stands for any characters and `?` for one; case is ignored.
 fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =
         (pattern.to_lowercase().chars().collect(), name.to_lowercase().chars().collect());
     let (mut p, mut n) = (0, 0);
-    // Positions in pattern and name at the last star, to resume from after a mismatch.
+    // Positions in pattern and name at the last star, from which matching resumes after a mismatch.
     let mut star: Option<(usize, usize)> = None;
     while n < name.len() {
         if pattern.get(p) == Some(&'*') {
@@ -214,7 +217,7 @@ fn ensemble(
     let count = reader.integer("count")?;
     if count as usize > MOST {
         let message = format!(
-            "{count} motions are more than the {MOST} that a study has at most: take fewer, or several studies with other seeds"
+            "{count} motions are more than the maximum of {MOST}: use fewer, or several studies with different seeds"
         );
         return Err(reader.inconsistent("count", message));
     }
@@ -250,7 +253,7 @@ fn ensemble(
     };
     reader.finish();
     let name = name.unwrap_or_else(|| kind.name().to_owned());
-    // The seed of a realization depends on its set and its number, not on the number of realizations.
+    // The seed of a realization depends on its table and its number, not on the number of realizations.
     let of_set = |realization: u32| match own {
         Some(own) => seed_of(own, &format!("realization {realization}")),
         None => seed_of(seed, &format!("motion {number}, realization {realization}")),

@@ -9,15 +9,15 @@ use crate::system;
 /// Error of planning, running or collecting a study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// The study file, its base scenario or a value of a factor is wrong, at a place.
+    /// The study file, its base scenario or a value of a factor is invalid.
     #[error(transparent)]
     File(#[from] ScenarioError),
     /// A motion of the study cannot be read or generated.
     #[error("the motion \"{name}\" of the study: {error}")]
     Motion {
-        /// Its name.
+        /// Name of the motion.
         name: String,
-        /// The reason.
+        /// Reason.
         error: Box<GroundError>,
     },
     /// A system call failed.
@@ -25,40 +25,40 @@ pub enum StudyError {
     System {
         /// The attempted action, such as "write".
         doing: &'static str,
-        /// The path.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// The message of the system.
+        /// Message of the system.
         reason: String,
     },
-    /// The folder holds something else.
+    /// The folder is not that of this study.
     #[error("{folder} {reason}", folder = folder.display())]
     Folder {
-        /// The folder.
+        /// Path of the folder.
         folder: PathBuf,
-        /// Its contents, and the remedy, as a sentence that continues its name.
+        /// What was found and what to do, as a predicate that follows the path.
         reason: String,
     },
     /// A shard is damaged.
     #[error(
-        "the shard {path} is damaged: {reason}; run the study again, which sets it aside and makes it anew",
+        "the shard {path} is damaged: {reason}; run the study again, which sets the shard aside and runs its chunk again",
         path = path.display()
     )]
     Shard {
-        /// The file.
+        /// Path of the shard.
         path: PathBuf,
-        /// The evidence.
+        /// What is wrong with the shard.
         reason: String,
     },
-    /// There is no built-in study of that name.
+    /// There is no built-in study with the name.
     #[error("{0}")]
     BuiltIn(String),
     /// A table is inconsistent.
     #[error("{0}")]
     Table(String),
-    /// A chunk that the study does not have.
+    /// The study has no chunk with the number.
     #[error("{0}")]
     Chunk(String),
-    /// The caller canceled.
+    /// The caller canceled the run.
     #[error("stopped")]
     Stopped,
 }

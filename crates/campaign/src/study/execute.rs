@@ -1,4 +1,4 @@
-//! Runs chunks: one of them, or all that are missing, on all cores.
+//! Execution of a study: runs one chunk, or all missing chunks of a folder on all cores.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -21,7 +21,7 @@ use super::table::StudyTable;
 use crate::ensemble::{CaseResult, Width};
 use crate::pool;
 
-/// Polling interval (s) while other processes hold the remaining chunks.
+/// Polling interval while other processes hold the remaining chunks.
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
 /// Options of a run.
@@ -29,59 +29,59 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 pub struct RunOptions {
     /// Number of threads; by default, the number of cores.
     pub threads: Option<NonZero<usize>>,
-    /// Vector unit for the cases; by default, the widest of the machine. The table does not depend on it.
+    /// Vector width for the cases; by default, the widest of the machine. The table does not depend on it.
     pub lanes: Option<Width>,
 }
 
-/// Progress of a study.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Number of cases in all; of an adaptive design, the maximum.
+    /// Number of all cases; for an adaptive design, the maximum.
     pub cases: u64,
-    /// Cases of chunks finished by others: earlier runs, and concurrent ones.
+    /// Number of cases in chunks that earlier or concurrent runs finished.
     pub before: u64,
-    /// Cases finished by this run.
+    /// Number of cases that this run finished.
     pub now: u64,
-    /// Counts of both by outcome.
+    /// Numbers of all finished cases by outcome.
     pub tally: Tally,
-    /// Number of chunks in all; of an adaptive design, the maximum.
+    /// Number of all chunks; for an adaptive design, the maximum.
     pub chunks: usize,
     /// Number of finished chunks.
     pub chunks_done: usize,
-    /// Damaged shards that were found and set aside; their chunks are run again.
+    /// Number of damaged shards that were set aside; their chunks are run again.
     pub damaged: usize,
-    /// `true` if the manifest of the folder was damaged and has been written anew.
+    /// `true` if the manifest of the folder was damaged and has been rewritten.
     pub manifest_healed: bool,
-    /// A chunk held by another process, while there is nothing else to do.
+    /// Number of a chunk that another process holds, while no other chunk is left to run.
     pub waits_for: Option<usize>,
 }
 
-/// Result of running a chunk.
+/// Result of [`Study::run_chunk`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChunkRun {
-    /// Its shard existed, or another process made it in the meantime.
+    /// The chunk was not run, because its shard existed or another process wrote it in the meantime.
     Before,
-    /// It was run.
+    /// The chunk was run.
     Now,
-    /// It was run, in place of a damaged shard that was set aside.
+    /// The chunk was run again, after its damaged shard was set aside.
     Again,
 }
 
 /// Finished chunks of a folder.
 #[derive(Default)]
 struct Done {
-    /// Counts by outcome of each chunk with a sound shard.
+    /// Numbers of cases by outcome, for each chunk with an intact shard.
     tallies: BTreeMap<usize, Tally>,
-    /// Damaged shards that were set aside.
+    /// Number of damaged shards that were set aside.
     damaged: usize,
 }
 
-/// State shared by threads.
+/// Data shared by the threads of a run.
 struct Shared<'a> {
     study: &'a Study,
     folder: &'a Folder,
     cache: MotionCache,
-    /// Keys of the shards of this study.
+    /// Keys of the shards of the study.
     keys: Keys,
     lanes: Width,
     rule: Option<StopRule>,
@@ -92,19 +92,19 @@ struct Shared<'a> {
 
 /// State behind the mutex.
 struct State {
-    /// Chunks that no thread here has taken, the next one last.
+    /// Chunks that no thread of this process has taken; the next one is last.
     open: Vec<usize>,
-    /// Open chunks that another process has claimed.
+    /// Chunks that another process has claimed.
     elsewhere: Vec<usize>,
-    /// Counts by outcome of each finished chunk.
+    /// Numbers of cases by outcome, for each finished chunk.
     done: BTreeMap<usize, Tally>,
     progress: Progress,
-    /// Error that ends the run early.
+    /// First error, which ends the run early.
     failed: Option<StudyError>,
 }
 
 impl Study {
-    /// Runs all chunks that are missing from a folder, collects the table and reads it.
+    /// Runs all chunks that are missing from a folder, writes the table and returns it.
     ///
     /// # Errors
     /// As [`Study::run_all`].
@@ -119,16 +119,17 @@ impl Study {
         Collected::read(folder)
     }
 
-    /// Runs all chunks that are missing from a folder; other processes may do so at the same time, and each chunk
-    /// is run by one of them.
+    /// Runs all chunks that are missing from a folder.
+    ///
+    /// Several processes may run the same study in a folder at the same time; each chunk is run by one of them.
     ///
     /// `report` is called after each case and many times a second in between, from several threads, and may cancel the
     /// run. Finished chunks are kept, and the next run resumes from there.
     /// The table does not depend on the number of threads.
     ///
     /// # Errors
-    /// When a motion cannot be read, the folder belongs to something else, a file cannot be written, and
-    /// [`StudyError::Stopped`] when `report` canceled it.
+    /// If a motion cannot be read, the folder belongs to another study, or a file cannot be written;
+    /// [`StudyError::Stopped`] if `report` canceled the run.
     pub fn run_all(
         &self,
         folder: &Path,
@@ -136,13 +137,13 @@ impl Study {
         report: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
     ) -> Result<(), StudyError> {
         let cache = MotionCache::default();
-        // Before the folder is made: a study that cannot run leaves none behind.
+        // Motions are tried before the folder is created, so that a study that cannot run leaves no folder behind.
         self.try_motions(&cache)?;
         let place = Folder::open(folder, self, true)?;
         place.clean()?;
         let keys = self.keys()?;
         let Done { tallies: done, damaged } = self.done(&place, 0..self.chunk_count(), &keys)?;
-        // Foreign shards are set aside by now, so that none is taken for one of this study.
+        // Shards of other studies are set aside by now, so that the new manifest describes only shards of this one.
         place.describe(self)?;
         let rule = self.stop_rule();
         let mut progress =
@@ -181,11 +182,11 @@ impl Study {
         if let Some(error) = state.failed {
             return Err(error);
         }
-        // Clean up after concurrent runs that were killed.
+        // Remove files that concurrent runs left behind when they were killed.
         place.clean()
     }
 
-    /// Runs all cases and returns their table, in memory.
+    /// Runs all cases in memory and returns their table.
     ///
     /// ```
     /// use barrelstack_campaign::study::Study;
@@ -210,7 +211,7 @@ impl Study {
     /// ```
     ///
     /// # Errors
-    /// When a motion cannot be read.
+    /// If a motion cannot be read.
     pub fn table(&self) -> Result<StudyTable, StudyError> {
         let cache = MotionCache::default();
         self.try_motions(&cache)?;
@@ -225,7 +226,7 @@ impl Study {
             self.compute(*chunk, &mut resources)?.ok_or(StudyError::Stopped)
         };
         let rule = self.stop_rule();
-        // Without a rule all at once; with one, begin no chunk that may not be needed.
+        // Without a stop rule all chunks run at once; with one, one at a time, since later ones may not be needed.
         let together = if rule.is_some() { 1 } else { chunks.len().max(1) };
         let (mut parts, mut tally) = (Vec::new(), Tally::default());
         for chunks in chunks.chunks(together) {
@@ -241,10 +242,10 @@ impl Study {
         StudyTable::join(&self.columns(), &parts)
     }
 
-    /// Runs one chunk in lanes of a width and writes its shard, unless it exists.
+    /// Runs one chunk with a vector width and writes its shard, unless the shard exists.
     ///
     /// # Errors
-    /// When there is no such chunk, or as [`Study::run`].
+    /// If there is no such chunk, or as [`Study::run`].
     pub fn run_chunk(
         &self,
         folder: &Path,
@@ -281,10 +282,10 @@ impl Study {
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
     }
 
-    /// Returns the finished chunks of a folder among some.
+    /// Returns which of the given chunks are finished in a folder.
     ///
-    /// A shard that is damaged, or holds cases that its chunk no longer has, is set aside, and its chunk is not done:
-    /// the latter was made before the study grew, maybe by a process that is still running.
+    /// A shard is set aside, and its chunk counts as not finished, if it is damaged or does not hold the present cases of
+    /// its chunk. The latter was written before the study grew, possibly by a process that is still running.
     fn done(&self, folder: &Folder, chunks: Range<usize>, keys: &Keys) -> Result<Done, StudyError> {
         let (mut done, specs) = (Done::default(), self.columns());
         for (chunk, path) in folder.shards()?.into_iter().filter(|(n, _)| chunks.contains(n)) {
@@ -293,7 +294,7 @@ impl Study {
                     done.tallies.insert(chunk, Tally::of(&table));
                 }
                 Ok(_) => set_aside(&path, "replaced")?,
-                // Another process set it aside in the meantime.
+                // Another process has set the shard aside in the meantime.
                 Err(_) if !path.exists() => {}
                 Err(StudyError::Shard { .. }) => {
                     done.damaged += 1;
@@ -306,7 +307,9 @@ impl Study {
     }
 }
 
-/// Renames a shard, so that its chunk is run again and nothing is lost; another process may have done so.
+/// Renames a shard, so that its chunk is run again and its data are kept.
+///
+/// It is no error if another process has renamed the shard already.
 fn set_aside(path: &Path, ending: &str) -> Result<(), StudyError> {
     match std::fs::rename(path, path.with_extension(ending)) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -321,7 +324,7 @@ impl Shared<'_> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes chunks until none are left or needed.
+    /// Runs chunks until none is left or needed.
     fn work(&self) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(chunk) = self.take() else { return };
@@ -332,7 +335,7 @@ impl Shared<'_> {
         }
     }
 
-    /// Takes the next chunk; `None` when the contiguous finished chunks suffice.
+    /// Takes the next chunk; `None` if none is left, or if the stop rule is met by the contiguous finished chunks.
     fn take(&self) -> Option<usize> {
         let mut state = self.state();
         if let Some(rule) = self.rule {
@@ -349,7 +352,7 @@ impl Shared<'_> {
             state.open = std::mem::take(&mut state.elsewhere);
             state.progress.waits_for = state.open.last().copied();
             drop(state);
-            // Their owners finish them, or die and release their claims.
+            // The processes that hold the chunks finish them, or die and release their claims.
             std::thread::sleep(LOOK_AGAIN);
             state = self.state();
             self.report_progress(&mut state);
@@ -358,7 +361,7 @@ impl Shared<'_> {
         state.open.pop()
     }
 
-    /// Runs a chunk, unless another process has claimed or finished it.
+    /// Claims and runs a chunk, unless another process has claimed or finished it.
     fn claimed(&self, chunk: usize) -> Result<(), StudyError> {
         let Some(_claim) = self.folder.claim(chunk)? else {
             self.state().elsewhere.push(chunk);

@@ -1,4 +1,4 @@
-//! The fields of a study file.
+//! Tables and fields of a study file.
 
 mod motion;
 
@@ -11,7 +11,7 @@ pub(super) use motion::{Maker, Soil};
 
 use motion::MOTIONS;
 
-/// Version of the language of study files.
+/// Version of the format of study files.
 pub(super) const SCHEMA: i64 = 1;
 
 /// Maximum number of cases, samples or realizations.
@@ -23,7 +23,7 @@ named! {
 }
 
 named! {
-    /// Form of a distribution.
+    /// Kind of a distribution.
     pub(super) enum Form {
         Uniform = "uniform",
         LogUniform = "log-uniform",
@@ -34,7 +34,7 @@ named! {
 }
 
 named! {
-    /// The design of a study: which cases it has.
+    /// Design of a study, which determines its cases.
     pub(super) enum DesignKind {
         FullFactorial = "full-factorial",
         OneAtATime = "one-at-a-time",
@@ -60,18 +60,26 @@ table! {
     spacing = Kind::Choice(names::<Spacing>), Default::Value("\"linear\"");
 }
 
-const LEAST: Field =
-    Field::new("least", Kind::Value, Default::Nothing, "Cut off below this value (truncated).");
-const GREATEST: Field =
-    Field::new("greatest", Kind::Value, Default::Nothing, "Cut off above this value (truncated).");
+const LEAST: Field = Field::new(
+    "least",
+    Kind::Value,
+    Default::Nothing,
+    "Smallest value, below which the distribution is truncated.",
+);
+const GREATEST: Field = Field::new(
+    "greatest",
+    Kind::Value,
+    Default::Nothing,
+    "Largest value, above which the distribution is truncated.",
+);
 
 table! {
-    /// A distribution from which values are drawn.
+    /// Distribution from which values are drawn.
     static DISTRIBUTION = "distribution";
-    /// Form of the distribution.
+    /// Kind of the distribution.
     kind = Kind::Choice(names::<Form>), Default::Required;
     by kind {
-        /// Every value between two is as likely.
+        /// All values between two limits are equally likely.
         "uniform" {
             /// Least value.
             from = Kind::Value, Default::Required;
@@ -89,40 +97,40 @@ table! {
         "normal" {
             /// Mean.
             mean = Kind::Value, Default::Required;
-            /// Standard deviation, before any cut.
+            /// Standard deviation, before any truncation.
             deviation = Kind::Value, Default::Required;
         } then [LEAST, GREATEST]
         /// The logarithm is normal.
         "lognormal" {
             /// Median, above zero.
             median = Kind::Value, Default::Required;
-            /// Standard deviation of the natural logarithm, before any cut.
+            /// Standard deviation of the natural logarithm, before any truncation.
             dispersion = Kind::Number(Range::up_to(5.0)), Default::Required;
         } then [LEAST, GREATEST]
-        /// One of a list.
+        /// One of a list of values.
         "discrete" {
-            /// The values.
+            /// List of the values.
             values = Kind::Values, Default::Required;
             /// Relative weight of each value.
-            weights = Kind::Values, Default::Derived("all alike");
+            weights = Kind::Values, Default::Derived("all equal");
         }
     }
 }
 
 table! {
-    /// A field of the scenario that the study varies: one of `values`, `range` and `distribution`.
+    /// A field of the scenario that the study varies, with one of `values`, `range` and `distribution`.
     static FACTOR = "factor";
     /// Path of the field, such as `interface.rack-ground.friction.coefficient`.
     field = Kind::Text, Default::Required;
     /// Paths of further fields that take the same value.
     also = Kind::Texts, Default::Nothing;
-    /// Name of its column.
+    /// Name of the column of the factor.
     name = Kind::Text, Default::Derived("`field`");
-    /// The values.
+    /// List of the values.
     values = Kind::Values, Default::Nothing;
-    /// Values between two.
+    /// Evenly spaced values between two limits.
     range = Kind::Table(&RANGE), Default::Nothing;
-    /// Where values are drawn from.
+    /// Distribution from which values are drawn.
     distribution = Kind::Table(&DISTRIBUTION), Default::Nothing;
     at most one of &["values", "range", "distribution"];
 }
@@ -130,13 +138,13 @@ table! {
 table! {
     /// The intensity to which motions are scaled, all components by one factor.
     static INTENSITY = "intensity";
-    /// Measure of the horizontal component as shaken: pga, pgv, pgd, arias, cav, sa(0.5), …
+    /// Intensity measure of the horizontal component that shakes the stack: pga, pgv, pgd, arias, cav, sa(0.5), …
     measure = Kind::Text, Default::Value("\"pgv\"");
-    /// The levels.
+    /// List of the levels.
     levels = Kind::Values, Default::Nothing;
-    /// Levels between two.
+    /// Evenly spaced levels between two limits.
     range = Kind::Table(&RANGE), Default::Nothing;
-    /// Where levels are drawn from.
+    /// Distribution from which levels are drawn.
     distribution = Kind::Table(&DISTRIBUTION), Default::Nothing;
     at most one of &["levels", "range", "distribution"];
 }
@@ -145,72 +153,73 @@ const COUNT: Field =
     Field::new("count", Kind::Integer(1, MOST), Default::Required, "Number of cases.");
 
 table! {
-    /// Which cases the study has.
+    /// Design of the study, which determines its cases.
     static DESIGN = "design";
-    /// The design.
+    /// Kind of the design.
     kind = Kind::Choice(names::<DesignKind>), Default::Required;
-    /// Cases of a chunk, the unit of work that is run and kept as a whole; of an incremental dynamic analysis, hunts.
+    /// Number of cases of a chunk, the unit of work that is run and stored as a whole; in an incremental dynamic
+    /// analysis, of hunts.
     chunk = Kind::Integer(1, 100_000),
-        Default::Derived("64, and twice as many after every 512 chunks; in space, and of an incremental dynamic analysis, 8");
+        Default::Derived("64, and twice as many after every 512 chunks; in space, and in an incremental dynamic analysis, 8");
     by kind {
         /// Every combination of all values, levels and motions.
         "full-factorial" {}
-        /// The base, and every other value of one factor at a time, for every level and motion.
+        /// The base values, and every other value of one factor at a time, for every level and motion.
         "one-at-a-time" {
-            /// Quantiles that stand for a distribution.
+            /// Quantiles that represent a distribution.
             quantiles = Kind::Values, Default::Value("[0.1, 0.9]");
-            /// Stacks for each motion: with any, factors of a distribution are drawn for each of them, alike for all
-            /// changes and levels, and no quantiles stand for them.
+            /// Number of stacks for each motion. If above 0, factors with a distribution are drawn for each stack, with
+            /// the same values for all changes and levels, and quantiles are not used.
             draws = Kind::Integer(0, 10_000), Default::Value("0");
         }
-        /// Samples with one in each of `count` equal shares of every factor.
+        /// Latin hypercube: one sample lies in each of `count` equally probable parts of every factor.
         "latin-hypercube" with [COUNT] {}
-        /// Points of Sobol', shifted at random; more of them leave the earlier ones as they are.
+        /// Points of a Sobol' sequence, shifted at random; a larger `count` keeps the earlier points.
         "sobol" with [COUNT] {}
-        /// Blocks of points of Sobol' for variance-based sensitivity: two samples and, for every varied quantity, one
-        /// with it exchanged.
+        /// Blocks of Sobol' points for variance-based sensitivity: two samples and, for every varied quantity, one
+        /// with this quantity exchanged.
         "saltelli" {
-            /// Number of blocks, each of two cases more than there are varied quantities; best a power of two.
+            /// Number of blocks, best a power of two; each has two cases more than there are varied quantities.
             count = Kind::Integer(2, MOST), Default::Required;
         }
-        /// Random samples until the probability of collapse is known well enough.
+        /// Random samples, until the probability of collapse is known precisely enough.
         "monte-carlo" {
-            /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+            /// Half-width of the 95 % interval (Wilson) of the collapse probability at which to stop.
             half_width = Kind::Number(Range::between(1e-4, 0.5)), Default::Nothing;
-            /// Number of cases at which to stop in any case.
+            /// Maximum number of cases.
             most = Kind::Integer(1, MOST), Default::Required;
-            /// Number of cases before the interval is looked at.
+            /// Number of cases before the interval is first tested.
             least = Kind::Integer(1, MOST), Default::Value("100");
         }
-        /// Every motion at every level; factors crossed where they have values, drawn where they have a distribution.
+        /// Every motion at every level. Factors with listed values are crossed; those with a distribution are drawn.
         "stripes" {}
-        /// Incremental dynamic analysis: each motion is raised in growing steps until it fells the stack, then the gap
-        /// before and the gaps below are filled (hunt and fill, Vamvatsikos and Cornell 2004).
+        /// Incremental dynamic analysis: the level of each motion rises in growing steps until the stack collapses; then
+        /// the gap before collapse and the gaps below are filled (hunt and fill, Vamvatsikos and Cornell 2004).
         "ida" {
             /// Lowest level.
             first = Kind::Value, Default::Required;
-            /// First step up.
+            /// First step of the level.
             step = Kind::Value, Default::Required;
-            /// By how much each step is longer than the one before.
+            /// Amount by which each step is larger than the previous one.
             growth = Kind::Value, Default::Derived("half of `step`");
-            /// Gap between standing and collapse, over the highest level that stood, at which it is narrow enough.
+            /// Gap between standing and collapse, relative to the highest level that stood, at which narrowing stops.
             resolution = Kind::Number(Range::between(1e-3, 1.0)), Default::Value("0.1");
-            /// Runs of each hunt.
+            /// Number of runs of each hunt.
             runs = Kind::Integer(3, 1000), Default::Value("12");
         }
     }
 }
 
 table! {
-    /// Many runs of one scenario: what is varied, what shakes it, and which cases are run.
+    /// Many runs of one scenario, with varied values and motions.
     pub static STUDY = "study";
-    /// Version of the language of study files.
+    /// Version of the format of study files.
     schema = Kind::Integer(1, SCHEMA), Default::Required;
     /// Title, in one line.
     title = Kind::Text, Default::Derived("name of the file");
-    /// Seed of everything that is drawn.
+    /// Seed of all random draws.
     seed = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
-    /// The scenario that is varied, with all its fields; most often `extends` and what differs.
+    /// Scenario that is varied, with all its fields; usually `extends` and the fields that differ.
     base = Kind::Table(&ROOT), Default::Required;
     /// Varied quantities.
     factor = Kind::Tables(&FACTOR), Default::Nothing;
@@ -218,6 +227,6 @@ table! {
     motion = Kind::Tables(&MOTIONS), Default::Derived("the motion of the base");
     /// Intensity to which motions are scaled.
     intensity = Kind::Table(&INTENSITY), Default::Nothing;
-    /// Which cases are run.
+    /// Design of the study, which determines its cases.
     design = Kind::Table(&DESIGN), Default::Required;
 }

@@ -1,4 +1,4 @@
-//! Reads a study file and checks it.
+//! Reading and checking of study files.
 
 mod factor;
 
@@ -28,22 +28,22 @@ use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 /// Maximum number of cases of a design.
 const MOST_CASES: u64 = 10_000_000;
 
-/// Most strata of a Latin hypercube, of all quantities together; each takes four bytes.
+/// Maximum number of strata of a Latin hypercube, of all quantities together; each takes four bytes.
 const MOST_STRATA: usize = 50_000_000;
 
-/// Cases, or hunts, of a chunk where each takes long.
+/// Size of chunks if each case or hunt takes long.
 const FEW: Sizes = Sizes::Given(8);
 
 impl Study {
     /// Reads a study file, the scenarios it extends, and the bytes of its records.
     ///
     /// # Errors
-    /// The first problem found, with its place.
+    /// If the study is invalid; the error states the first problem and its place.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
         read(&Opened::load(path)?, None)
     }
 
-    /// Reads a study from text; it may extend built-in scenarios only, and `source_name` is shown in errors.
+    /// Reads a study from text, which may extend built-in scenarios only; `source_name` is its name in errors.
     ///
     /// # Errors
     /// As [`Study::load`].
@@ -51,8 +51,8 @@ impl Study {
         read(&Opened::parse(source_name, text)?, None)
     }
 
-    /// Reads a study from text as [`Study::parse`], with records that `fetch` returns by path, so that no file is
-    /// opened.
+    /// Reads a study from text like [`Study::parse`], without opening files: `fetch` returns the bytes of a record by its
+    /// path.
     ///
     /// ```
     /// use barrelstack_campaign::Study;
@@ -77,7 +77,7 @@ impl Study {
     /// ```
     ///
     /// # Errors
-    /// As [`Study::load`], and when `fetch` fails.
+    /// As [`Study::load`], or if `fetch` fails.
     pub fn parse_with(
         source_name: &str,
         text: &str,
@@ -89,7 +89,7 @@ impl Study {
     /// Reads a built-in study.
     ///
     /// # Errors
-    /// When there is none of that name.
+    /// If there is no built-in study with the name.
     pub fn built_in(name: &str) -> Result<Self, StudyError> {
         let Some(text) = super::builtin::get(name) else {
             let known: Vec<&str> = super::builtin::names().collect();
@@ -104,7 +104,7 @@ impl Study {
     }
 }
 
-/// Returns the bytes of a file by its path, or the reason why there are none.
+/// Callback that returns the bytes of a file by its path, or the reason why they cannot be read.
 type Fetch<'a> = &'a mut dyn FnMut(&Path) -> Result<Vec<u8>, String>;
 
 fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> {
@@ -118,17 +118,17 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     top.integer("schema")?;
     let title = top.optional_text("title")?.unwrap_or_else(|| opened.stem());
     let seed = u64::from(top.integer("seed")?);
-    // The scenario's own reader reads the base; here it only has to be a table.
+    // The reader of scenarios reads the base later; here it only has to be a table.
     let base = top.table("base")?;
     let sets = top.sections("motion")?;
     if let Some(motion) = base.get("motion").filter(|_| !sets.is_empty()) {
         let message =
-            "the study has both [base.motion] and [[motion]], which takes its place; keep one"
+            "the study has both [base.motion] and [[motion]], which replaces it; keep one of them"
                 .to_owned();
         return Err(top.error_at(motion.origin, Problem::Inconsistent { message }).into());
     }
     let mut template = opened.template("base", &title, sets.is_empty())?;
-    // The inherited duration of a scenario suits its own motion and an animation of it.
+    // An inherited duration is dropped, since it suits the scenario's own motion and its animation.
     template.forget_inherited("run", &crate::scenario::run::ENDS);
     let scenario = template.with([])?;
     runs(&top, &scenario)?;
@@ -162,7 +162,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     }
     let in_space = scenario.is_spatial() || factors.iter().any(|factor| factor.in_space);
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
-    // Cases in space do not run in lockstep, and one takes as long as many in a plane.
+    // Cases in space do not run in lockstep, and each takes as long as many cases in a plane.
     let usual = if in_space || matches!(design, Design::Ida(_)) { FEW } else { Sizes::Growing };
     let levels = match &intensity {
         Some(Intensity { levels: Levels::List(levels), .. }) => {
@@ -195,14 +195,14 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     };
     if matches!(study.design, Design::Saltelli { .. }) && study.varied().is_empty() {
         return Err(refused(
-            "nothing varies: a design for sensitivity needs a [[factor]], several motions or levels"
+            "nothing varies: a sensitivity design needs a [[factor]], or several motions or levels"
                 .to_owned(),
         ));
     }
     let cases = study.cases();
     if cases > MOST_CASES {
         return Err(refused(format!(
-            "the study has more than {MOST_CASES} cases: take fewer values, or a sampled design"
+            "the study has more than {MOST_CASES} cases: use fewer values, or a sampled design"
         )));
     }
     study.chunks = Chunks::of(&study);
@@ -233,7 +233,7 @@ fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// Returns the fingerprint of everything that rows depend on.
+/// Returns the fingerprint of everything on which the rows depend.
 fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     let mut all = vec![env!("CARGO_PKG_VERSION").to_owned(), crate::ensemble::VERSION.to_string()];
     all.extend(study.template.texts().map(str::to_owned));
@@ -245,7 +245,7 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-/// The room for values of factors, by the number of motions and the kind of the design.
+/// Returns the limits on the values of factors, given the number of motions and the kind of the design.
 fn room_for(top: &Reader<'_>, motions: usize) -> Result<Room, ScenarioError> {
     let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
     let kind: Option<DesignKind> =
@@ -254,11 +254,11 @@ fn room_for(top: &Reader<'_>, motions: usize) -> Result<Room, ScenarioError> {
     Ok(Room::new(motions, crosses.then_some(MOST_CASES)))
 }
 
-/// Refuses too many motions.
+/// Returns an error if there are too many motions.
 fn few(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
     if motions.len() > ensembles::MOST {
         let message = format!(
-            "the study has {} motions, and a study has {} at most: take fewer, or several studies with other seeds",
+            "the study has {} motions, more than the maximum of {}: use fewer, or several studies with different seeds",
             motions.len(),
             ensembles::MOST
         );
@@ -267,13 +267,13 @@ fn few(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
     Ok(())
 }
 
-/// Refuses two motions of one name.
+/// Returns an error if two motions have the same name.
 fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
     let mut names = std::collections::BTreeSet::new();
     for motion in motions {
         if !names.insert(&motion.name) {
             let message = format!(
-                "two motions have the name \"{}\"; give their [[motion]] each a `name` of its own",
+                "two motions have the name \"{}\"; give each [[motion]] a different `name`",
                 motion.name
             );
             return Err(top.inconsistent("motion", message));
@@ -282,7 +282,7 @@ fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Scenar
     Ok(())
 }
 
-/// Returns the dimensions in which levels of a measure are written.
+/// Returns the dimensions in which levels of a measure may be written; `None` if motions cannot be scaled to it.
 fn dimension_of(measure: IntensityMeasure) -> Option<&'static [Dimension]> {
     match measure.unit() {
         "m/s2" => Some(&[Dimension::ACCELERATION]),
@@ -307,7 +307,7 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     if let Some(Variation::Distribution(distribution)) = &variation
         && distribution.quantile(LOW).number() <= 0.0
     {
-        let message = "a level has to be above zero, and some of the distribution are not; cut it with `least`";
+        let message = "levels must be above zero, and the distribution has values that are not; truncate it with `least`";
         return Err(reader.inconsistent("distribution", message.to_owned()));
     }
     reader.finish();
@@ -321,7 +321,7 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     Ok(Intensity { measure, levels })
 }
 
-/// Reads `[design]`; returns it with the stated size of its chunks, if any, and its intensity.
+/// Reads `[design]`; returns the design, the stated size of chunks, if any, and the intensity.
 fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,
@@ -343,7 +343,7 @@ fn read_design(
         DesignKind::FullFactorial => {
             if let Some(factor) = drawn {
                 return refuse(&format!(
-                    "a full factorial design crosses values, and `{}` has a distribution: list its `values`, or take \
+                    "a full factorial design crosses listed values, but `{}` has a distribution: list its `values`, or use \
                      a sampled design such as \"sobol\"",
                     factor.name
                 ));
@@ -361,7 +361,7 @@ fn read_design(
                 (quantiles.collect::<Result<_, _>>()?, reader.integer("draws")?);
             if draws > 0 && factors.iter().all(|factor| factor.crossed().is_none()) {
                 return refuse(
-                    "every factor is drawn, so nothing is changed one at a time: give one of them `values`, or take \
+                    "every factor is drawn, so nothing is changed one at a time: give one of them `values`, or use \
                      \"stripes\"",
                 );
             }
@@ -372,8 +372,8 @@ fn read_design(
             let axes = factors.len() + 2;
             if count as usize > MOST_STRATA / axes {
                 let message = format!(
-                    "{count} samples of {axes} quantities (motion, level and factors) do not fit into memory: take {} at \
-                     most, or \"sobol\"",
+                    "{count} samples of {axes} quantities (motion, level and factors) do not fit into memory: use at most {}, \
+                     or \"sobol\"",
                     MOST_STRATA / axes
                 );
                 return Err(reader.inconsistent("count", message));
@@ -384,7 +384,7 @@ fn read_design(
             let most = sobol::DIMENSIONS - 2;
             if factors.len() > most {
                 return refuse(&format!(
-                    "the points of Sobol' here have at most {most} factors, this study has {}; take \
+                    "a \"sobol\" design has at most {most} factors, but this study has {}; use \
                      \"latin-hypercube\"",
                     factors.len()
                 ));
@@ -395,7 +395,7 @@ fn read_design(
             let most = sobol::DIMENSIONS / 2 - 2;
             if factors.len() > most {
                 return refuse(&format!(
-                    "the blocks of Saltelli here have at most {most} factors, this study has {}; leave out those that \
+                    "a \"saltelli\" design has at most {most} factors, but this study has {}; leave out those that \
                      matter least",
                     factors.len()
                 ));

@@ -1,4 +1,4 @@
-//! The folder of a study: its manifest, and the shards of finished chunks.
+//! Folder of a study, with its manifest and the shards of finished chunks.
 //!
 //! ```text
 //! study.json                        the provenance of the shards
@@ -33,123 +33,123 @@ use barrelstack_report::column::ColumnSpec;
 /// Version of the layout of a folder.
 pub(super) const LAYOUT: u32 = 3;
 
-/// Largest file (bytes) of a folder that is read.
+/// Maximum size (bytes) of a file of a folder that is read.
 const FILE_LIMIT: usize = 1 << 30;
 
 pub(super) const MANIFEST: &str = "study.json";
 const SHARDS: &str = "shards";
 
-/// Copy of the study file.
+/// Name of the copy of the study file.
 const COPY: &str = "study.toml";
 
-/// Metadata key of the key of a chunk in its shard.
+/// Name of the metadata entry of a shard that holds the key of its chunk.
 const KEY: &str = "chunk";
 
 described! {
     /// Provenance of the rows of a study.
     #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
     pub struct Provenance {
-        /// Version of this layout.
+        /// Version of the layout of the folder.
         pub schema: u32,
-        /// The program.
+        /// Name of the program.
         pub program: String,
-        /// Its version.
+        /// Version of the program.
         pub version: String,
-        /// The title of the study.
+        /// Title of the study.
         pub title: String,
         /// Fingerprint of the study file, the scenarios it extends, the bytes of its records, and the version.
         pub study_hash: String,
-        /// Fingerprint of the bytes of the study file, of which a folder has a copy.
+        /// Fingerprint of the bytes of the study file, a copy of which is in the folder.
         pub text_hash: String,
-        /// Seed of everything that was drawn.
+        /// Seed of all random draws.
         pub seed: u64,
-        /// The design, as study files name it.
+        /// Design, by its name in study files.
         pub design: String,
-        /// The intensity measure of the column `level`.
+        /// Intensity measure of the column `level`; null without levels.
         pub measure: Option<String>,
-        /// When a Monte Carlo design has enough cases.
+        /// Stop rule of a Monte Carlo design; null without one.
         pub stop: Option<StopRule>,
-        /// Factors that are drawn anew for each case of a motion.
+        /// Names of the factors that are drawn for each case of a motion.
         pub drawn: Vec<String>,
-        /// Quantities that a sensitivity design exchanges, in the order of the cases of a block; empty for others.
+        /// Quantities that a sensitivity design exchanges, in the order of the cases of a block; empty for other designs.
         pub varied: Vec<String>,
-        /// Inputs common to all cases.
+        /// Inputs that all cases have in common.
         pub common: Vec<Common>,
-        /// The motions, in order.
+        /// Motions of the study, in order.
         pub motions: Vec<MotionSource>,
-        /// The columns of the table.
+        /// Columns of the table.
         pub columns: Vec<ColumnSpec>,
-        /// Chunks in all; of a Monte Carlo design, at most.
+        /// Number of all chunks; for a Monte Carlo design, the maximum.
         pub chunks: usize,
-        /// Chunks that are done.
+        /// Number of finished chunks.
         pub chunks_done: usize,
-        /// Rows of the table.
+        /// Number of rows of the table.
         pub cases: usize,
-        /// `true` if nothing is left to run.
+        /// `true` if no chunk is left to run.
         pub complete: bool,
     }
 }
 
 impl Provenance {
-    /// `true` if cases are drawn, each with a motion, a level and factors of its own.
+    /// `true` if motion, level and factors are drawn for each case.
     pub fn is_sampled(&self) -> bool {
         self.is_sample() || self.design == "saltelli"
     }
 
-    /// As [`Design::is_sample`].
+    /// Returns [`Design::is_sample`] of the design of the study.
     pub fn is_sample(&self) -> bool {
         matches!(self.design.as_str(), "latin-hypercube" | "sobol" | "monte-carlo")
     }
 }
 
 described! {
-    /// A motion of a study.
+    /// Source of a motion of a study.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct MotionSource {
-        /// Its name in the table.
+        /// Name of the motion in the table.
         pub name: String,
-        /// Where it comes from: files, or how it is made.
+        /// Description of the source: files, or the method by which the motion is made.
         pub source: String,
-        /// Fingerprint of the bytes of its files; none where it has none.
+        /// Fingerprint of the bytes of the files; none without files.
         pub hash: Option<String>,
-        /// Fingerprint of how it is made.
+        /// Fingerprint of the method and its settings.
         pub key: String,
     }
 }
 
-/// A folder that belongs to a study.
+/// Folder that was opened for a study.
 #[derive(Clone, Debug)]
 pub(super) struct Folder {
     path: PathBuf,
-    /// Fingerprint of the study for which it is open.
+    /// Fingerprint of the study for which the folder was opened.
     study: String,
-    /// `true` if its manifest was damaged and has been written anew.
+    /// `true` if the manifest was damaged and has been rewritten.
     pub(super) healed: bool,
 }
 
 impl Folder {
-    /// Opens a folder for a study: creates it if missing, checks it if not.
+    /// Opens a folder for a study: creates it, or checks that an existing folder belongs to the study.
     ///
-    /// The folder of a study that grew, or changed in nothing that all its cases have in common, is kept; only a run of
-    /// the whole study may decide that (`grows`), and takes it over by [`Folder::describe`].
+    /// The folder of an earlier form of the study is accepted if `grows` is `true` and everything that all cases have in
+    /// common is unchanged. Only a run of the whole study sets `grows`; it then calls [`Folder::describe`].
     pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
         let mut folder = Self { path: path.to_owned(), study: study.fingerprint(), healed: false };
         let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
         if path.is_file() {
-            return refuse("is a file, not a folder; name another".to_owned());
+            return refuse("is a file, not a folder; name a folder".to_owned());
         }
         let (manifest, shards) = (path.join(MANIFEST), path.join(SHARDS));
         if fs::symlink_metadata(&shards).is_ok() {
-            // Already there: refused if it is a link.
+            // An existing folder of shards is refused if it is a link.
             system::folder_below(path, Path::new(SHARDS))
                 .map_err(StudyError::system("write in", &shards))?;
         }
-        // List before looking for the manifest: files that another run makes meanwhile come after its manifest.
+        // The folder is listed before the manifest is looked for: another run writes its manifest before any other file.
         let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {
             let known = match manifest::read(path)? {
                 Manifest::Sound(known) => known,
-                // Chunks carry their own keys; the copy of the study file identifies the folder.
+                // Shards contain their own keys, so the copy of the study file is enough to identify the folder.
                 Manifest::Damaged(how) => {
                     let copy =
                         system::read_result(&path.join(COPY), FILE_LIMIT).unwrap_or_default();
@@ -164,17 +164,17 @@ impl Folder {
             if known.study_hash != folder.study {
                 let reason = match difference(&known, &study.provenance()?) {
                     None if grows => return Ok(folder),
-                    None => "the study was changed since; run it as a whole once, which keeps what is still valid".to_owned(),
+                    None => "was written before the study changed; run the whole study once, which keeps the chunks that are still valid".to_owned(),
                     Some(reason) => format!("belongs to another study: {reason}"),
                 };
                 return refuse(format!(
-                    "{reason}; name another folder, or go back to the study that it belongs to (a copy of its file is {})",
+                    "{reason}; name another folder, or use the study to which it belongs (a copy of its file is {})",
                     path.join("study.toml").display()
                 ));
             }
         } else if let Some(foreign) = foreign {
             return refuse(format!(
-                "holds {foreign} and is not a study folder; name another, new or empty"
+                "holds {foreign} and is not a study folder; name a new or an empty folder"
             ));
         }
         system::folder_below(path, Path::new(SHARDS))
@@ -183,10 +183,10 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Writes the manifest if it is missing or states an earlier form of the study.
+    /// Writes the manifest and the copy of the study file, if they are missing or of an earlier form of the study.
     pub(super) fn describe(&self, study: &Study) -> Result<(), StudyError> {
         let manifest = self.path.join(MANIFEST);
-        // An earlier version may have made other keys of the same motions.
+        // An earlier version may have computed other keys for the same motions.
         let keys = || study.motions.iter().map(|motion| format!("{:016x}", motion.shaking.key()));
         let same = |known: &Provenance| {
             known.motions.iter().map(|m| m.key.clone()).eq(keys())
@@ -195,7 +195,8 @@ impl Folder {
         if !manifest.is_file() || !self.is_ours()? || !same(&manifest_of(&self.path)?) {
             manifest::write(&self.path, &study.provenance()?)?;
         }
-        // After the manifest, so that a folder without one has at most an empty folder of shards of ours.
+        // The copy is written after the manifest, so that a folder without a manifest holds at most an empty folder of
+        // shards.
         let copy = self.path.join(COPY);
         if system::read_result(&copy, FILE_LIMIT).is_ok_and(|text| text == study.text.as_bytes()) {
             return Ok(());
@@ -203,23 +204,23 @@ impl Folder {
         write_whole(&copy, study.text.as_bytes())
     }
 
-    /// `true` if the folder still belongs to the study that it was opened for.
+    /// `true` if the folder still belongs to the study for which it was opened.
     fn is_ours(&self) -> Result<bool, StudyError> {
         Ok(manifest_of(&self.path)?.study_hash == self.study)
     }
 
-    /// Returns the shards of chunks, sorted.
+    /// Returns the chunks that have shards, and the paths of the shards, sorted.
     pub(super) fn shards(&self) -> Result<Vec<(usize, PathBuf)>, StudyError> {
         shards(&self.path)
     }
 
-    /// Claims a chunk for this process and thread; `None` while another has it.
+    /// Claims a chunk for this process and thread; `None` while another holds it.
     ///
-    /// A process that began before the study grew is refused, since it would compute the earlier study.
+    /// A process that began before the study grew gets an error, since it would compute the earlier study.
     pub(super) fn claim(&self, chunk: usize) -> Result<Option<Claim>, StudyError> {
         let claim = Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))?;
         if claim.is_some() && !self.is_ours()? {
-            let reason = "has been given to a study that grew since this run began; run that one";
+            let reason = "has been taken over by a larger form of the study since this run began; run that study";
             return Err(StudyError::Folder {
                 folder: self.path.clone(),
                 reason: reason.to_owned(),
@@ -240,9 +241,9 @@ impl Folder {
             if !(claim || draft) {
                 continue;
             }
-            // A live owner holds it locked; it may also have been renamed by now, or be gone. Network file
-            // systems lock only files that are open for writing.
-            // Anything but a file, such as a link, has no live owner.
+            // A process that is alive holds its file locked. The file may also have been renamed or removed by now.
+            // Network file systems lock only files that are open for writing.
+            // Anything but a file, such as a link, belongs to no process.
             let found = fs::symlink_metadata(&path);
             if found.is_ok_and(|found| !found.is_file()) {
                 drop(fs::remove_file(&path));
@@ -256,8 +257,9 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes the shard of a chunk: under a temporary name first, so that it is renamed only when it is complete and on
-    /// the disk.
+    /// Writes the shard of a chunk.
+    ///
+    /// The file has a temporary name until it is complete and on the disk.
     pub(super) fn write_shard(
         &self,
         chunk: usize,
@@ -271,7 +273,7 @@ impl Folder {
     }
 }
 
-/// Returns the bytes of a file of a folder.
+/// Reads a file of a folder.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     system::read_result(path, FILE_LIMIT).map_err(|reason| StudyError::System {
         doing: "read",
@@ -280,15 +282,16 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     })
 }
 
-/// Returns the first name in a folder except for some names and hidden ones, to be reported; `None` if there is no
-/// folder.
+/// Returns the first name in a folder, for an error message, without hidden names and those in `but`.
+///
+/// Returns `None` if there is no such name, or no folder.
 fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
     let names = fs::read_dir(folder).ok()?.flatten();
     let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.filter(|name| !but.contains(&name.as_str()) && !name.starts_with('.')).min()
 }
 
-/// Returns the files of a folder, sorted.
+/// Returns the paths of the entries of a folder, sorted.
 fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     let failed = StudyError::system("list", folder);
     let entries = fs::read_dir(folder).map_err(failed)?;
@@ -298,13 +301,13 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(paths)
 }
 
-/// Returns the shards of a folder with their chunks, sorted.
+/// Returns the chunks that have shards in a folder, and the paths of the shards, sorted.
 pub(super) fn shards(folder: &Path) -> Result<Vec<(usize, PathBuf)>, StudyError> {
     let paths = list(&folder.join(SHARDS))?.into_iter();
     Ok(paths.filter_map(|path| Some((named(&path)?.0, path))).collect())
 }
 
-/// Returns chunk and fingerprint in the name of a shard; `None` for any other file.
+/// Returns the chunk and the fingerprint in the name of a shard; `None` for any other file.
 fn named(path: &Path) -> Option<(usize, u64)> {
     let name = path.file_name()?.to_str()?.strip_suffix(".parquet")?;
     let (chunk, hash) = name.split_once('-')?;
@@ -320,13 +323,13 @@ pub(super) fn study_text(folder: &Path, made: &Provenance) -> Result<String, Stu
     text.ok_or_else(|| StudyError::Folder {
         folder: folder.to_owned(),
         reason: format!(
-            "holds a damaged {COPY}: its fingerprint is {found}, not {}; run the study again, which writes it anew",
+            "holds a damaged {COPY}: its fingerprint is {found}, not {}; run the study again, which rewrites the file",
             made.text_hash
         ),
     })
 }
 
-/// Reads a shard and the key of its chunk; its bytes must match the fingerprint in its name.
+/// Reads a shard and the key of its chunk, and checks its bytes against the fingerprint in its name.
 pub(super) fn read_shard(
     path: &Path,
     specs: &[ColumnSpec],
@@ -348,16 +351,16 @@ pub(super) fn read_shard(
     if !table.specs().eq(specs.iter())
         || !table.integers("chunk").is_some_and(|all| all.iter().all(of_chunk))
     {
-        return Err(damaged("it holds rows of something else".to_owned()));
+        return Err(damaged("it holds rows of another study".to_owned()));
     }
     Ok((table, key.and_then(|key| u64::from_str_radix(&key, 16).ok())))
 }
 
 impl Study {
-    /// Returns the provenance of the rows of the study, before there are any.
+    /// Returns the provenance of the rows of the study, with no chunks finished.
     ///
     /// # Errors
-    /// When a record cannot be read.
+    /// If a record cannot be read.
     pub fn provenance(&self) -> Result<Provenance, StudyError> {
         let base = self.scenario(&[])?;
         let motions = self.motions.iter().map(|motion| {
@@ -395,17 +398,17 @@ impl Study {
         })
     }
 
-    /// Returns the fingerprint of its file as text.
+    /// Returns the fingerprint of the study file as text.
     fn text_hash(&self) -> String {
         format!("{:016x}", fnv1a(self.text.as_bytes()))
     }
 
-    /// Returns its fingerprint as text.
+    /// Returns the fingerprint of the study as text.
     fn fingerprint(&self) -> String {
         format!("{:016x}", self.hash())
     }
 
-    /// Returns the factors that stripes draw anew for each case, and one-at-a-time designs for each draw.
+    /// Returns the names of the factors that stripes draw for each case, or one-at-a-time designs for each draw.
     fn drawn(&self) -> Vec<String> {
         let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
         let names = drawn.map(|factor| factor.name.clone());
@@ -413,7 +416,7 @@ impl Study {
         if draws { names.collect() } else { Vec::new() }
     }
 
-    /// Returns the stop rule; `None` where all cases are run.
+    /// Returns the stop rule; `None` if all cases are run.
     pub(super) fn stop_rule(&self) -> Option<StopRule> {
         let Design::MonteCarlo { half_width, least, .. } = self.design else { return None };
         half_width.map(|half_width| StopRule { half_width, least })

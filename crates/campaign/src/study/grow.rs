@@ -1,4 +1,4 @@
-//! Chunks that a folder keeps when its study changes: those whose cases are still the same.
+//! Changes of a study that keep its finished chunks: keys of chunks, and comparison with the study of a folder.
 
 use barrelstack_report::described;
 
@@ -10,29 +10,29 @@ use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
-// Sample count and motions are excluded: they identify cases, and the key of a chunk holds them. Further samples and
-// motions come after the existing ones.
+// The number of samples and the motions are not included: they identify cases and are part of the key of a chunk.
+// Further samples and motions come after the existing ones.
 described! {
-    /// One thing on which every case of a study depends, with its fingerprint.
+    /// Input on which every case of a study depends, with its fingerprint.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct Common {
-        /// Name of it in a sentence.
+        /// Name of the input in a sentence.
         pub what: String,
-        /// Its fingerprint.
+        /// Fingerprint of the input.
         pub hash: String,
     }
 }
 
-/// Keys of the shards of a study.
+/// Fingerprints from which the keys of the shards of a study are computed.
 pub(super) struct Keys {
-    /// Fingerprint of all that the cases have in common.
+    /// Fingerprints of the inputs that all cases have in common.
     common: String,
-    /// Fingerprints of the motions.
+    /// Fingerprint of each motion.
     motions: Vec<u64>,
 }
 
 impl Study {
-    /// Returns all that the cases have in common.
+    /// Returns the inputs that all cases have in common.
     pub(super) fn common(&self) -> Result<Vec<Common>, StudyError> {
         let base = self.template.with([])?;
         let factors: Vec<String> = self
@@ -73,18 +73,18 @@ impl Study {
         Ok(parts.into_iter().map(common).collect())
     }
 
-    /// `true` if the motion of a case depends on its sample, and so on the number of motions.
+    /// `true` if the motion of a case is sampled, and therefore depends on the number of motions.
     fn is_sampled(&self) -> bool {
         self.design.is_sample() || matches!(self.design, Design::Saltelli { .. })
     }
 
-    /// Returns the keys of the shards of this study.
+    /// Returns the fingerprints from which the keys of shards are computed.
     pub(super) fn keys(&self) -> Result<Keys, StudyError> {
         let common: Vec<String> = self.common()?.into_iter().map(|one| one.hash).collect();
         Ok(Keys { common: common.join(" "), motions: self.motion_keys()? })
     }
 
-    /// Returns fingerprints of the motions: how each is made, and the bytes of its files.
+    /// Returns a fingerprint of each motion, from its method and the bytes of its files.
     fn motion_keys(&self) -> Result<Vec<u64>, StudyError> {
         let base = self.scenario(&[])?;
         let key = |motion: &super::Motion| {
@@ -95,8 +95,8 @@ impl Study {
         self.motions.iter().map(key).collect()
     }
 
-    /// Returns the key of a chunk: all that cases have in common, and its cases with motions, levels and values, in
-    /// order.
+    /// Returns the key of a chunk: a fingerprint of the inputs that all cases have in common, and of its cases with their
+    /// motions, levels and values.
     pub(super) fn chunk_key(&self, chunk: usize, keys: &Keys) -> u64 {
         let words = |case: &Case| {
             let settings: Vec<String> = case
@@ -115,19 +115,23 @@ impl Study {
     }
 }
 
-/// Returns the difference between the provenance of a folder and of a study; `None` where they agree on all that
-/// the cases have in common, so that chunks may be kept.
+/// Describes the difference between the study of a folder and another study.
+///
+/// Returns `None` if all inputs that the cases have in common are equal, so that finished chunks may be kept.
 pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<String> {
     if known.version != wanted.version {
         return Some(format!(
-            "it was made by version {}, this is {}",
+            "it was written by version {}, and this is version {}",
             known.version, wanted.version
         ));
     }
     if known.seed != wanted.seed {
-        return Some(format!("its seed is {}, that of this one {}", known.seed, wanted.seed));
+        return Some(format!(
+            "its seed is {}, and that of this study is {}",
+            known.seed, wanted.seed
+        ));
     }
-    // A removed motion, or another one under its name, would leave rows that belong to no motion.
+    // If a motion is removed or replaced, existing rows would belong to no motion of the study.
     let same = |a: &MotionSource, b: &MotionSource| {
         (&a.name, &a.hash, &a.key) == (&b.name, &b.hash, &b.key)
     };
@@ -139,7 +143,7 @@ pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<Stri
         return Some(if same_name {
             format!("the {what} \"{}\" has changed", motion.name)
         } else {
-            format!("it has the motion \"{}\", which this one does not have", motion.name)
+            format!("it has the motion \"{}\", which this study does not have", motion.name)
         });
     }
     let changed = known.common.iter().find(|common| !wanted.common.contains(common));

@@ -1,32 +1,33 @@
-//! Incremental dynamic analysis: the levels of one hunt.
+//! Levels of one hunt of an incremental dynamic analysis.
 
-/// Selection of the levels of a motion: hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523).
+/// Settings of a hunt: the search for the level at which one motion brings the stack down.
 ///
-/// Levels rise in growing steps until the stack collapses; then the gap between the highest level that it stood and
-/// the lowest at which it fell is narrowed, each time at a third of it; the remaining runs go to the middle of the
+/// The method is hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523). Levels rise in growing steps
+/// until the stack collapses. Then the gap between the highest level at which the stack stood and the lowest at which it
+/// collapsed is narrowed, each time by a run at a third of the gap. The remaining runs are placed in the middle of the
 /// widest gaps below.
 /// All levels are in SI units of the intensity measure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hunt {
-    /// Lowest level.
+    /// Lowest level, at which the hunt starts.
     pub first: f64,
-    /// First step up.
+    /// First step of the level.
     pub step: f64,
-    /// Increment of each step over the one before.
+    /// Amount by which each step is larger than the previous one.
     pub growth: f64,
-    /// Gap, over the highest level that stood, at which narrowing ends.
+    /// Gap between standing and collapse, relative to the highest level that stood, at which narrowing ends.
     pub resolution: f64,
     /// Number of runs of each hunt.
     pub runs: u32,
 }
 
-/// A level that was run, and `true` if the stack collapsed; `None` without a verdict.
+/// Level that was run, and whether the stack collapsed; `None` without a verdict.
 pub(super) type LevelResult = (f64, Option<bool>);
 
 impl Hunt {
-    /// Returns the next level to run, given those that were run; `None` when the hunt is over.
+    /// Returns the next level to run, given the results so far; `None` if the hunt is over.
     pub(super) fn next(&self, results: &[LevelResult]) -> Option<f64> {
-        // A run without a verdict would fail again at the next level: the hunt ends with it.
+        // The hunt ends with a run without a verdict, which would fail again at the next level.
         let known: Vec<(f64, bool)> = results
             .iter()
             .map(|(level, fell)| fell.map(|fell| (*level, fell)))
@@ -45,7 +46,7 @@ impl Hunt {
             known.iter().filter(|(level, fell)| !*fell && *level < fall).map(|(level, _)| *level);
         let stood = stood.fold(0.0, f64::max);
         let gap = fall - stood;
-        // If no level stood, a tenth of the first one takes its place.
+        // If the stack stood at no level, a tenth of the first level replaces the highest that stood.
         if gap > self.resolution * stood.max(0.1 * self.first) {
             return Some(stood + gap / 3.0);
         }
@@ -65,7 +66,7 @@ mod tests {
         Hunt { first: 0.1, step: 0.1, growth: 0.05, resolution: 0.1, runs: 14 }
     }
 
-    /// Returns all levels of a hunt of a stack that collapses where `falls` is true.
+    /// Returns all levels of a hunt, for a stack that collapses at levels for which `falls` returns `true`.
     fn levels(hunt: &Hunt, falls: impl Fn(f64) -> bool) -> Vec<LevelResult> {
         let mut results = Vec::new();
         while let Some(level) = hunt.next(&results) {

@@ -1,7 +1,7 @@
-//! The manifest of a folder: the provenance of its shards, with a fingerprint of its own bytes.
+//! Manifest of a folder: the provenance of its shards, with a fingerprint that shows damage.
 //!
-//! The last field of `study.json` is the fingerprint (FNV-1a, 64 bits) of the whole file with zeros in its place, so that
-//! no byte of it can change unnoticed. It protects against damage, not against tampering.
+//! The last field of `study.json` is the fingerprint (FNV-1a, 64 bits) of the whole file, computed with zeros in place of
+//! the fingerprint. It protects against damage, not against tampering.
 
 use std::path::Path;
 
@@ -10,24 +10,24 @@ use super::error::StudyError;
 use super::folder::{LAYOUT, MANIFEST, Provenance, read_file};
 use crate::scenario::fnv1a;
 
-/// Text before the fingerprint, which ends the file.
+/// Text of the manifest before the fingerprint.
 const BEFORE: &str = ",\n  \"fingerprint\": \"";
 
-/// Text after it.
+/// Text of the manifest after the fingerprint.
 const BEHIND: &str = "\"\n}\n";
 
-/// Digits of a fingerprint.
+/// Number of digits of a fingerprint.
 const DIGITS: usize = 16;
 
-/// A manifest as read.
+/// Manifest as it was read.
 pub(super) enum Manifest {
-    /// Unchanged since it was written.
+    /// The manifest is unchanged since it was written.
     Sound(Box<Provenance>),
-    /// Changed since; the evidence, as a clause.
+    /// The manifest was changed since it was written; the reason is a clause.
     Damaged(String),
 }
 
-/// Returns the bytes with zeros in place of the fingerprint, and that fingerprint; `None` if there is none.
+/// Returns the bytes with zeros in place of the fingerprint, and the fingerprint; `None` if there is no fingerprint.
 fn parted(bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     let rest = bytes.strip_suffix(BEHIND.as_bytes())?;
     let (head, stated) = rest.split_at_checked(rest.len().checked_sub(DIGITS)?)?;
@@ -48,7 +48,7 @@ pub(super) fn write(folder: &Path, made: &Provenance) -> Result<(), StudyError> 
 /// Reads the manifest of a folder and checks its fingerprint.
 ///
 /// # Errors
-/// If it is missing, cannot be read, or was written by another version.
+/// If the manifest is missing, cannot be read, or was written by an incompatible version.
 pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
     let path = folder.join(MANIFEST);
@@ -58,16 +58,16 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
             (true, true, _) => format!("is not a study folder: its {MANIFEST} is not a file"),
             (true, false, _) => format!("is not a study folder: it has no {MANIFEST}"),
             (false, _, true) => "is not a folder".to_owned(),
-            (false, _, false) => "is not there".to_owned(),
+            (false, _, false) => "does not exist".to_owned(),
         };
-        return Err(refuse(format!("{what}; name a folder that a study wrote")));
+        return Err(refuse(format!("{what}; name the folder of a study")));
     }
     let bytes = read_file(&path)?;
     let known = serde_json::from_slice::<serde_json::Value>(&bytes).ok();
     let sealed =
         parted(&bytes).map(|(zeroed, stated)| (format!("{:016x}", fnv1a(&zeroed)), stated));
     let Some((found, stated)) = sealed else {
-        // Earlier layouts had no fingerprint.
+        // Manifests of earlier layouts have no fingerprint.
         let text = |key: &str| known.as_ref().map_or(String::new(), |known| known[key].to_string());
         if known
             .as_ref()
@@ -75,7 +75,7 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
             .is_some_and(|n| n < LAYOUT.into())
         {
             return Err(refuse(format!(
-                "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
+                "was written by version {} in layout {} of study folders, but this version reads layout {LAYOUT}; use that \
                  version, or name another folder",
                 text("version").trim_matches('"'),
                 text("schema")
@@ -97,7 +97,7 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     })?;
     if known.schema != LAYOUT {
         return Err(refuse(format!(
-            "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
+            "was written by version {} in layout {} of study folders, but this version reads layout {LAYOUT}; use that \
              version, or name another folder",
             known.version, known.schema
         )));
@@ -105,7 +105,7 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     Ok(Manifest::Sound(Box::new(known)))
 }
 
-/// Returns the manifest of a folder.
+/// Returns the provenance in the manifest of a folder.
 pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     match read(folder)? {
         Manifest::Sound(known) => Ok(*known),
@@ -116,8 +116,8 @@ pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
 /// Returns the error for a damaged manifest.
 pub(super) fn damaged(folder: &Path, how: &str) -> StudyError {
     let reason = format!(
-        "holds a damaged {MANIFEST}: {how}; run the study whose file is study.toml there once more into this folder, \
-         which writes {MANIFEST} anew and keeps every sound chunk"
+        "holds a damaged {MANIFEST}: {how}; run the study again into this folder, with the file study.toml there, which \
+         rewrites {MANIFEST} and keeps every intact chunk"
     );
     StudyError::Folder { folder: folder.to_owned(), reason }
 }

@@ -1,4 +1,4 @@
-//! The motions of a study: records, formulas and synthetic ensembles.
+//! Motions of a study: records, formulas and synthetic ensembles.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -14,21 +14,21 @@ use crate::scenario::{
 
 use super::error::StudyError;
 
-/// A motion of a study.
+/// Motion of a study.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
-    /// Its name in the table, unique.
+    /// Name of the motion in the table, unique in the study.
     pub(super) name: String,
-    /// Its source.
+    /// Source of the motion.
     pub(super) shaking: Shaking,
 }
 
 /// Source of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shaking {
-    /// The motion of the base, with the values of the case.
+    /// The motion of the base scenario, with the values of the case.
     Base,
-    /// As in a scenario.
+    /// A motion as in a scenario file.
     Spec(Box<MotionSpec>),
     /// One realization of an ensemble.
     Synthetic(Box<Synthetic>),
@@ -38,7 +38,7 @@ pub(super) enum Shaking {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Synthetic {
     pub(super) maker: Making,
-    /// Step of the samples (s).
+    /// Time step of the samples (s).
     pub(super) time_step: f64,
     pub(super) seed: u64,
     pub(super) scale: crate::scenario::Scale,
@@ -53,7 +53,7 @@ pub(super) enum Making {
 }
 
 impl std::fmt::Display for Making {
-    /// Describes the model, with units.
+    /// Describes the model and its parameters with their units.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Boore(source) => write!(f, "stochastic method: {source}"),
@@ -66,7 +66,7 @@ impl std::fmt::Display for Making {
 }
 
 impl Synthetic {
-    /// `true` if it differs from another in its seed alone.
+    /// `true` if this motion differs from another only in its seed.
     pub(super) fn is_of_ensemble(&self, other: &Self) -> bool {
         Self { seed: 0, ..self.clone() } == Self { seed: 0, ..other.clone() }
     }
@@ -84,7 +84,7 @@ impl Synthetic {
 }
 
 impl Shaking {
-    /// Returns the motion for a stack of a length scale, with the scale of its own source.
+    /// Returns the motion for a stack of the length scale `similitude`, scaled as its source states.
     pub(super) fn ground(&self, base: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
         match self {
             Self::Base => ground::of_spec(base, similitude),
@@ -100,7 +100,7 @@ impl Shaking {
         }
     }
 
-    /// Returns all components of the motion for a stack of a length scale, with the scale of its own source.
+    /// Returns all components of the motion for a stack of the length scale `similitude`, scaled as its source states.
     fn in_space(
         &self,
         base: &MotionSpec,
@@ -114,7 +114,7 @@ impl Shaking {
         }
     }
 
-    /// Describes its source in words; the study has the numbers.
+    /// Describes the source in words, without numbers that are in the study file.
     pub(super) fn source(&self, base: &MotionSpec) -> String {
         let spec: &MotionSpec = match self {
             Self::Base => base,
@@ -137,7 +137,7 @@ impl Shaking {
         }
     }
 
-    /// Fingerprint of how it is made, independent of the places and names of its files.
+    /// Returns a fingerprint of the source, independent of the paths and names of its files.
     pub(super) fn key(&self) -> u64 {
         let mut made = self.clone();
         if let Self::Spec(spec) = &mut made {
@@ -146,7 +146,7 @@ impl Shaking {
         fnv1a(format!("{made:?}").as_bytes())
     }
 
-    /// Returns the files that it is read from.
+    /// Returns the files from which the motion is read.
     pub(super) fn files<'a>(&'a self, base: Option<&'a MotionSpec>) -> Vec<&'a FileRef> {
         let spec = match self {
             Self::Base => base,
@@ -167,7 +167,7 @@ impl Shaking {
     }
 }
 
-/// Returns the fingerprint of the bytes of files; `None` without files.
+/// Returns a fingerprint of the bytes of files; `None` without files.
 pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {
     let mut all = Vec::new();
     for file in files {
@@ -185,7 +185,7 @@ pub(super) fn unreadable(name: &str, path: &Path, reason: String) -> StudyError 
     StudyError::Motion { name: name.to_owned(), error: Box::new(error) }
 }
 
-/// The intensity measures of a table, with their columns.
+/// Columns of the intensity measures in a table, with the measures.
 pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
     ("pga", IntensityMeasure::Pga),
     ("pgv", IntensityMeasure::Pgv),
@@ -198,24 +198,24 @@ pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
     ("d5_95", IntensityMeasure::D5_95),
 ];
 
-/// A scaled motion with its intensity measures.
+/// Scaled motion with its intensity measures.
 #[derive(Clone, Debug)]
 pub(super) struct Shaken {
     pub(super) ground: Arc<Ground>,
-    /// Scale factor for its level.
+    /// Factor by which the motion was scaled to its level.
     pub(super) factor: f64,
     /// [`MEASURES`] of the horizontal component, as scaled (SI); `None` for ground at rest.
     pub(super) measures: Option<[f64; 9]>,
 }
 
-/// Cache entry: an unscaled motion, shared by cases.
+/// Cache entry: an unscaled motion that cases share.
 #[derive(Debug)]
 struct Kept<T> {
     shaking: Shaking,
-    /// The motion of the base, if that is the source.
+    /// Motion of the base scenario, if that is the source.
     base: Option<MotionSpec>,
     similitude: f64,
-    /// The cached value.
+    /// Cached value.
     made: Arc<T>,
     /// Size of the value (bytes).
     size: usize,
@@ -231,18 +231,18 @@ impl<T> Default for Shelf<T> {
     }
 }
 
-/// Caches of the most recently used motions, so that none is read for every case.
+/// Caches of the most recently used motions, so that a motion is not read again for every case.
 #[derive(Debug, Default)]
 pub(super) struct MotionCache {
     in_plane: Shelf<Shaken>,
     in_space: Shelf<barrelstack_space::Ground>,
 }
 
-/// Maximum memory (bytes) of a cache.
+/// Maximum memory (bytes) of each cache.
 const CACHE: usize = 64 << 20;
 
 impl<T> Shelf<T> {
-    /// Returns the value of a motion; `make` computes it with its size (bytes) if it is not cached.
+    /// Returns the cached value of a motion; if there is none, `make` computes the value and its size (bytes).
     fn get(
         &self,
         motion: &Motion,
@@ -257,7 +257,7 @@ impl<T> Shelf<T> {
         if let Ok(mut cache) = self.0.lock()
             && let Some(at) = cache.iter().position(same)
         {
-            // Most recently used last; the first is evicted first.
+            // The most recently used entry is last; the first is evicted first.
             let kept = cache.remove(at);
             let made = Arc::clone(&kept.made);
             cache.push(kept);
@@ -281,7 +281,7 @@ impl<T> Shelf<T> {
 }
 
 impl MotionCache {
-    /// Returns an unscaled motion: from the cache, or read.
+    /// Returns an unscaled motion, from the cache or read from its source.
     pub(super) fn unscaled(
         &self,
         motion: &Motion,
@@ -296,7 +296,7 @@ impl MotionCache {
         })
     }
 
-    /// Returns all components of an unscaled motion, not turned: from the cache, or read.
+    /// Returns all components of an unscaled motion, without rotation, from the cache or read from the source.
     pub(super) fn in_space(
         &self,
         motion: &Motion,
@@ -310,7 +310,7 @@ impl MotionCache {
         })
     }
 
-    /// Returns a motion scaled to a level of a measure.
+    /// Returns a motion scaled to a level of an intensity measure; unscaled without a level.
     pub(super) fn at_level(
         &self,
         motion: &Motion,
@@ -342,7 +342,9 @@ fn measure(motion: &GroundMotion) -> Result<[f64; 9], MotionError> {
     Ok(values)
 }
 
-/// Scales measures by the factor of the motion: Arias by its square, a ratio and a time not, the others linearly.
+/// Scales intensity measures with the factor of the motion.
+///
+/// The Arias intensity scales with its square; PGV/PGA and the duration do not change; the others are proportional.
 fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
     for (value, (_, measure)) in values.iter_mut().zip(MEASURES) {
         if measure == IntensityMeasure::Arias {

@@ -1,4 +1,4 @@
-//! Divides the cases of a study into chunks.
+//! Division of the cases of a study into chunks.
 
 use std::collections::HashMap;
 
@@ -6,44 +6,43 @@ use super::Study;
 use super::design::{Case, Design};
 use barrelstack_report::column::Value;
 
-/// A chunk: cases that are run and kept as a whole.
+/// Chunk of a study: cases that are run and stored together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chunk {
-    /// Its number, from 0.
+    /// Number of the chunk, from 0.
     pub number: usize,
-    /// Number of cases; of an incremental dynamic analysis, hunts.
+    /// Number of cases; in an incremental dynamic analysis, of hunts.
     pub cases: usize,
-    /// The first of them.
+    /// Number of the first case.
     pub first: u64,
-    /// The last of them.
+    /// Number of the last case.
     pub last: u64,
 }
 
-/// Number of cases of a chunk, by its position: as the study states, or 64 and twice as many after every 512 chunks.
+/// Sizes of chunks: as the study states, or 64 cases and twice as many after every 512 chunks.
 ///
-/// Small enough that an interruption loses little and many workers find work, and so few that a million cases make some
-/// 2,500 files. The last of many chunks take longest: those of a million cases are 16 times as long as the first.
-/// A chunk does not change with the number of chunks after it.
+/// Chunks are small enough that an interruption loses little and many workers find work, and large enough that a million
+/// cases make about 2,500 files. In a study of a million cases the last chunks are 16 times as large as the first.
+/// The size of a chunk does not depend on the number of chunks after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sizes {
-    /// All equal.
+    /// All chunks have the given number of cases.
     Given(u32),
-    /// Growing.
+    /// Chunks grow with their position.
     Growing,
 }
 
-/// Chunks of a size before it doubles.
+/// Number of chunks of one size before the size doubles.
 const ALIKE: u64 = 512;
 
-/// Maximum number of doublings, far below overflow; ten million cases, the most that a study has, end after the
-/// eighth.
+/// Maximum number of doublings, which avoids overflow. Ten million cases, the maximum of a study, need eight.
 const DOUBLINGS: u64 = 40;
 
-/// Cases of the first chunks.
+/// Number of cases of the first chunks.
 const FIRST: u64 = 64;
 
 impl Sizes {
-    /// Returns the first case of a chunk in the order of the cases, and its number of cases.
+    /// Returns the first case and the number of cases of a chunk, if chunks follow the order of the cases.
     fn span(self, chunk: u64) -> (u64, u64) {
         match self {
             Self::Given(size) => (chunk * u64::from(size), u64::from(size)),
@@ -69,16 +68,16 @@ impl Sizes {
     }
 }
 
-/// All chunks of a study.
+/// Chunks of a study.
 ///
-/// Cases of one chunk have the same bodies and contacts where the design allows, so that they can be run in lockstep.
-/// Each case goes to the open chunk of its kind, and a chunk is opened when there is none, so that later additions of
-/// cases change no full chunk.
+/// If the design allows, all cases of a chunk have the same bodies and contacts, so that they can run in lockstep.
+/// Each case is added to the chunk of its kind that is not yet full, or to a new one, so that further cases change no
+/// full chunk.
 #[derive(Clone, Debug)]
 pub(super) enum Chunks {
-    /// In the order of the cases.
+    /// Chunks follow the order of the cases.
     Even { count: u64, sizes: Sizes },
-    /// As listed.
+    /// Numbers of the cases of each chunk.
     Listed(Vec<Vec<u32>>),
 }
 
@@ -86,13 +85,13 @@ impl Chunks {
     pub(super) fn of(study: &Study) -> Self {
         let (count, sizes) = (study.cases.count(study), study.chunk);
         let mixed = study.factors.iter().any(|factor| factor.structural);
-        // Chunks of Monte Carlo are in the order of the cases, since it stops after one of them.
+        // Chunks of a Monte Carlo design follow the order of the cases, since the design may stop after any of them.
         let ordered = matches!(study.design, Design::MonteCarlo { .. });
         if !mixed || ordered {
             return Self::Even { count, sizes };
         }
         let mut chunks: Vec<Vec<u32>> = Vec::new();
-        // The chunk of each kind that has room, by the words of the kind.
+        // Chunk of each kind that is not yet full.
         let mut open: HashMap<String, usize> = HashMap::new();
         for number in 0..u32::try_from(count).unwrap_or(u32::MAX) {
             let kind = study.structure(&study.cases.case(study, u64::from(number)));
@@ -150,7 +149,7 @@ impl Study {
         self.chunks.len()
     }
 
-    /// Returns the values of the factors that change which bodies and contacts there are.
+    /// Returns the values of the factors that change the bodies and contacts of the model.
     fn structure(&self, case: &Case) -> Vec<Option<Value>> {
         let structural = |index: &usize| self.factors[*index].structural;
         (0..self.factors.len())

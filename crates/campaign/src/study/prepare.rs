@@ -1,4 +1,4 @@
-//! Computes the rows of a chunk: builds its cases, runs them, and tabulates the results.
+//! Computation of the rows of a chunk: its cases are built, run, and tabulated.
 
 use std::sync::Arc;
 
@@ -17,29 +17,29 @@ use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
 use crate::ground::Ground;
 use crate::outcome::Outcome;
 
-/// Maximum number of cases built at once: enough to run in lockstep, few enough to hold their motions.
+/// Maximum number of cases built at once: enough to run in lockstep, few enough to keep their motions in memory.
 const BATCH: usize = 128;
 
-/// Resources of a chunk while it runs.
+/// Resources for running a chunk.
 pub(super) struct Resources<'a> {
     /// Cache of motions.
     pub(super) cache: &'a MotionCache,
-    /// Vector unit for the cases.
+    /// Vector width for the cases.
     pub(super) lanes: Width,
-    /// Callback after each case.
+    /// Callback that receives the result of each case.
     pub(super) report: &'a mut dyn FnMut(&CaseResult),
-    /// Returns `true` to cancel.
+    /// Callback that returns `true` to cancel.
     pub(super) stop: &'a dyn Fn() -> bool,
 }
 
-/// A built case with its motion, or the reason why it cannot run.
+/// Case with its motion, ready to run, or the reason why it cannot run.
 struct Built {
     shaken: Option<Shaken>,
     prepared: Result<Prepared, String>,
 }
 
 impl Study {
-    /// Computes the rows of a chunk; `None` when canceled.
+    /// Computes the rows of a chunk; `None` if canceled.
     pub(super) fn compute(
         &self,
         chunk: usize,
@@ -65,7 +65,7 @@ impl Study {
         Ok(Some(table))
     }
 
-    /// Runs hunts side by side, one level each at a time, and returns their rows; `None` when canceled.
+    /// Runs several hunts in parallel, one level of each at a time, and returns their rows; `None` if canceled.
     fn hunts(
         &self,
         hunt: &Hunt,
@@ -109,7 +109,9 @@ impl Study {
         Some(rows.into_iter().map(|(_, row)| row).collect())
     }
 
-    /// Builds cases and runs them, those in a plane in lockstep; reports those that cannot be built.
+    /// Builds and runs cases, and returns the motion and the result of each; `None` if canceled.
+    ///
+    /// Cases in a plane run in lockstep. Cases that cannot be built have a result with the reason.
     fn shake(
         &self,
         cases: &[Case],
@@ -142,7 +144,7 @@ impl Study {
 
     fn build(&self, cases: &[Case], cache: &MotionCache) -> Vec<Built> {
         let mut built: Vec<Built> = Vec::with_capacity(cases.len());
-        // Cases with the same values share a scenario, and those of the same level a motion.
+        // Cases with the same values share a scenario; cases with the same motion and level also share the scaled motion.
         let mut scenarios: Vec<(&Case, Result<Arc<Scenario>, String>)> = Vec::new();
         let mut shakings: Vec<(&Case, *const Scenario, Shaken)> = Vec::new();
         for case in cases {
@@ -183,7 +185,7 @@ impl Study {
         built
     }
 
-    /// Returns the scenario with the values of some factors replaced.
+    /// Returns the base scenario with the given values of the factors.
     pub(super) fn scenario(&self, settings: &[Option<Setting>]) -> Result<Scenario, ScenarioError> {
         let changes = self.factors.iter().zip(settings).flat_map(|(factor, setting)| {
             let fields = factor.fields.iter().map(String::as_str);
@@ -199,10 +201,10 @@ impl Study {
         Ok(scenario)
     }
 
-    /// Returns the motions of the study with their names, unscaled: a level scales them later.
+    /// Returns the names and the motions of the study, not scaled to a level.
     ///
     /// # Errors
-    /// Names the first motion that cannot be read or generated.
+    /// If a motion cannot be read or generated; the error names the first one.
     pub fn grounds(&self) -> Result<Vec<(String, Arc<Ground>)>, StudyError> {
         let (cache, base) = (MotionCache::default(), self.scenario(&[])?);
         let ground = |motion: &Motion| {
@@ -224,15 +226,15 @@ impl Study {
         cache.at_level(motion, &scenario.motion, scenario.run.similitude, level)
     }
 
-    /// Parses every record up front, so that a bad file fails before any run.
+    /// Reads every motion, so that a bad file fails before any run.
     ///
     /// # Errors
-    /// Names the first motion that cannot be read or generated.
+    /// If a motion cannot be read or generated; the error names the first one.
     pub(super) fn try_motions(&self, cache: &MotionCache) -> Result<(), StudyError> {
         let scenario = self.scenario(&[])?;
         let mut tried: Option<&Synthetic> = None;
         for motion in &self.motions {
-            // Realizations of an ensemble differ in their seeds alone: test the first for all.
+            // Realizations of an ensemble differ only in their seeds, so the first is tried for all.
             if let Shaking::Synthetic(synthetic) = &motion.shaking {
                 if tried.is_some_and(|tried| {
                     Synthetic { seed: tried.seed, ..(**synthetic).clone() } == *tried
@@ -250,18 +252,18 @@ impl Study {
     }
 }
 
-/// Refuses scenes that no study runs: a stack in both planes, and a free scene in space.
+/// Returns an error for scenes that a study cannot run: a stack in both planes, and a free scene in space.
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {
-            "a study runs stacks, and free scenes of the plane: take a base that is no free scene \
-             in space"
+            "a study runs stacks, and free scenes in a plane, but not free scenes in space: use another \
+             base"
                 .to_owned()
         }
         (_, Some(stack)) => {
             let Some(along) = stack.columns_along else { return Ok(()) };
             format!(
-                "a study looks at one plane, or at the stack in space. Leave `base.stack.columns_along` out and make a \
+                "a study simulates one plane, or the stack in space. Leave `base.stack.columns_along` out and make a \
                  study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
                  `base.stack.columns = {}`, the other with `base.stack.view = \"longitudinal\"` and \
                  `base.stack.columns = {along}`, shaken by the other horizontal component of each record; or set \

@@ -1,4 +1,4 @@
-//! Converts the result of a case to its row.
+//! Columns of the table of a study, and the row of a case.
 
 use super::Study;
 use super::design::Case;
@@ -8,14 +8,14 @@ use crate::ensemble::{self, CASE_COLUMNS, CaseColumn};
 use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_space::columns;
 
-/// Columns of every table before those of the factors.
+/// Columns of every table that precede those of the factors.
 const KEYS: [(&str, ValueKind); 3] =
     [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
 
-/// Columns of the motion.
+/// Columns that describe the motion.
 const MOTION: [&str; 3] = ["record", "level", "scale_factor"];
 
-/// Returns the meaning of a column.
+/// Returns the meaning of a column, for the dictionary of the table.
 pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
     match (spec.role, spec.name.as_str()) {
         (Role::Key, "case") => "number of the case in its study",
@@ -24,8 +24,8 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
         (Role::Factor, _) => "value of a varied field",
         (Role::Motion, "record") => "name of the motion",
         (Role::Motion, "level") => "intensity to which the motion was scaled",
-        (Role::Motion, _) => "factor by which it was scaled",
-        (Role::Intensity, _) => "intensity measure of the motion as shaken",
+        (Role::Motion, _) => "factor by which the motion was scaled",
+        (Role::Intensity, _) => "intensity measure of the motion as scaled",
         (Role::Outcome | Role::Demand | Role::Run, name) => {
             ensemble::meaning(name).or_else(|| columns::meaning(name)).unwrap_or("")
         }
@@ -59,7 +59,7 @@ impl Study {
         fixed.chain(columns::specs().filter(|_| self.in_space)).collect()
     }
 
-    /// Returns the row of a case; `shaken` is `None` where the motion failed.
+    /// Returns the row of a case; `shaken` is `None` if the motion could not be read.
     pub(super) fn row(
         &self,
         case: &Case,
@@ -84,12 +84,12 @@ impl Study {
     }
 }
 
-/// Returns a text; `None` if it is empty.
+/// Returns a text as a table value; `None` if it is empty.
 fn text(text: &str) -> Option<Value> {
     (!text.is_empty()).then(|| Value::Text(text.to_owned()))
 }
 
-/// Returns a number; `None` for NaN, which would look like a value in a table.
+/// Returns a number as a table value; `None` for NaN, which would look like a value in a table.
 fn number(value: Option<f64>) -> Option<Value> {
     value.filter(|value| !value.is_nan()).map(Value::Number)
 }

@@ -1,4 +1,4 @@
-//! One value of a factor, in the forms of a scenario file and of a table.
+//! Values of factors, in the form of a scenario file and in that of a table.
 
 use crate::scenario::field::{Field, Kind, Named as _, Range};
 use crate::scenario::reader::Reader;
@@ -11,14 +11,14 @@ use barrelstack_report::column::{Value, ValueKind};
 /// One value of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
-    /// As in a scenario file, with its place there.
+    /// Value as in a scenario file, with its place there.
     pub(super) node: Node,
-    /// As in the table, in SI units.
+    /// Value as in the table, in SI units.
     pub(super) value: Value,
 }
 
 impl Setting {
-    /// Returns its number (SI).
+    /// Returns the value as a number (SI); NaN for a text.
     pub(super) fn number(&self) -> f64 {
         match &self.value {
             Value::Number(value) => *value,
@@ -42,11 +42,11 @@ pub(crate) fn word(value: &Value) -> String {
     }
 }
 
-/// Domain of a field: its values, and how they are written.
+/// Domain of a field: the values that it allows, and how they are written.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Domain {
     kind: Kind,
-    /// Dimension of its numbers; of several that the field allows, the one that this study uses.
+    /// Dimension of the numbers. If the field allows several dimensions, the one that the study uses.
     dimension: Dimension,
 }
 
@@ -56,7 +56,7 @@ impl PartialEq for Domain {
     }
 }
 
-/// Reads a single value as written whose kind depends on other fields; where it is missing, the advice is of that kind.
+/// Reads a required value whose kind depends on other fields; if it is missing, the error states that kind.
 pub(super) fn required(
     reader: &Reader<'_>,
     name: &'static str,
@@ -98,8 +98,9 @@ impl Domain {
         Self { kind: Kind::Quantity(dimensions, Range::POSITIVE), dimension: dimensions[0] }
     }
 
-    /// Fixes the dimension to that of a first value: a field may allow an acceleration or a velocity, a column holds
-    /// one of them.
+    /// Fixes the dimension to that of a first value.
+    ///
+    /// A field may allow several dimensions, such as acceleration or velocity, but a column holds only one.
     #[must_use]
     pub(super) fn fixed_by(self, node: &Node) -> Self {
         let Kind::Quantity(dimensions, _) = self.kind else { return self };
@@ -109,12 +110,12 @@ impl Domain {
         Self { dimension, ..self }
     }
 
-    /// `true` if values are real numbers.
+    /// `true` if the values are real numbers.
     pub(super) fn continuous(self) -> bool {
         matches!(self.kind, Kind::Number(_) | Kind::Quantity(..))
     }
 
-    /// Returns the kind of a column of its values.
+    /// Returns the kind of a table column that holds the values.
     pub(super) fn column_kind(self) -> ValueKind {
         if self.continuous() {
             ValueKind::Number
@@ -125,7 +126,7 @@ impl Domain {
         }
     }
 
-    /// Returns the unit of a column of its values.
+    /// Returns the unit of a table column that holds the values.
     pub(super) fn unit(self) -> String {
         if self.dimension == Dimension::NONE || self.column_kind() == ValueKind::Text {
             String::new()
@@ -134,7 +135,7 @@ impl Domain {
         }
     }
 
-    /// Converts a number (SI) to a value.
+    /// Converts a number (SI) to a value of the field.
     pub(super) fn setting(self, number: f64, origin: Origin) -> Setting {
         let written = if let Kind::Quantity(..) = self.kind {
             Written::Text(Quantity { value: number, dimension: self.dimension }.to_string())
@@ -144,7 +145,7 @@ impl Domain {
         Setting { node: Node { origin, value: written }, value: Value::Number(number) }
     }
 
-    /// Reads a value.
+    /// Reads a value of the field.
     pub(super) fn read(
         self,
         reader: &Reader<'_>,
@@ -155,7 +156,7 @@ impl Domain {
         let value = match (kind, &node.value) {
             (Kind::Number(range), _) => Value::Number(reader.read_number(name, node, range)?),
             (Kind::Quantity(_, range), _) => {
-                // The scenario reads the written number again, to the same bits.
+                // The scenario parses the written number again and obtains the same bits.
                 Value::Number(reader.read_quantity(name, node, &[self.dimension], range)?.value)
             }
             (Kind::Integer(..), _) => Value::Integer(reader.read_integer(name, node, kind)?),
@@ -173,14 +174,14 @@ impl Domain {
         Ok(Setting { node: node.clone(), value })
     }
 
-    /// Reads a required number (SI) of a field.
+    /// Reads a required number (SI) with the unit of the field.
     pub(super) fn number(
         self,
         reader: &Reader<'_>,
         name: &'static str,
     ) -> Result<f64, ScenarioError> {
         let node = required(reader, name, self.kind)?;
-        // A range or a deviation may lie outside of the field's range, so that only its unit is checked.
+        // The parameters of a distribution may lie outside of the range of the field, so only the unit is checked.
         let open = if let Kind::Quantity(dimensions, _) = self.kind {
             Kind::Quantity(dimensions, Range::ANY)
         } else {
@@ -189,7 +190,7 @@ impl Domain {
         Ok(Self { kind: open, ..self }.read(reader, name, &node)?.number())
     }
 
-    /// Reads a required list of values, no two equal.
+    /// Reads a required list of distinct values.
     pub(super) fn settings(
         self,
         reader: &Reader<'_>,
@@ -200,7 +201,8 @@ impl Domain {
         for node in &nodes {
             let setting = self.read(reader, name, node)?;
             if settings.iter().any(|other| other.value == setting.value) {
-                let message = format!("`{}` holds {} twice", reader.path_of(name), setting.word());
+                let message =
+                    format!("`{}` contains {} twice", reader.path_of(name), setting.word());
                 return Err(reader.error_at(node.origin, Problem::Inconsistent { message }));
             }
             settings.push(setting);
@@ -217,7 +219,8 @@ impl Domain {
         let spacing: Spacing = reader.choice("spacing")?;
         let (count, whole) = (reader.integer("count")?, matches!(self.kind, Kind::Integer(..)));
         if !self.continuous() && !whole {
-            let message = "a field of names has no range; list its `values`".to_owned();
+            let message =
+                "a field that is not a number has no range; give a list of its `values`".to_owned();
             return Err(reader.inconsistent("from", message));
         }
         let end = |name| -> Result<f64, ScenarioError> {
@@ -266,14 +269,14 @@ impl Domain {
         Ok(settings)
     }
 
-    /// Returns the value of the base of a study, from its resolved scenario.
+    /// Returns the value that the resolved base scenario of a study has for the field.
     pub(super) fn base_value(self, written: &Written) -> Option<Value> {
         match (self.column_kind(), written) {
             (ValueKind::Integer, Written::Integer(value)) => value.map(Value::Integer),
             (ValueKind::Number, Written::Float(value)) => Some(Value::Number(*value)),
             (ValueKind::Number, Written::Integer(value)) => value.map(|v| Value::Number(v as f64)),
             (ValueKind::Number, Written::Text(text)) => {
-                // A base with another of the dimensions that the field allows has no number here.
+                // If the base uses another of the dimensions that the field allows, it has no number here.
                 Quantity::parse_as(text, &[self.dimension]).ok().map(|q| Value::Number(q.value))
             }
             (ValueKind::Text, Written::Text(text)) => Some(Value::Text(text.clone())),
@@ -283,8 +286,8 @@ impl Domain {
     }
 }
 
-/// Rounds a number to twelve digits: 0.4 and not 0.39999999999999997.
+/// Rounds a number to twelve significant digits, such as 0.39999999999999997 to 0.4.
 fn rounded(value: f64) -> f64 {
-    // A number in twelve digits always parses.
+    // A number formatted with twelve digits can always be parsed.
     format!("{value:.11e}").parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! Tables as Parquet files; the only module that knows the format.
+//! Conversion of tables to and from Parquet files.
 
 use std::sync::Arc;
 
@@ -16,22 +16,26 @@ use super::table::StudyTable;
 use crate::scenario::quantity::plain;
 use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 
-/// Metadata key of the columns in a file: name, unit and role.
+/// Name of the metadata entry that holds the specifications of the columns.
 const COLUMNS_KEY: &str = "barrelstack.columns";
 
-/// `true` if a column holds lists of numbers, which tables in memory and CSV files have as text with semicolons between
-/// them: texts have no unit.
+/// `true` if a column holds lists of numbers.
+///
+/// Tables in memory and CSV files hold such lists as text, separated by semicolons. The column is recognized by its unit,
+/// which other texts do not have.
 pub(super) fn holds_lists(spec: &ColumnSpec) -> bool {
     spec.kind == ValueKind::Text && !spec.unit.is_empty()
 }
 
-/// Rows of a group, which are held in memory while a table is written.
+/// Number of rows of a row group, which is held in memory while a table is written.
 const GROUP: usize = 1 << 15;
 
-/// Writes a table in parts: the same rows and texts give the same bytes, however they are divided.
+/// Writer of a table in parts.
+///
+/// The same rows and metadata give the same bytes, however they are divided into parts.
 pub(super) struct Writer<W: std::io::Write + Send> {
     file: SerializedFileWriter<W>,
-    /// Rows of an incomplete group.
+    /// Rows that do not fill a row group yet.
     rows: StudyTable,
 }
 
@@ -67,7 +71,7 @@ impl<W: std::io::Write + Send> Writer<W> {
         group.close().map(drop)
     }
 
-    /// Ends the file with its provenance, as pairs of key and text.
+    /// Writes the remaining rows and the metadata, as pairs of key and text, and closes the file.
     pub(super) fn finish(mut self, about: &[(&str, String)]) -> Result<(), ParquetError> {
         let rest = self.rows.split_off(0);
         self.group(&rest)?;
@@ -79,8 +83,9 @@ impl<W: std::io::Write + Send> Writer<W> {
     }
 }
 
-/// Returns a table as the bytes of a Parquet file, with its provenance as pairs of key and text; the same table
-/// and pairs give the same bytes.
+/// Returns a table as the bytes of a Parquet file, with metadata as pairs of key and text.
+///
+/// The same table and metadata give the same bytes.
 pub(super) fn to_bytes(
     table: &StudyTable,
     about: &[(&str, String)],
@@ -129,19 +134,19 @@ fn list_of_numbers(name: &str) -> Result<Type, ParquetError> {
         .build()
 }
 
-/// Definition level of a list that is missing.
+/// Parquet definition level of a missing list.
 const NO_LIST: i16 = 0;
 
-/// Definition level of a list without numbers.
+/// Parquet definition level of an empty list.
 const EMPTY: i16 = 1;
 
-/// Definition level of a number in a list.
+/// Parquet definition level of a number in a list.
 const NUMBER: i16 = 2;
 
-/// Definition levels, repetition levels and numbers of lists.
+/// Definition levels, repetition levels and numbers of a column of lists.
 type Divided = (Vec<i16>, Vec<i16>, Vec<f64>);
 
-/// Divides lists that are written with semicolons.
+/// Parses lists that are separated by semicolons.
 fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
     let (mut defined, mut repeated, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     for list in lists {
@@ -149,7 +154,7 @@ fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
         let mut empty = true;
         for word in words.filter(|word| !word.is_empty()) {
             let number = word.parse().map_err(|_| {
-                ParquetError::General(format!("\"{word}\" stands in a list of numbers"))
+                ParquetError::General(format!("a list of numbers contains \"{word}\""))
             })?;
             defined.push(NUMBER);
             repeated.push(i16::from(!empty));
@@ -164,7 +169,7 @@ fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
     Ok((defined, repeated, numbers))
 }
 
-/// Puts lists together as [`divided`] took them apart.
+/// Appends lists to a column, separated by semicolons; the inverse of [`divided`].
 fn joined(defined: &[i16], repeated: &[i16], numbers: Vec<f64>, into: &mut Vec<Option<String>>) {
     let mut numbers = numbers.into_iter();
     for (defined, repeated) in defined.iter().zip(repeated) {
@@ -179,7 +184,7 @@ fn joined(defined: &[i16], repeated: &[i16], numbers: Vec<f64>, into: &mut Vec<O
     }
 }
 
-/// Returns definition levels, which mark the rows that have a value, and the values.
+/// Returns the definition levels, which are 1 for rows that have a value, and the values.
 fn present<T, U>(values: &[Option<T>], as_stored: impl Fn(&T) -> U) -> (Vec<i16>, Vec<U>) {
     let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
     (levels, values.iter().flatten().map(as_stored).collect())
@@ -190,7 +195,7 @@ fn write_column<W: std::io::Write + Send>(
     column: &Column,
 ) -> Result<(), ParquetError> {
     let Some(mut writer) = group.next_column()? else {
-        return Err(ParquetError::General("more columns than the schema has".to_owned()));
+        return Err(ParquetError::General("there are more columns than in the schema".to_owned()));
     };
     match &column.values {
         Values::Text(values) if holds_lists(&column.spec) => {
@@ -214,7 +219,7 @@ fn write_column<W: std::io::Write + Send>(
     writer.close()
 }
 
-/// Reads a table from the bytes of a Parquet file written by [`to_bytes`], and the text stored beside it under a key.
+/// Reads a table from the bytes of a Parquet file written by [`to_bytes`], and the metadata text with a key.
 pub(super) fn from_bytes(
     bytes: Vec<u8>,
     key: &str,
@@ -275,7 +280,11 @@ fn read_column(
             let texts = stored.iter().map(|bytes| bytes.as_utf8().map(str::to_owned));
             spread(&levels, texts.collect::<Result<Vec<_>, _>>()?, into);
         }
-        _ => return Err(ParquetError::General("a column changes its kind".to_owned())),
+        _ => {
+            return Err(ParquetError::General(
+                "a column has another kind than the schema states".to_owned(),
+            ));
+        }
     }
     let read = into.len() - before;
     if read == rows {
@@ -285,7 +294,7 @@ fn read_column(
     }
 }
 
-/// Puts values back into the rows that have one.
+/// Appends values to a column, with `None` for rows without a value; the inverse of [`present`].
 fn spread<T>(levels: &[i16], stored: Vec<T>, into: &mut Vec<Option<T>>) {
     let mut stored = stored.into_iter();
     into.extend(levels.iter().map(|level| if *level == 1 { stored.next() } else { None }));
@@ -308,6 +317,6 @@ mod tests {
         let spec = ColumnSpec::new("fall_heights", "m", Role::Outcome, ValueKind::Text);
         let column = Column { spec, values: Values::Text(vec![Some("1;two".into())]) };
         let error = to_bytes(&StudyTable::new(vec![column]).unwrap(), &[]).unwrap_err();
-        assert!(error.to_string().contains("\"two\" stands in a list of numbers"), "{error}");
+        assert!(error.to_string().contains("a list of numbers contains \"two\""), "{error}");
     }
 }

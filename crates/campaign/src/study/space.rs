@@ -1,5 +1,7 @@
-//! Cases of stacks in space: each is the run of its scenario, bit for bit, and records directions besides the results
-//! of a plane.
+//! Cases of stacks in space.
+//!
+//! Each case is bit-identical to a single run of its scenario, and has columns of directions in addition to those of a
+//! case in a plane.
 
 use std::ops::ControlFlow;
 
@@ -18,12 +20,13 @@ use crate::watch::Ending;
 /// Result of a case.
 pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
-    /// Heading in which the first body left its seat, and of each fallen barrel from where it stood; `None` for a
-    /// case in a plane, or without a verdict.
+    /// Heading in which the first body left its seat, and the heading of each fallen barrel from where it stood.
+    ///
+    /// `None` for a case in a plane, or without a verdict.
     headings: Option<(Option<Heading>, Vec<Heading>)>,
 }
 
-/// For a case in a plane, or one that could not run.
+/// Converts the result of a case in a plane, or of one that could not run.
 impl From<CaseResult> for FinishedCase {
     fn from(result: CaseResult) -> Self {
         Self { result, headings: None }
@@ -38,7 +41,7 @@ impl From<InSpace> for FinishedCase {
 }
 
 impl Study {
-    /// Runs a case in space under all components of its motion, scaled by one factor; `None` when canceled.
+    /// Runs a case in space under all components of its motion, scaled by one factor; `None` if canceled.
     pub(super) fn run_in_space(
         &self,
         case: &Case,
@@ -66,7 +69,7 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
     }
 }
 
-/// Returns the values of a case in the columns of space.
+/// Returns the values of a case in the columns of stacks in space.
 pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
     columns::values(finished.headings.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

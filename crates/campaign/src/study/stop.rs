@@ -1,30 +1,30 @@
-//! Stop rule of a Monte Carlo design: the collapse probability and its interval.
+//! Stop rule of a Monte Carlo design, by the interval of the collapse probability.
 
 use barrelstack_fragility::wilson;
 use barrelstack_report::described;
 
 use super::table::StudyTable;
 
-/// Counts of cases by outcome.
+/// Numbers of cases by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Cases in all.
+    /// Number of all cases.
     pub cases: u64,
-    /// Cases that were judged: stable or collapse.
+    /// Number of cases with a verdict: stable or collapse.
     pub judged: u64,
-    /// Cases that collapsed.
+    /// Number of cases that collapsed.
     pub collapsed: u64,
 }
 
 impl Tally {
-    /// Adds a case by the word for its outcome.
+    /// Adds a case by the name of its outcome.
     pub fn add(&mut self, outcome: &str) {
         self.cases += 1;
         self.judged += u64::from(matches!(outcome, "stable" | "collapse"));
         self.collapsed += u64::from(outcome == "collapse");
     }
 
-    /// Returns the tally of a table.
+    /// Returns the numbers of cases in a table.
     pub fn of(table: &StudyTable) -> Self {
         let mut tally = Self::default();
         for outcome in table.texts("outcome").unwrap_or_default() {
@@ -33,7 +33,7 @@ impl Tally {
         tally
     }
 
-    /// Returns the sum of both.
+    /// Returns the sum of two tallies.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -43,12 +43,13 @@ impl Tally {
         }
     }
 
-    /// Returns the fraction of judged cases that collapsed, with its 95 % interval (Wilson); `None` without any.
+    /// Returns the share of collapse among the cases with a verdict, and its 95 % interval (Wilson); `None` without such
+    /// cases.
     pub fn collapse(&self) -> Option<(f64, [f64; 2])> {
         if self.judged == 0 {
             return None;
         }
-        // A study has ten million cases at most.
+        // The conversion is exact, since a study has at most ten million cases.
         let [collapsed, judged] =
             [self.collapsed, self.judged].map(|count| u32::try_from(count).unwrap_or(u32::MAX));
         let interval = wilson(collapsed, judged, 0.95);
@@ -57,18 +58,18 @@ impl Tally {
 }
 
 described! {
-    /// When a Monte Carlo design has enough cases.
+    /// Rule by which a Monte Carlo design stops.
     #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
     pub struct StopRule {
-        /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+        /// Half-width of the 95 % interval (Wilson) of the collapse probability at which to stop.
         pub half_width: f64 as "1",
-        /// Number of cases before the interval is looked at.
+        /// Number of cases before the interval is first tested.
         pub least: u32,
     }
 }
 
 impl StopRule {
-    /// `true` if these cases, all of the chunks up to one, suffice.
+    /// `true` if the rule is met by the cases of all chunks up to some chunk.
     pub(super) fn met(&self, tally: Tally) -> bool {
         let half = tally.collapse().map(|(_, [low, high])| 0.5 * (high - low));
         tally.cases >= u64::from(self.least) && half.is_some_and(|half| half <= self.half_width)
@@ -82,8 +83,9 @@ mod tests {
 
     use super::{StopRule, Tally};
 
-    /// Simulates studies that stop by a rule, looked at after every chunk of 16 cases; returns the fraction whose interval
-    /// covers the probability, and the mean of the stated share.
+    /// Simulates studies with a stop rule, tested after every chunk of 16 cases.
+    ///
+    /// Returns the fraction of studies whose interval covers the probability, and the mean of the reported share.
     fn stopped(probability: f64, rule: StopRule) -> [f64; 2] {
         const STUDIES: u32 = 2000;
         let mut random = Random::new(32);
@@ -109,10 +111,10 @@ mod tests {
             for (half_width, least) in [(0.1, 100), (0.05, 100), (0.03, 100), (0.05, 32)] {
                 let [covered, share] = stopped(probability, StopRule { half_width, least });
                 println!("| {probability} | {half_width} ({least}) | {covered:.3} | {share:.4} |");
-                // Measured: 0.936 at least. Of 2000 studies with 95 % the fraction has a standard deviation of 0.5 %;
-                // Wilson's interval by itself covers 93 % of some probabilities.
+                // Measured: at least 0.936. For 2000 studies with a coverage of 95 %, the fraction has a standard deviation
+                // of 0.5 %; without a stop rule, Wilson's interval covers some probabilities in 93 % only.
                 assert!(covered > 0.93, "{probability} {half_width} {covered}");
-                // Measured: low by 0.0059 at most, at a half-width of 0.05: a study with few collapses stops sooner.
+                // Measured: too low by at most 0.0059, at a half-width of 0.05, since a study with few collapses stops sooner.
                 assert!((share - probability).abs() < 0.2 * half_width, "{probability} {share}");
             }
         }

@@ -1,4 +1,4 @@
-//! The table of a study: one row per case, in the order of the cases.
+//! Table of a study, with one row per case.
 
 use std::fmt::Write as _;
 
@@ -8,11 +8,11 @@ use super::error::StudyError;
 use super::shard;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values, to_csv};
 
-/// One row per case, in the order of the cases; typed columns in SI units.
+/// Table of a study: one row per case, in the order of the cases, with typed columns in SI units.
 ///
-/// Columns are found by name without the unit, such as `pgv`.
-/// A value is `None` where it does not apply (the mode of a stack that stood) or is unknown (anything of a
-/// case that could not run, whose reason stands in `error`).
+/// Columns are looked up by name without the unit, such as `pgv`.
+/// A value is `None` if it does not apply (such as the mode of a stack that stood) or is unknown (such as all results of a
+/// case that could not run; the column `error` has the reason).
 ///
 /// ```no_run
 /// use barrelstack_campaign::study::{Collected, Tally};
@@ -31,7 +31,7 @@ impl StudyTable {
     /// Creates a table from columns of the same length.
     ///
     /// # Errors
-    /// When two columns have the same name, or lengths or kinds differ.
+    /// If two columns have the same name, or lengths or kinds differ.
     pub fn new(columns: Vec<Column>) -> Result<Self, StudyError> {
         let rows = columns.first().map_or(0, |column| column.values.len());
         for (index, column) in columns.iter().enumerate() {
@@ -42,7 +42,7 @@ impl StudyTable {
             if column.values.len() != rows {
                 let found = column.values.len();
                 return Err(StudyError::Table(format!(
-                    "the column `{name}` has {found} rows where others have {rows}"
+                    "the column `{name}` has {found} rows, but others have {rows}"
                 )));
             }
             let fits = matches!(
@@ -52,7 +52,9 @@ impl StudyTable {
                     | (Values::Text(_), ValueKind::Text)
             );
             if !fits {
-                return Err(StudyError::Table(format!("the column `{name}` holds another kind")));
+                return Err(StudyError::Table(format!(
+                    "the column `{name}` holds values of another kind"
+                )));
             }
         }
         Ok(Self { columns })
@@ -66,7 +68,7 @@ impl StudyTable {
     /// Appends a row, one value per column.
     ///
     /// # Errors
-    /// When a value is missing or is of another kind than its column.
+    /// If a value is missing, or is of another kind than its column.
     pub fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
         if row.len() != self.columns.len() {
             let (found, expected) = (row.len(), self.columns.len());
@@ -78,13 +80,13 @@ impl StudyTable {
         pairs.try_for_each(|(column, value)| column.values.push(value)).map_err(StudyError::Table)
     }
 
-    /// Joins tables of the same columns, sorted by case.
+    /// Joins tables with the same columns and sorts the rows by case.
     pub(super) fn join(specs: &[ColumnSpec], parts: &[Self]) -> Result<Self, StudyError> {
         let mut order: Vec<(i64, usize, usize)> = Vec::new();
         for (index, part) in parts.iter().enumerate() {
             if !part.specs().eq(specs.iter()) {
                 return Err(StudyError::Table(
-                    "shards of two studies have other columns".to_owned(),
+                    "the shards are of studies with different columns".to_owned(),
                 ));
             }
             let cases = part.integers("case").unwrap_or_default();
@@ -118,12 +120,12 @@ impl StudyTable {
         self.columns.iter().map(|column| &column.spec)
     }
 
-    /// Returns the columns of a role, in order, such as all factors.
+    /// Returns the columns with a role, such as all factors, in order.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Column> {
         self.columns.iter().filter(move |column| column.spec.role == role)
     }
 
-    /// Returns the column of a name, without its unit.
+    /// Returns the column with a name (without its unit); `None` if there is none.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.spec.name == name)
     }
@@ -143,13 +145,13 @@ impl StudyTable {
         if let Values::Text(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// Returns the number of rows before a case, in a table sorted by case.
+    /// Returns the number of rows that precede a case, in a table sorted by case.
     pub(super) fn rows_before(&self, case: i64) -> usize {
         let cases = self.integers("case").unwrap_or_default();
         cases.partition_point(|number| number.is_some_and(|number| number < case))
     }
 
-    /// Splits off the rows from an index on.
+    /// Removes the rows from an index on, and returns them.
     pub(super) fn split_off(&mut self, row: usize) -> Self {
         let split = |column: &mut Column| Column {
             spec: column.spec.clone(),
@@ -158,7 +160,7 @@ impl StudyTable {
         Self { columns: self.columns.iter_mut().map(split).collect() }
     }
 
-    /// Appends the rows of a table of the same columns.
+    /// Appends the rows of a table with the same columns.
     pub(super) fn append(&mut self, rows: Self) -> Result<(), StudyError> {
         let mut pairs = self.columns.iter_mut().zip(rows.columns);
         let append = |(column, more): (&mut Column, Column)| column.values.append(more.values);
@@ -173,13 +175,14 @@ impl StudyTable {
     /// Returns the table as the bytes of a Parquet file; the same table gives the same bytes.
     ///
     /// # Errors
-    /// When it cannot be encoded.
+    /// If the table cannot be encoded.
     pub fn to_parquet(&self) -> Result<Vec<u8>, StudyError> {
         Ok(shard::to_bytes(self, &[])?)
     }
 
-    /// Describes every column, as CSV: its name, unit, role, kind, and meaning; CSV puts the unit behind the name, and a
-    /// list of numbers has semicolons between them there.
+    /// Returns a description of every column as CSV: name, unit, role, kind, and meaning.
+    ///
+    /// In the CSV of the table itself, the unit follows the name, and lists of numbers are separated by semicolons.
     pub fn dictionary(&self) -> String {
         let mut text = "name,unit,role,kind,meaning\n".to_owned();
         for spec in self.specs() {
@@ -200,7 +203,7 @@ impl StudyTable {
         text
     }
 
-    /// Reads a table from the bytes of a Parquet file from [`StudyTable::to_parquet`].
+    /// Reads a table from the bytes of a Parquet file that [`StudyTable::to_parquet`] wrote.
     ///
     /// # Errors
     /// If the bytes are not such a file.

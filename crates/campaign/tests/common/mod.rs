@@ -1,4 +1,4 @@
-//! Studies of a few milliseconds a case, and tables made by hand.
+//! Studies whose cases take a few milliseconds, and tables with known contents.
 
 use std::io::Write as _;
 
@@ -33,7 +33,8 @@ pub(crate) fn integer(name: &str, role: Role, values: Vec<Option<i64>>) -> Colum
     Column { spec: spec(name, "", role, ValueKind::Integer), values: Values::Integer(values) }
 }
 
-/// A finished study over PGV with a table of these columns, under motions called `motion` and a number.
+/// Returns a finished study with PGV as its measure and a table of the given columns; motions are called `motion` and a
+/// number.
 pub(crate) fn made(
     columns: Vec<Column>,
     design: &str,
@@ -72,7 +73,8 @@ pub(crate) fn made(
     Collected { table, provenance }
 }
 
-/// Twelve records at eight levels; `falls` returns the number of fallen barrels of six for a record at a level (m/s).
+/// Returns a study of twelve records at eight levels; `falls` returns how many of six barrels fall for a record at a
+/// level (m/s).
 pub(crate) fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
     let levels = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
     let cases: Vec<(usize, f64)> =
@@ -112,7 +114,7 @@ pub(crate) fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
     made(columns, "stripes", &["friction"], "record ", 12)
 }
 
-/// Capacity of each record (m/s): lognormal by its quantiles, median 0.5, dispersion 0.3.
+/// Returns the capacity of a record (m/s), a quantile of a lognormal distribution of median 0.5 and dispersion 0.3.
 pub(crate) fn capacity(record: usize) -> f64 {
     let share = (record as f64 + 0.5) / 12.0;
     0.5 * (0.3 * barrelstack_fragility::normal_quantile(share)).exp()

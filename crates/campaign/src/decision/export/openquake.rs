@@ -10,19 +10,30 @@ use crate::decision::curve::interpolate;
 use crate::decision::{Breakage, Decision};
 use crate::scenario::quantity::plain;
 
-/// Names of the files, as the README of an export gives them.
+/// Name of the file with the fragility curves.
 pub(super) const FRAGILITY: &str = "openquake-fragility.xml";
+
+/// Name of the file with the vulnerability function of the wine.
 pub(super) const WINE: &str = "openquake-vulnerability-wine.xml";
+
+/// Name of the file with the vulnerability function of the barrels.
 pub(super) const BARRELS: &str = "openquake-vulnerability-barrels.xml";
+
+/// Name of the file with the taxonomy mapping.
 pub(super) const MAPPING: &str = "openquake-taxonomy-mapping.csv";
+
+/// Name of the file with the exposure template.
 pub(super) const EXPOSURE: &str = "openquake-exposure.xml";
+
+/// Name of the file with the assets of the exposure template.
 pub(super) const ASSETS: &str = "openquake-exposure.csv";
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Converts a name to an `OpenQuake` identifier: up to 75 letters, digits and underscores, and colons and dashes after the first.
+/// Converts a name to an `OpenQuake` identifier: up to 75 letters, digits and underscores, and colons and dashes after
+/// the first character.
 pub(super) fn identity(text: &str) -> String {
     let known = |(at, c): &(usize, char)| {
         c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && matches!(c, '-' | ':'))
@@ -37,7 +48,7 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
 
-/// Returns mean and standard deviation of a lognormal capacity, by which `OpenQuake` states a curve.
+/// Returns mean and standard deviation of a lognormal capacity, which `OpenQuake` uses to describe a curve.
 fn moments(curve: &Lognormal) -> (f64, f64) {
     let variance = curve.dispersion * curve.dispersion;
     let mean = curve.median * libm::exp(0.5 * variance);
@@ -52,7 +63,7 @@ pub(super) fn fragility(
     about: &str,
 ) -> String {
     let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
-    // Outside of this range OpenQuake holds the probability constant, which changes none of four digits.
+    // OpenQuake holds the probability constant outside of this range, which does not change its first four digits.
     let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
     let first = reaches(5e-5).fold(imls[0], f64::min);
     let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
@@ -82,39 +93,41 @@ pub(super) fn fragility(
     text
 }
 
-/// Returns the share of the wine of a stack that is lost in barrels that burst, by the central assumption; 0 where there is none.
+/// Returns the share of the wine of a stack that is lost in burst barrels, by the central assumption; 0 if the stack
+/// holds no wine.
 fn wine_lost(case: &Case) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
-    // From 0, since a sum of nothing is -0.
+    // The sum starts from 0, since an empty sum of floats is -0.
     let lost = case.falls.iter().zip(&case.wines).map(lost).fold(0.0, |sum, lost| sum + lost);
     if case.wine > 0.0 { lost / case.wine } else { 0.0 }
 }
 
-/// Largest share of the variance m (1 − m), which a ratio between 0 and 1 of mean m can have at most, that is written.
+/// Largest variance that is written for a loss ratio, as a share of m (1 − m), the largest possible variance of a ratio
+/// between 0 and 1 with the mean m.
 ///
-/// `OpenQuake` draws ratios from a beta distribution, which has less than all of it, and interpolates mean and
-/// coefficient of variation linearly, each by itself: some room is needed between two levels.
+/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). It interpolates mean and
+/// coefficient of variation separately, so that a margin is needed between two levels.
 const MOST_SCATTER: f64 = 0.99;
 
-/// The same between two levels that are written.
+/// Largest share of m (1 − m) that interpolation between two written levels may reach.
 const MOST_BETWEEN: f64 = 0.999;
 
-/// Largest relative difference of a mean that is interpolated linearly from ours, which is linear in the logarithm, and
-/// the absolute one that is allowed near nothing.
+/// Largest relative and absolute difference between a mean that `OpenQuake` interpolates linearly and ours, which is
+/// linear in the logarithm of the intensity.
 const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-7];
 
-/// A level of a vulnerability function.
+/// One level of a vulnerability function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Level {
     /// Intensity.
     x: f64,
     /// Mean loss ratio.
     mean: f64,
-    /// Its coefficient of variation.
+    /// Coefficient of variation of the loss ratio.
     variation: f64,
 }
 
-/// Loss ratios against intensity: means, and their variance as a share of m (1 − m), at the levels of a study.
+/// Loss ratios against intensity: the means m, and the variances as shares of m (1 − m), at the levels of a study.
 struct Ratios {
     means: Vec<(f64, f64)>,
     shares: Vec<(f64, f64)>,
@@ -127,7 +140,7 @@ impl Ratios {
             let n = cases.len() as f64;
             let mean = cases.iter().map(|case| of(case)).sum::<f64>() / n;
             means.push((*x, mean));
-            // Where all or nothing is lost there is no scatter to be a share of.
+            // If all or nothing is lost, m (1 − m) is zero and the share is not defined.
             if mean > 0.0 && mean < 1.0 {
                 let square = cases.iter().map(|case| of(case) - mean).map(|off| off * off);
                 let variance = square.sum::<f64>() / (n - 1.0).max(1.0);
@@ -137,10 +150,10 @@ impl Ratios {
         Self { means, shares }
     }
 
-    /// Returns the level at an intensity: between those of the study as everywhere in a decision, linear in the logarithm.
+    /// Returns the level at an intensity, interpolated between the levels of the study linearly in the logarithm.
     fn at(&self, x: f64) -> Level {
         let mean = interpolate(&self.means, x);
-        // Held below the lowest level, where the mean alone goes to nothing.
+        // Below the lowest level the share is constant; only the mean tends to zero.
         let share =
             self.shares.first().map_or(0.0, |(first, _)| interpolate(&self.shares, x.max(*first)));
         let scatters = mean > 0.0 && mean < 1.0;
@@ -148,13 +161,13 @@ impl Ratios {
         Level { x, mean, variation }
     }
 
-    /// Returns the levels to be written: those of the study, and as many between them as linear interpolation needs.
+    /// Returns the levels to be written: those of the study, and enough between them for linear interpolation.
     fn levels(&self) -> Vec<Level> {
         let Some((lowest, _)) = self.means.first() else { return Vec::new() };
         let first = self.at(*lowest);
         let mut found = Vec::new();
         if first.mean > 0.0 {
-            // Below the lowest level losses are taken as in proportion to the intensity.
+            // Below the lowest level losses are taken as proportional to the intensity.
             let part = 1e-3;
             found.push(Level { x: part * first.x, mean: part * first.mean, ..first });
         }
@@ -165,7 +178,7 @@ impl Ratios {
         found
     }
 
-    /// Adds what is needed between two levels, and the second of them.
+    /// Adds the levels that are needed between two levels, and the second of the two.
     fn refine(&self, from: Level, to: Level, depth: u32, found: &mut Vec<Level>) {
         let middle = self.at((from.x * to.x).sqrt());
         if depth < 20 && !self.is_fine(from, to) {
@@ -176,7 +189,7 @@ impl Ratios {
         }
     }
 
-    /// Returns `true` if linear interpolation between two levels is defined and near our own mean.
+    /// Returns `true` if linear interpolation between two levels gives a valid variance and is close to our own mean.
     fn is_fine(&self, from: Level, to: Level) -> bool {
         (1..16).map(|k| f64::from(k) / 16.0).all(|t| {
             let between = |from: f64, to: f64| from + t * (to - from);
@@ -190,7 +203,8 @@ impl Ratios {
     }
 }
 
-/// Writes a vulnerability function; `loss` is what `OpenQuake` calls the kind of loss, and `ratio` the share that is lost.
+/// Returns a vulnerability function as XML; `loss` is the kind of loss in `OpenQuake`, and `ratio` returns the share that
+/// is lost in a case.
 fn vulnerability(
     decision: &Decision,
     foreign: &Foreign,
@@ -216,7 +230,7 @@ fn vulnerability(
     )
 }
 
-/// Writes both vulnerability functions: of the barrels and of the wine.
+/// Returns the two vulnerability functions as XML: that of the barrels and that of the wine.
 pub(super) fn vulnerabilities(
     decision: &Decision,
     foreign: &Foreign,
@@ -231,7 +245,9 @@ pub(super) fn vulnerabilities(
     ]
 }
 
-/// Writes a stub of an exposure, one stack at 0° E, 0° N, with its taxonomy mapping: its wine (m³) as contents, its barrels as what is nonstructural.
+/// Returns an exposure template with one stack at 0° E, 0° N, and its taxonomy mapping.
+///
+/// The wine (m³) is the contents of the stack, and the barrels are its nonstructural value.
 pub(super) fn exposure(
     decision: &Decision,
     asset: &str,

@@ -1,4 +1,4 @@
-//! The fields of `[[motion]]` in a study file.
+//! Fields of the tables `[[motion]]` of a study file.
 
 use barrelstack_input::{fields, named, table};
 
@@ -36,15 +36,15 @@ const SOURCE: [Field; 4] = fields! {
 const TIME: Kind = Kind::Quantity(&[Dimension::TIME], Range::up_to(3600.0));
 
 table! {
-    /// Motions made from random numbers of stated seeds.
+    /// Synthetic motions, made from random numbers.
     static SYNTHETIC = "synthetic";
-    /// Method that makes them.
+    /// Method by which the motions are made.
     kind = Kind::Choice(names::<Maker>), Default::Required;
     /// Number of realizations.
     count = Kind::Integer(1, MOST), Default::Required;
-    /// Seed of the set; each realization has its own, made of this one and its number.
+    /// Seed of the motions; the seed of each realization follows from this one and its number.
     seed = Kind::Integer(0, u32::MAX as i64), Default::Derived("that of the study");
-    /// Step of the samples.
+    /// Time step of the samples.
     time_step = Kind::Quantity(&[Dimension::TIME], Range { least: 1e-4, above: false, greatest: 0.1 }),
         Default::Value("\"0.005 s\"");
     by kind {
@@ -52,17 +52,17 @@ table! {
         "boore" with [SOURCE[0], SOURCE[1], SOURCE[2], SOURCE[3]] {}
         /// Filtered white noise under an envelope (Clough and Penzien).
         "clough-penzien" {
-            /// Soil.
+            /// Soil at the site.
             soil = Kind::Choice(names::<Soil>), Default::Value("\"medium\"");
             /// Root mean square of the acceleration at full strength.
             rms = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e3)), Default::Value("\"0.1 g\"");
-            /// Length.
+            /// Duration of the motion.
             duration = TIME, Default::Value("\"20 s\"");
             /// End of the rise to full strength.
             rise = TIME, Default::Value("\"2 s\"");
             /// Start of the decay.
             decay_start = TIME, Default::Value("\"10 s\"");
-            /// Time in which the motion then falls to 1/e.
+            /// Time in which the motion then decays to 1/e.
             decay = TIME, Default::Value("\"2.5 s\"");
         }
         /// A velocity pulse of Mavroeidis and Papageorgiou on top of a stochastic motion.
@@ -78,7 +78,7 @@ table! {
                 Default::Value("\"0 rad\"");
             /// Start of the pulse.
             start = TIME, Default::Value("\"2 s\"");
-            /// The rest holds frequencies above this many times the pulse's.
+            /// Lowest frequency of the stochastic motion, as a multiple of that of the pulse.
             crossover = Kind::Number(Range::up_to(100.0)), Default::Value("1.0");
         }
     }
@@ -87,15 +87,15 @@ table! {
 table! {
     /// Motions that shake the stack: one of `records`, `folder`, `bundled`, `sine`, `pulse` and `synthetic`.
     pub(super) static MOTIONS = "motions";
-    /// Name in the table; of several motions, what their names start with.
-    name = Kind::Text, Default::Derived("the name of the file, or how it is made");
+    /// Name of the motion in the table; for several motions, the beginning of their names.
+    name = Kind::Text, Default::Derived("the name of the file, or the kind of the motion");
     /// Files of recorded motions, relative to the study file.
     records = Kind::Texts, Default::Nothing;
-    /// Folder of recorded motions, relative to the study file; its files in the order of their names.
-    /// All that match `pattern` are used: the first that cannot be read is named, and nothing runs.
-    /// Folders in it and names that begin with a period are left out.
+    /// Folder of recorded motions, relative to the study file.
+    /// All files that match `pattern` are used, in the order of their names; if one cannot be read, nothing is run.
+    /// Subfolders and names that begin with a period are skipped.
     folder = Kind::Text, Default::Nothing;
-    /// Which files of the folder, such as `*.AT2`: `*` stands for any letters, `?` for one.
+    /// Pattern of the names of the files in the folder, such as `*.AT2`: `*` stands for any characters, `?` for one.
     pattern = Kind::Text, Default::Value("\"*\"");
     /// Record shipped with the program.
     bundled = Kind::Choice(record_names), Default::Nothing;
@@ -103,13 +103,13 @@ table! {
     sine = Kind::Table(&SINE), Default::Nothing;
     /// A pulse.
     pulse = Kind::Table(&PULSE), Default::Nothing;
-    /// Motions made.
+    /// Synthetic motions.
     synthetic = Kind::Table(&SYNTHETIC), Default::Nothing;
-    /// Horizontal components of records, each a motion of its own.
+    /// Horizontal components of the records; each is a separate motion.
     components = Kind::Texts, Default::Derived("the one of `each`, or the first horizontal component");
     /// Processing of every record: the fields of [motion] except its source and scale.
     each = Kind::Table(&MOTION), Default::Nothing;
-    /// Scaling, where there is no [intensity].
+    /// Scaling of the motions, if there is no [intensity].
     scale = Kind::Table(&SCALE), Default::Nothing;
     at most one of &["records", "folder", "bundled", "sine", "pulse", "synthetic"];
     at most one of &["sine", "pulse", "synthetic", "components"];

@@ -1,4 +1,4 @@
-//! Reads a factor of a study file: the fields that it sets, and their values.
+//! Reading of a factor of a study file: the fields that it sets, and their values.
 
 use barrelstack_report::column::{ColumnSpec, Role};
 
@@ -10,16 +10,16 @@ use crate::study::distribution::Distribution;
 use crate::study::setting::{Domain, Setting};
 use crate::study::{Factor, Variation, rows};
 
-/// Probability of the quantile that is tried for the low end of a distribution, and from 1 for the high end.
+/// Probability of the quantile that is tried as the low end of a distribution; the high end has 1 minus this.
 pub(super) const LOW: f64 = 1e-6;
 
-/// Returns an error if two factors set the same field, or have the same column.
+/// Returns an error if a factor has the same column as another, or sets the same field.
 pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Option<ScenarioError> {
     let error = |message| Some(top.inconsistent("factor", message));
     for factor in factors {
         if factor.name == new.name {
             return error(format!(
-                "two factors have the name `{}`; give one another `name`",
+                "two factors have the name `{}`; give one of them a different `name`",
                 new.name
             ));
         }
@@ -32,37 +32,38 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     }
     if rows::fixed_columns().any(|column| column == new.name) {
         return error(format!(
-            "every table has a column `{}`; give the factor another `name`",
+            "every table has a column `{}`; give the factor a different `name`",
             new.name
         ));
     }
     None
 }
 
-/// Remaining capacity of the factors of a study, so that memory and work are bounded before values are tried.
+/// Remaining capacity for values of factors, which bounds memory and work before values are tried.
 #[derive(Debug)]
 pub(super) struct Room {
-    /// Values that may still be listed.
+    /// Number of values that may still be listed.
     values: usize,
-    /// Cases so far, and the most there may be; none where the design does not cross the values.
+    /// Number of cases so far, and the maximum; `None` if the design does not cross the values.
     cases: Option<(u64, u64)>,
 }
 
-/// Most values of all factors of a study together.
+/// Maximum number of values of all factors of a study together.
 const MOST_VALUES: usize = 20_000;
 
 impl Room {
-    /// The room of a study of so many motions, whose design crosses values with at most `most` cases or does not.
+    /// Creates the capacity for a number of motions; `most` is the maximum number of cases, `None` if the design does not
+    /// cross the values.
     pub(super) fn new(motions: usize, most: Option<u64>) -> Self {
         Self { values: MOST_VALUES, cases: most.map(|most| (motions as u64, most)) }
     }
 
-    /// Takes the values of a factor.
+    /// Subtracts the values of a factor; an error if they exceed the capacity.
     fn take(&mut self, reader: &Reader<'_>, values: &[Setting]) -> Result<(), ScenarioError> {
         let key = if reader.has("range") { "range" } else { "values" };
         let Some(left) = self.values.checked_sub(values.len()) else {
             let message = format!(
-                "the factors have more than {MOST_VALUES} values together: take fewer, or a `distribution` in a sampled \
+                "the factors have more than {MOST_VALUES} values together: use fewer, or a `distribution` in a sampled \
                  design such as \"sobol\""
             );
             return Err(reader.inconsistent(key, message));
@@ -72,7 +73,7 @@ impl Room {
             *cases = cases.saturating_mul(values.len() as u64);
             if *cases > *most {
                 let message = format!(
-                    "with the {} values of this factor the study has more than {most} cases: take fewer values, or a \
+                    "with the {} values of this factor the study has more than {most} cases: use fewer values, or a \
                      sampled design such as \"sobol\"",
                     values.len()
                 );
@@ -117,7 +118,7 @@ pub(super) fn read_factor(
         room.take(&reader, values)?;
     }
     reader.finish();
-    // Try every value by itself, so that one which the scenario refuses is reported at its place before any run.
+    // Every value is tried by itself, so that a value that the scenario refuses is reported at its place before any run.
     let ends: Vec<Setting> = match &variation {
         Variation::Values(values) => values.clone(),
         Variation::Distribution(distribution) => match distribution.settings() {
@@ -162,19 +163,19 @@ fn domain_of(
         return Err(reader.inconsistent(key, message));
     }
     if matches!(path, "title" | "schema" | "extends") || path.starts_with("record.") {
-        let message = format!("`{path}` changes nothing that happens to the stack");
+        let message = format!("`{path}` has no effect on the stack; name another field");
         return Err(reader.inconsistent(key, message));
     }
     Domain::of(field).ok_or_else(|| {
         let message = format!(
-            "`{path}` holds {}; a factor varies a single value: name a field in it",
+            "`{path}` holds {}, but a factor varies a single value: name one of its fields",
             field.kind
         );
         reader.inconsistent(key, message)
     })
 }
 
-/// Returns the first value that a range or a distribution states.
+/// Returns the first value that a range or a distribution states, which fixes its dimension.
 fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
         Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
@@ -183,7 +184,7 @@ fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     }
 }
 
-/// Reads a list (whose key is given), a range or a distribution; `None` if there is none of them.
+/// Reads a list under the key `list`, a range or a distribution; the variation is `None` if there is none of them.
 pub(super) fn read_variation(
     reader: &Reader<'_>,
     domain: Domain,
