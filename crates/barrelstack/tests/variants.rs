@@ -246,7 +246,7 @@ fn what_is_stopped_says_nothing_of_shares() {
             .summary
             .warnings
             .iter()
-            .any(|text| text.contains("runs were done when it was stopped"))
+            .any(|text| text.contains("runs were finished: runs that collapse finish sooner"))
     );
 }
 

@@ -276,7 +276,7 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-/// Returns acceleration and velocity of the ground along the plane; empty without a motion.
+/// Returns the horizontal acceleration and velocity of the ground; empty without a motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
     let span = (motion.horizontal.natural_step(), run.end_time);
@@ -285,21 +285,23 @@ pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     vec![first, ground_history("ground velocity", "cm/s", span, &velocity)]
 }
 
-/// Returns the acceleration (g) of a component of the ground until `end` (s).
+/// Returns the acceleration (g) of a component of the ground motion until `end` (s).
 pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end: f64) -> History {
     let value = |time: f64| component.at(time).acceleration / STANDARD_GRAVITY;
     ground_history(label, "g", (component.natural_step(), end), &value)
 }
 
-/// Thins a quantity of the ground for a picture: from every fiftieth of a second until `end` (s) it keeps the sample of
-/// the motion, `step` (s) apart, that is largest in size, at its own time, so that peaks are those of the motion.
+/// Thins a quantity of the ground motion for a picture, until `end` (s).
+///
+/// Of the samples of the motion, `step` (s) apart, one per fiftieth of a second is kept: the one with
+/// the largest magnitude, at its own time, so that the picture shows the true peaks.
 pub fn ground_history(
     label: &str,
     unit: &str,
     (step, end): (f64, f64),
     value: &dyn Fn(f64) -> f64,
 ) -> History {
-    /// Samples of a picture per second.
+    /// Samples per second of the picture.
     const RATE: f64 = 50.0;
     let (mut times, mut values): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let step = step.max(1e-4);
