@@ -188,7 +188,7 @@ pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
 /// Returns the command that compares the remedy with the stack.
 pub(crate) fn side_by_side(summary: &Summary) -> Option<String> {
     let command = summary.remedy.as_ref()?.comparison.as_ref()?;
-    Some(format!("To see it side by side: {command}"))
+    Some(format!("To compare them side by side: {command}"))
 }
 
 /// Prints the answer as text; `changes` are the values changed on the command line.
