@@ -91,8 +91,8 @@ impl ColumnSpec {
 
 /// Converts words to the name of a column, which is the same in all formats.
 ///
-/// Letters, digits, `.` and `-` are kept, and every other character becomes `_`: `B4.1 displacement
-/// x` becomes `B4.1_displacement_x`.
+/// Letters, digits, `.` and `-` are kept, and every other character becomes `_`. For example,
+/// `B4.1 displacement x` becomes `B4.1_displacement_x`.
 pub fn column_name(words: &str) -> String {
     let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
     words.chars().map(kept).collect()

@@ -162,7 +162,7 @@ impl Room {
     }
 }
 
-/// Estimates an upper bound of the width (px) of a line of text at `size` px.
+/// Estimates the width (px) of a line of text at `size` px, usually slightly too large.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }

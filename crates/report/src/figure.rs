@@ -22,11 +22,11 @@ pub struct Figure {
 /// The kinds of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureKind {
-    /// Lines over a pair of axes.
+    /// Series over a pair of axes.
     Plot(Plot),
     /// Several plots in rows.
     Panels(Panels),
-    /// A scene at chosen instants, side by side.
+    /// A scene at selected instants, side by side.
     Strip(Strip),
     /// Stress drawn around a body's outline.
     Envelope(Envelope),

@@ -115,7 +115,7 @@ impl Payload {
         self.plots.len() - 1
     }
 
-    /// Returns the index of a column; equal columns are stored once.
+    /// Returns the index of a data column; equal columns are stored once.
     fn column(&mut self, column: Value) -> usize {
         let key = column.to_string();
         if let Some(&place) = self.known.get(&key) {
@@ -126,7 +126,7 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    /// Returns `true` if a pane of a player is known in three dimensions.
+    /// `true` if the scene of any player is known in three dimensions.
     fn has_depth(&self) -> bool {
         let mut panes =
             self.players.iter().filter_map(|player| player["panes"].as_array()).flatten();
@@ -168,7 +168,7 @@ pub(crate) fn assemble(
     let live = !payload.plots.is_empty();
     let deep = payload.has_depth();
     let played = trial.is_some() || !payload.players.is_empty();
-    // Static tables and figures need the scripts, too, which save and copy them.
+    // Static tables and figures also need the scripts, which save and copy them.
     let scripted =
         live || played || ["<table", "<figure"].iter().any(|element| body.contains(element));
     let (policy, style) =
@@ -184,7 +184,7 @@ pub(crate) fn assemble(
         );
     }
     if live {
-        // The license requires its text in every copy.
+        // The license requires its text to be included in every copy.
         let license = UPLOT_LICENSE.replace("*/", "* /");
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
