@@ -209,7 +209,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
     await page.click("#devices-go");
     await page.waitForFunction(() => document.getElementById("devices-go").checkVisibility());
     const effects = await page.locator("#devices tbody td:nth-child(2)").allTextContents();
-    demand(effects.every((text) => /^\d+ of \d+ fall$|^does not go on it$/.test(text)), effects.join(" | "));
+    demand(effects.every((text) => /^\d+ of \d+ fall$|^does not fit this stack$/.test(text)), effects.join(" | "));
     await page.click(`#devices button[aria-label="Try it: ${strap}"]`);
     await idle(page, 4);
     demand((await last(page)).label.includes("straps"), (await last(page)).label);
