@@ -351,7 +351,10 @@ impl Verification {
                 )
             });
             sentences.extend(first_fall_within.map(|late| {
-                format!("The first barrel falls within {} of its time in this run in all repeats.", shortly(late))
+                format!(
+                    "The first barrel falls within {} of its time in this run in all repeats.",
+                    shortly(late)
+                )
             }));
             sentences.extend((most > 0).then(|| match least {
                 _ if least == most => format!("{most} barrels fall in the run and in all repeats."),

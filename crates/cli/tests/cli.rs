@@ -248,7 +248,10 @@ fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
     let output = barrelstack(["run", "candia-8-barrels", ONE].into_iter().chain(broken));
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("The computation failed, so the run says nothing about the stack."), "{text}");
+    assert!(
+        text.contains("The computation failed, so the run says nothing about the stack."),
+        "{text}"
+    );
     assert!(text.contains("outcome                 invalid\n"), "{text}");
     assert!(!text.contains("fall"), "{text}");
     let json_run = ["run", "candia-8-barrels", ONE, "--json"].into_iter().chain(broken);

@@ -236,7 +236,10 @@ impl<'a> Flow<'a> {
             self.paragraph("page-text", &verdict.sentences.join(" "));
         }
         if !verdict.command.is_empty() {
-            self.paragraph("page-text", &format!("To compare them side by side: {}", verdict.command));
+            self.paragraph(
+                "page-text",
+                &format!("To compare them side by side: {}", verdict.command),
+            );
         }
         if !verdict.fine.is_empty() {
             self.heading("page-part", FINE, 28.0);

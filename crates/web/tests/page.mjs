@@ -403,7 +403,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
     } catch (error) {
       said = error.stderr;
     }
-    demand(said.includes("holds no engine"), said);
+    demand(said.includes("does not contain the program"), said);
   });
   await suite.check("on a phone nothing scrolls sideways, and fingers find every button", async () => {
     await page.setViewportSize(PHONE);

@@ -287,7 +287,8 @@ fn cut_short(sides: &[Side]) -> String {
     if !sides.iter().any(cut) {
         return String::new();
     }
-    " Runs end before their motion does, so a stack that stands at the end may still fall later.".to_owned()
+    " Runs end before their motion does, so a stack that stands at the end may still fall later."
+        .to_owned()
 }
 
 /// Describes the runs whose variants fall under their own weight, before they are shaken.
@@ -366,9 +367,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
                     "Each is shown in variant {shown}, the most typical of all of them together{}.",
                     if one_motion(sides) { ", under the same component of the motion" } else { "" }
                 ),
-                _ => {
-                    "Each is shown in the most typical of its own variants.".to_owned()
-                }
+                _ => "Each is shown in the most typical of its own variants.".to_owned(),
             }
         }
     } else {

@@ -33,7 +33,10 @@ const MEANINGS: [(&str, &str); 39] = [
     ("body", "name of the body"),
     ("x", "position of the boundary point at rest, to the right of the center of mass"),
     ("z", "position of the boundary point at rest, above the center of mass"),
-    ("coordinate", "position along the boundary: an angle on a round one, a length on a straight one"),
+    (
+        "coordinate",
+        "position along the boundary: an angle on a round one, a length on a straight one",
+    ),
     ("length_of_boundary", "length of boundary on which the stress acts at rest"),
     ("stress_at_rest", "normal stress at rest"),
     (
@@ -49,12 +52,18 @@ const MEANINGS: [(&str, &str); 39] = [
     ("_rotation", "rotation, counterclockwise"),
     ("_vertical_force", "upward force on the upper body"),
     ("_horizontal_force", "force to the right on the upper body"),
-    ("_x", "position of the center of mass to the right, in an inertial frame: that of the ground before the motion"),
+    (
+        "_x",
+        "position of the center of mass to the right, in an inertial frame: that of the ground before the motion",
+    ),
     (
         "_y",
         "position of the center of mass away from the viewer, in an inertial frame: that of the ground before the motion",
     ),
-    ("_z", "position of the center of mass upward, in an inertial frame: that of the ground before the motion"),
+    (
+        "_z",
+        "position of the center of mass upward, in an inertial frame: that of the ground before the motion",
+    ),
     ("_angle", "rotation, counterclockwise"),
     (
         "_qw",

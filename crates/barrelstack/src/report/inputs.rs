@@ -89,7 +89,9 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let all = settings_table("Every input.", &settings);
     let left_out = (!absent.is_empty()).then(|| {
         let names = absent.join(", ").replace('_', " ");
-        Block::Paragraph(format!("Inputs of devices that the stack does not have are left out: {names}."))
+        Block::Paragraph(format!(
+            "Inputs of devices that the stack does not have are left out: {names}."
+        ))
     });
     let mut blocks = vec![Block::Table(chosen)];
     blocks.extend(dimensions(run));

@@ -136,7 +136,9 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     row("fallen under their own weight, before they are shaken", &|spread| {
         (spread.cannot_stand > 0).then(|| spread.cannot_stand.to_string())
     });
-    row("variants without a verdict", &|spread| (spread.broken > 0).then(|| spread.broken.to_string()));
+    row("variants without a verdict", &|spread| {
+        (spread.broken > 0).then(|| spread.broken.to_string())
+    });
     let number = |number: u32| if number == 0 { "as stated".into() } else { number.to_string() };
     row("most typical variant", &|spread| Some(number(spread.typical)));
     row("gentlest variant", &|spread| Some(number(spread.gentlest)));

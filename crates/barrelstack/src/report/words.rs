@@ -52,7 +52,9 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
         }
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
-        Outcome::Invalid { .. } => "The computation failed, so the run says nothing about the stack.".into(),
+        Outcome::Invalid { .. } => {
+            "The computation failed, so the run says nothing about the stack.".into()
+        }
         Outcome::Collapse { mode: CollapseMode::Gravity, .. } => {
             let plane = plane.map_or_else(String::new, |plane| format!("{}, ", plane.words()));
             capital(&format!("{plane}the stack falls under its own weight, before it is shaken."))
@@ -149,7 +151,9 @@ pub fn device(Device { words, elements }: &Device) -> Option<String> {
         (_, Some(time)) if alone => {
             format!("The {} {}, after {time:.1} s.", words.one, words.breaks)
         }
-        (0, _) | (_, None) => format!("All {all} hold; the largest force in one of them is {kilonewtons} kN{until}."),
+        (0, _) | (_, None) => {
+            format!("All {all} hold; the largest force in one of them is {kilonewtons} kN{until}.")
+        }
         (1, Some(time)) => format!("One of {all} {}, after {time:.1} s.", words.breaks),
         (count, Some(time)) => {
             format!("{count} of {all} {}, the first after {time:.1} s.", words.break_all)

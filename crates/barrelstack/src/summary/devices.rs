@@ -109,7 +109,8 @@ impl Described for Devices {
         let number = |unit: &str, meaning: &str| json!({ "type": "number", "unit": unit, "description": meaning });
         let mut properties = Map::new();
         for Words { one, many, force, broken, .. } in all_words() {
-            let mut at = number("s", &format!("Time at which it was {broken}; null if it was not."));
+            let mut at =
+                number("s", &format!("Time at which it was {broken}; null if it was not."));
             at["type"] = json!(["number", "null"]);
             let element = json!({
                 "name": { "type": "string", "description": "The bodies that it joins, and its place." },

@@ -52,10 +52,13 @@ impl Remedy {
                     (true, false) => "fewer levels, down to one".to_owned(),
                     (false, _) => format!("straps tightened to {straps}"),
                 };
-                return format!("None of the changes that were tried would have kept the stack up: {tried}.");
+                return format!(
+                    "None of the changes that were tried would have kept the stack up: {tried}."
+                );
             }
         };
-        let stopped = if self.complete { "" } else { " The search for further changes was stopped." };
+        let stopped =
+            if self.complete { "" } else { " The search for further changes was stopped." };
         format!("{}.{}{stopped}", capital(&sentence), self.confidence())
     }
 

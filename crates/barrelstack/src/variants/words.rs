@@ -59,7 +59,9 @@ impl Judgment {
             Self::Stands => "Stands.".to_owned(),
             Self::TooFew => "Too few variants to conclude that the stack stands.".to_owned(),
             Self::Cut(until) => {
-                format!("Not decided, because the runs end at {until:.1} s, before the motion does.")
+                format!(
+                    "Not decided, because the runs end at {until:.1} s, before the motion does."
+                )
             }
             Self::None => "No verdict.".to_owned(),
             Self::NotSafe => "Not safe.".to_owned(),

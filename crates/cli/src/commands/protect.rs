@@ -157,6 +157,8 @@ fn lines(found: &Ranking) -> Vec<String> {
             significant(one.fallen.mean, 2)
         ));
     }
-    lines.push("* no other protection that was tried loses less at the same or a lower cost".to_owned());
+    lines.push(
+        "* no other protection that was tried loses less at the same or a lower cost".to_owned(),
+    );
     lines
 }

@@ -150,7 +150,8 @@ fn block(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<Vec<Stri
     if all {
         match measures::rotated(record) {
             Err(error) if record.channels.len() > 1 => {
-                lines.extend([String::new(), format!("  no measures over all directions: {error}")]);
+                lines
+                    .extend([String::new(), format!("  no measures over all directions: {error}")]);
             }
             Err(_) => {}
             Ok(rotated) => {

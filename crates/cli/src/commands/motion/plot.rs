@@ -122,7 +122,9 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
 /// Draws the panels of every record in folders.
 fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     if args.figure.iter().any(|kind| *kind != Kind::Panels) {
-        bail!("records of a folder are drawn as panels: leave --figure out, or give --figure panels");
+        bail!(
+            "records of a folder are drawn as panels: leave --figure out, or give --figure panels"
+        );
     }
     let formats = if args.formats.names_any() { args.formats.formats() } else { vec![Format::Png] };
     let out = args.output.as_path();
@@ -167,7 +169,10 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
         let kind = match kinds.as_slice() {
             [] => Kind::Acceleration,
             [kind] => *kind,
-            _ => bail!("{} can have one figure only: select one with --figure, or give a folder", args.output.display()),
+            _ => bail!(
+                "{} can have one figure only: select one with --figure, or give a folder",
+                args.output.display()
+            ),
         };
         return Ok(vec![(kind, args.output.clone())]);
     }

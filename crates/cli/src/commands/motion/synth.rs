@@ -71,7 +71,7 @@ enum Kind {
     CloughPenzien(Made<Noise>),
     /// Stochastic method for a point source (Boore).
     Boore(Made<Source>),
-    /// A velocity pulse on top of a stochastic motion.
+    /// A velocity pulse added to a stochastic motion.
     NearFault(Made<Fault>),
 }
 
@@ -206,7 +206,10 @@ impl Source {
         source.path.kappa = quantity("--kappa", &self.kappa, Dimension::TIME)?;
         source.velocity = quantity("--beta", &self.beta, Dimension::VELOCITY)? / 1000.0;
         let numbers = pair(&self.quality).ok_or_else(|| {
-            anyhow!("--quality: `{}` is not a factor and an exponent such as 180,0.45", self.quality)
+            anyhow!(
+                "--quality: `{}` is not a factor and an exponent such as 180,0.45",
+                self.quality
+            )
         })?;
         (source.path.quality, source.path.quality_exponent) = numbers;
         if let Some(text) = &self.site_amplification {

@@ -138,7 +138,8 @@ impl Journal {
 
     /// Reads the entry of a record.
     pub(super) fn entry(&self, record: &str) -> anyhow::Result<Entry> {
-        let damaged = || format!("{} was changed meanwhile: run the command again", self.path.display());
+        let damaged =
+            || format!("{} was changed meanwhile: run the command again", self.path.display());
         let Ok(inner) = self.inner.lock() else { bail!(damaged()) };
         let line = inner.lines.get(record).with_context(damaged)?;
         let mut reader = BufReader::new(&inner.file);

@@ -71,7 +71,10 @@ pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source
     for pair in sources.windows(2) {
         if pair[0].record.name == pair[1].record.name {
             let [one, two] = [&pair[0], &pair[1]].map(|s| s.root.display().to_string());
-            bail!("{} is in both {one} and {two}: process the folders one by one", pair[0].record.name);
+            bail!(
+                "{} is in both {one} and {two}: process the folders one by one",
+                pair[0].record.name
+            );
         }
     }
     Ok(sources)

@@ -144,8 +144,8 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let selection = selection.inspect_err(|_| printer::note(&statement))?;
     if args.count.is_none() && selection.chosen.len() < USUAL_COUNT {
         let few = format!(
-            "; a set has {USUAL_COUNT} where there are as many, this one has the {} that can be \
-             brought to the target",
+            "; a set usually has {USUAL_COUNT} records, but this one has only the {} that can be \
+             scaled to the target",
             selection.chosen.len()
         );
         statement.push_str(&few);

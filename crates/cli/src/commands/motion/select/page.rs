@@ -156,7 +156,8 @@ fn records(set: &Set<'_>) -> Table {
         ("PGV", "cm/s"),
         ("D5-95", "s"),
     ];
-    let mut table = Table::new("Records of the set, with PGA and PGV of the first horizontal as scaled", &head);
+    let mut table =
+        Table::new("Records of the set, with PGA and PGV of the first horizontal as scaled", &head);
     for (row, chosen) in set.chosen() {
         let number = |column: &str, factor: f64, digits: usize| {
             set.number(column, row).map_or(Cell::text(""), |v| Cell::Number(factor * v, digits))

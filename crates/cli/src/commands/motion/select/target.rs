@@ -50,7 +50,9 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
                 (None, Some(epsilon)) => {
                     Condition::at_epsilon(period, median[place], sigma[place], epsilon)
                 }
-                (None, None) => bail!("--at: give Sa at that period, with --level \"0.6 g\" or --epsilon 2"),
+                (None, None) => {
+                    bail!("--at: give Sa at that period, with --level \"0.6 g\" or --epsilon 2")
+                }
             })
         }
     };
