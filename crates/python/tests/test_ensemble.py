@@ -71,7 +71,7 @@ def test_errors_of_a_row_are_raised_before_the_work() -> None:
         ensemble([{"motion.record": "mine.AT2"}], BASE)
     with pytest.raises(ScenarioError, match="one plane"):
         ensemble([{"stack.levels": 3}], "demo-napa")
-    with pytest.raises(ValueError, match="no case sets anything"):
+    with pytest.raises(ValueError, match="no case changes the base"):
         ensemble([{}], BASE)
     with pytest.raises(TypeError, match="`stack.levels` holds a object"):
         ensemble([{"stack.levels": object()}], BASE)
