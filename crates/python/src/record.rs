@@ -159,7 +159,9 @@ impl Record {
         let found = self.inner.component(&wanted).map_err(errors::motion)?;
         let known = self.inner.channels.iter().position(|channel| channel.name == found.name);
         known.ok_or_else(|| {
-            PyIndexError::new_err(format!("the record has no channel {name}; rotate the record first"))
+            PyIndexError::new_err(format!(
+                "the record has no channel {name}; rotate the record first"
+            ))
         })
     }
 
