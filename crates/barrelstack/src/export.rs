@@ -38,15 +38,15 @@ const SUMMARY_LIMIT: usize = 256 << 20;
 /// someone else.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
-/// Error of writing files.
+/// Error of writing output files.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The folder is not empty.
-    #[error("{folder} is not empty (it holds {file})", folder = folder.display())]
+    #[error("{folder} is not empty (it contains {file})", folder = folder.display())]
     Occupied {
         /// The folder.
         folder: PathBuf,
-        /// A file in it.
+        /// Name of a file in the folder.
         file: String,
     },
     /// A file to be replaced was not written by a run.
@@ -57,15 +57,15 @@ pub enum ExportError {
     Foreign {
         /// The folder.
         folder: PathBuf,
-        /// The file.
+        /// Name of the file.
         file: String,
     },
     /// A system call failed.
     #[error("cannot write {path}: {reason}", path = path.display())]
     Write {
-        /// The path.
+        /// Path that cannot be written.
         path: PathBuf,
-        /// The message of the system.
+        /// Message of the operating system.
         reason: String,
     },
 }
@@ -76,7 +76,7 @@ impl ExportError {
         Self::Write { path: path.to_owned(), reason: reason.into() }
     }
 
-    /// Returns the error for a path that the system refuses.
+    /// Returns the error for a path at which a system call failed.
     pub(crate) fn refused(path: &Path, error: &std::io::Error) -> Self {
         Self::write(path, system::words(error))
     }
@@ -190,7 +190,7 @@ impl Folder {
     /// and a full disk leaves the files of an earlier run as they were.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write(
         &self,
         answer: &Answer,
@@ -204,7 +204,7 @@ impl Folder {
     /// `figures/`.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_page(&self, document: &Document) -> Result<(), ExportError> {
         const FIGURES: &str = "figures";
         let page = barrelstack_report::html(document);
@@ -220,7 +220,7 @@ impl Folder {
     /// Writes files under temporary names, then renames them together.
     ///
     /// # Errors
-    /// When the system refuses, when one of the files was read as an input, or when another run has
+    /// When a file cannot be written, when one of the files was read as an input, or when another run has
     /// written into the folder since the check.
     pub fn put<'a>(
         &self,
@@ -248,7 +248,7 @@ impl Folder {
     /// scenario.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_with_engine(
         &self,
         answer: &Answer,
@@ -265,7 +265,7 @@ impl Folder {
     /// Writes the report for printing, `report.pdf`, into the folder.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_pdf(
         &self,
         answer: &Answer,

@@ -38,8 +38,8 @@ described! {
         /// Distance between the positions of a body in two runs above which they count as
         /// different.
         pub apart: f64 as "m",
-        /// Time until which every body in every repeat stays within that distance of its position
-        /// in the run; null if it does so to the end.
+        /// Time until which every body in every repeat stays within the distance `apart` of its
+        /// position in the run; null if it does so to the end.
         pub predictable_until: Option<f64> as "s",
         /// Properties of the run that all repeats share.
         pub robust: Robust,
@@ -58,8 +58,8 @@ described! {
         pub outcome: OutcomeSummary = Summary::of(other, None).outcome,
         /// True if kind, mode and first body are the same as in the run.
         pub same_outcome: bool = same_outcome(base, other),
-        /// Time at which a body first exceeds that distance from its position in the run; null if
-        /// none does.
+        /// Time at which a body is first farther than the distance `apart` from its position in the
+        /// run; null if none ever is.
         pub apart_at: Option<f64> as "s" = apart_at(base, other),
         /// Largest difference between the fall times of a barrel in the repeat and in the run,
         /// before any repeat diverges; null if no barrel falls by then.

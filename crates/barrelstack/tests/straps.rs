@@ -1,5 +1,5 @@
 //! Straps on a stack: their effect, their forces, and independence of step and scale.
-#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+#![allow(clippy::print_stdout, reason = "measured values are shown with --nocapture")]
 
 use barrelstack::outcome::Outcome;
 use barrelstack::summary::ElementSummary;

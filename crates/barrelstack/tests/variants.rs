@@ -1,6 +1,6 @@
 //! A stack and its variants: their draws, their results, and the wording of these.
 
-#![allow(clippy::print_stdout, reason = "the shares at every step")]
+#![allow(clippy::print_stdout, reason = "prints the shares at every step")]
 
 use std::ops::ControlFlow;
 

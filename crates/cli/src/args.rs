@@ -101,7 +101,7 @@ pub(crate) struct VariantArgs {
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
-#[expect(clippy::struct_excessive_bools, reason = "one for every switch")]
+#[expect(clippy::struct_excessive_bools, reason = "one field per switch")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,

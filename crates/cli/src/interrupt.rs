@@ -113,7 +113,7 @@ fn request_stop() {
 }
 
 /// Terminates the program, after printing what is kept and removing unfinished files.
-#[expect(clippy::exit, reason = "the work does not end by itself")]
+#[expect(clippy::exit, reason = "the work does not stop by itself")]
 fn end(json: bool) -> ! {
     system::write_no_more();
     let folders = FOLDERS.lock().map(|folders| folders.clone()).unwrap_or_default();

@@ -1,5 +1,5 @@
 //! Printing: results to standard output, errors and warnings to standard error.
-#![expect(clippy::print_stderr, reason = "this is where printing is done")]
+#![expect(clippy::print_stderr, reason = "all printing is done here")]
 
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};

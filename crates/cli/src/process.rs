@@ -15,7 +15,7 @@ pub(crate) fn output_was_closed() -> bool {
 }
 
 #[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
-#[expect(unsafe_code, reason = "a section of the loader, and a function of the system's library")]
+#[expect(unsafe_code, reason = "a loader section and a C library function")]
 mod before_main {
     use std::os::fd::AsFd as _;
     use std::sync::atomic::Ordering;

@@ -272,7 +272,7 @@ pub(crate) fn style(template: &str) -> ProgressStyle {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "what is counted is not negative"
+    reason = "counts are not negative"
 )]
 fn thousandths(value: f64) -> u64 {
     (1e3 * value) as u64

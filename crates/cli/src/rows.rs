@@ -169,7 +169,7 @@ fn three_digits(value: f64) -> String {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::disallowed_methods,
-        reason = "a small exponent, of a number for the eye"
+        reason = "a small exponent of a printed number"
     )]
     let exponent = value.abs().log10().floor() as i32;
     let decimals = usize::try_from((2 - exponent).max(0)).unwrap_or(0);

@@ -46,7 +46,7 @@ pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
 }
 
 /// Converts an error of the system to an error in plain words.
-#[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
+#[expect(clippy::needless_pass_by_value, reason = "used with map_err")]
 pub(crate) fn plain(error: std::io::Error) -> anyhow::Error {
     anyhow!(system::words(&error))
 }

@@ -68,7 +68,7 @@ pub(crate) fn compare(
 
 /// Runs the study of safe heights.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn heights(
     py: Python<'_>,
     folder: PathBuf,
@@ -102,7 +102,7 @@ pub(crate) fn heights(
 /// Ranks protections of a stack by benefit and cost, for the hazard of a site or at given
 /// velocities (m/s).
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn protect(
     py: Python<'_>,
     scenario: &Scenario,
@@ -184,7 +184,7 @@ type SetFacts = (Vec<(usize, f64)>, [Vec<f64>; 4], usize);
 /// The target is the name of a code, or medians (m/s²) and standard deviations of ln Sa. `given` is
 /// a period (s) with the pseudo-acceleration (m/s²) at that period.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn select(
     py: Python<'_>,
     periods: Vec<f64>,

@@ -119,7 +119,7 @@ pub(crate) fn calibrate_response(
 
 /// Fits parameters to observed collapses.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn calibrate_collapse(
     py: Python<'_>,
     scenario: &Scenario,

@@ -4,7 +4,7 @@
 //! copies, and work without the interpreter lock. The public interface and its documentation are in
 //! `python/barrelstack`.
 
-#![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
+#![allow(clippy::needless_pass_by_value, reason = "the interpreter passes arguments by value")]
 
 mod analyses;
 mod calibrate;

@@ -173,10 +173,7 @@ impl Record {
         Ok(barrelstack_motion::Record { channels, ..(*self.inner).clone() }.into())
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the settings of a chain, each with its name in Python"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn process(
         &self,
         py: Python<'_>,
@@ -253,10 +250,7 @@ impl Record {
 
     /// Returns the matched record, its misfit, and a description of the remaining misfits; one
     /// component is matched, or both horizontals over all directions.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the settings of a match, each with its name in Python"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn matched(
         &self,
         py: Python<'_>,

@@ -225,7 +225,7 @@ impl Run {
     }
 
     /// Writes parts of a rendering; returns the place and the number of files of each.
-    #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,
         py: Python<'_>,

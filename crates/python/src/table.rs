@@ -212,7 +212,7 @@ fn stream(table: &Bound<'_, PyAny>) -> PyResult<RecordBatchStreamReader> {
     let capsule = table.call_method0("__arrow_c_stream__")?;
     let capsule = capsule.cast_into::<PyCapsule>()?;
     let pointer = capsule.pointer_checked(Some(c"arrow_array_stream"))?;
-    #[expect(unsafe_code, reason = "the door of Arrow's C interface")]
+    #[expect(unsafe_code, reason = "the C interface of Arrow")]
     // SAFETY: in the Arrow capsule protocol, a capsule with this name contains a stream that lives
     // as long as the capsule, and a consumer that takes the stream out leaves an empty one behind,
     // as this call does.
@@ -276,7 +276,7 @@ fn of_values(heading: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Values> {
     values.iter().map(text).collect::<PyResult<_>>().map(Values::Text)
 }
 
-#[expect(clippy::wildcard_enum_match_arm, reason = "a list of another library, which grows")]
+#[expect(clippy::wildcard_enum_match_arm, reason = "the enum of another library may grow")]
 fn of_array(heading: &str, array: &ArrayRef) -> PyResult<Values> {
     macro_rules! whole {
         ($kind:ty) => {

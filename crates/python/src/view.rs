@@ -12,7 +12,7 @@ pub(crate) type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 pub(crate) type Rows<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Returns numbers owned by a frozen object as a read-only array that keeps its owner alive.
-#[expect(unsafe_code, reason = "an array over memory that another object owns")]
+#[expect(unsafe_code, reason = "an array over memory owned by another object")]
 pub(crate) fn view<'py>(owner: &Bound<'py, PyAny>, values: &[f64]) -> PyResult<Numbers<'py>> {
     // SAFETY: all callers pass numbers that a `#[pyclass(frozen)]` owns behind an `Arc` and never
     // changes. They stay in place as long as `owner` lives; the array holds `owner` and cannot be

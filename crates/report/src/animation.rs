@@ -158,7 +158,11 @@ fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8
 
 /// Converts a time (s) to hundredths of a second.
 fn hundredths(time: f64) -> u32 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some minutes")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a film lasts minutes"
+    )]
     let whole = (100.0 * time).round().max(0.0) as u32;
     whole
 }

@@ -266,7 +266,7 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Rounds to hundredths of a point, which is precise enough and keeps the file small.
-#[expect(clippy::cast_possible_truncation, reason = "a page is some thousand points high")]
+#[expect(clippy::cast_possible_truncation, reason = "a page is a few thousand points high")]
 fn short(value: f64) -> f32 {
     ((100.0 * value).round() / 100.0) as f32
 }

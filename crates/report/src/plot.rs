@@ -130,7 +130,7 @@ impl Series {
 }
 
 /// Drawing style of a series.
-#[expect(clippy::struct_excessive_bools, reason = "each is a trait that goes with most others")]
+#[expect(clippy::struct_excessive_bools, reason = "the options are independent")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
     /// Index of color and dash pattern, from 0; the position in the plot if `None`. Colors repeat

@@ -63,7 +63,7 @@ pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "sides of pictures, which are bounded"
+    reason = "sides of pictures are bounded"
 )]
 fn whole(value: f64) -> u32 {
     value as u32

@@ -1,5 +1,5 @@
 //! The interface to a page: four functions and one import over linear memory.
-#![expect(unsafe_code, reason = "names that the page knows, and a function that it has")]
+#![expect(unsafe_code, reason = "functions exported to and imported from the page")]
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;

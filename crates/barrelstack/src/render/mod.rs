@@ -183,7 +183,7 @@ impl RenderFolder {
     /// shorter run leaves no frames of a longer one.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write(
         &self,
         run: &Run,
@@ -218,7 +218,7 @@ impl RenderFolder {
     /// Long series of bodies in space thus need not fit into memory as a whole.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_paraview(
         &self,
         make: impl FnOnce(
@@ -324,7 +324,7 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
 /// `dpi` (dots per inch) applies to pixel formats.
 ///
 /// # Errors
-/// When the system refuses.
+/// When a file cannot be written.
 pub fn write_figures(
     document: &Document,
     folder: &Path,

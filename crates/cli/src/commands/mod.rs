@@ -92,7 +92,7 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// Returns the error for a name that is neither a file nor a built-in scenario, with a hint at the
+/// Returns the error for a name that is neither a file nor a built-in scenario, with a hint about the
 /// most similar name.
 fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     let next = if let Problem::UnknownName { nearest: Some(nearest), .. } = error.problem() {

@@ -112,7 +112,7 @@ fn status(answer: &Answer) -> ExitCode {
     super::status(matches!(answer.run.outcome, Outcome::Invalid { .. }))
 }
 
-/// Returns a hint at the planar analysis, to be appended to a refusal in space.
+/// Returns a hint about the planar analysis, to be appended to a refusal in space.
 fn in_a_plane(scenario: &Scenario) -> &'static str {
     if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
 }

@@ -132,7 +132,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// Writes vectors in single precision, which resolves less than a micrometer at ten meters.
-#[expect(clippy::cast_possible_truncation, reason = "what a picture shows needs no more")]
+#[expect(clippy::cast_possible_truncation, reason = "single precision suffices for a picture")]
 fn vectors(out: &mut String, name: &str, values: &[[f64; 3]]) {
     let bytes: Vec<u8> =
         values.iter().flatten().flat_map(|value| (*value as f32).to_le_bytes()).collect();

@@ -201,7 +201,7 @@ fn seal(line: &serde_json::Value) -> String {
 
 /// Parses a value of the type of a column; the outer `None` means that the value has a different
 /// type.
-#[expect(clippy::option_option, reason = "no value and a wrong value are two things")]
+#[expect(clippy::option_option, reason = "a missing value differs from a wrong one")]
 fn cell(value: &serde_json::Value, kind: ValueKind) -> Option<Option<Value>> {
     if value.is_null() {
         return Some(None);

@@ -86,7 +86,7 @@ fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) ->
     };
     let color = |index: usize| SeriesStyle { index: Some(index), ..SeriesStyle::default() };
     let muted = SeriesStyle { muted: true, ..SeriesStyle::default() };
-    #[expect(clippy::disallowed_methods, reason = "a place in a picture needs no last digit")]
+    #[expect(clippy::disallowed_methods, reason = "a position in a picture needs few digits")]
     let in_g = |log: f64| log.exp() / STANDARD_GRAVITY;
     let moments = |mean: &[f64], deviation: &[f64], by: f64| -> Vec<f64> {
         mean.iter().zip(deviation).map(|(m, s)| in_g(m + by * s)).collect()
