@@ -151,8 +151,8 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
             if stack.view == View::Transverse && !per_seat {
                 return Err(
-                    "across the barrels single nodes (cradle supports, corners of beams, rolling \
-                            barrels) stand for one spacing, so halving it would soften them"
+                    "across the barrels, single nodes (cradle supports, corners of beams, rolling \
+                            barrels) represent one spacing, so halving the spacing would soften them"
                         .into(),
                 );
             }

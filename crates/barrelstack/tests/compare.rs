@@ -115,7 +115,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
         let own = 100.0 * side.summary.demands.top_drift_ratio.unwrap();
         assert_eq!(*cell, barrelstack_report::Cell::Measured(own, 1));
     }
-    let inputs = table(&document, "What is different");
+    let inputs = table(&document, "Differences");
     assert_eq!(inputs.rows.len(), 1);
     let text = markdown(&document, "figures").text;
     assert!(text.contains("They differ in one input: stack.levels, 4 and 2."), "{text}");

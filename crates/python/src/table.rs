@@ -158,7 +158,7 @@ impl Table {
             Some(Value::Text(_)) | None => f64::NAN,
         };
         if column.spec.kind == ValueKind::Text {
-            return Err(PyTypeError::new_err(format!("the column `{name}` holds texts")));
+            return Err(PyTypeError::new_err(format!("the column `{name}` contains texts")));
         }
         Ok((0..column.values.len()).map(number).collect::<Vec<f64>>().into_pyarray(py))
     }

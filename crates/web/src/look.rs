@@ -73,7 +73,7 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
             None if path.contains('.') && !present.contains(&path) => list.push(Stated {
                 path,
                 value: String::new(),
-                help: format!("{} Holds {}.", field.help, field.kind),
+                help: format!("{} Type: {}.", field.help, field.kind),
                 source: "not given".into(),
             }),
             None => {}

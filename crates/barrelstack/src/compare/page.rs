@@ -22,7 +22,7 @@ pub fn document(sides: &[Side]) -> Document {
             blocks.extend(content);
         }
     };
-    section("What is different", vec![Block::Table(tables::inputs(sides, &differing))]);
+    section("Differences", vec![Block::Table(tables::inputs(sides, &differing))]);
     section("Outcomes", vec![Block::Table(tables::outcomes(sides))]);
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));
@@ -362,7 +362,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             let shown = sides[0].summary.variant;
             let one = sides.iter().all(|side| side.summary.variant == shown);
             match shown {
-                0 if one => "Each is shown as it is stated.".to_owned(),
+                0 if one => "Each is shown as stated.".to_owned(),
                 _ if one => format!(
                     "Each is shown in variant {shown}, the most typical of all of them together{}.",
                     if one_motion(sides) { ", under the same component of the motion" } else { "" }

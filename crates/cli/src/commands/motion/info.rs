@@ -43,8 +43,8 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
         Some(out) => return table(args, out),
         None if args.input.has_folder() => {
             bail!(
-                "a folder, or an archive of several records, is measured as a table: state where it \
-                 goes, with --out DIR"
+                "a folder, or an archive of several records, is measured as a table: give the \
+                 folder for the table with --out DIR"
             )
         }
         None => {}
