@@ -18,7 +18,9 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
     let is_code = args.target.split_once(':').is_some_and(|(name, _)| name.len() > 1);
     if is_code {
         if args.at.is_some() {
-            bail!("--at: a code spectrum has no spread, so it cannot be made conditional");
+            bail!(
+                "--at: a code spectrum has no spread, so it cannot be made conditional: leave --at out"
+            );
         }
         let spectrum = code::target(&args.target)?;
         let periods: Vec<f64> = PERIODS.into_iter().filter(|t| counts(*t)).collect();
