@@ -302,7 +302,7 @@ fn by_themselves(sides: &[Side]) -> String {
     if all.is_empty() {
         return String::new();
     }
-    capital(&format!("{} fall under their own weight, before they are shaken.  ", listed(all)))
+    capital(&format!("{} fall under their own weight, before they are shaken. ", listed(all)))
 }
 
 /// Describes the result of a run, with the interval of its share, and the drift of a stack that stands.
