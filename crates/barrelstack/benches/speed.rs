@@ -1,7 +1,7 @@
 //! Speed of a run on one core, and growth of its cost with the size of the stack.
 //!
 //! `cargo bench -p barrelstack` prints the figures; nothing is asserted, since they depend on the machine.
-#![expect(clippy::print_stdout, reason = "printing is what it is for")]
+#![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
 use std::ops::ControlFlow;
 use std::time::Instant;

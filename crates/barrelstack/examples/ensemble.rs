@@ -1,5 +1,5 @@
 //! Many cases together: the share of collapses against the friction under the racks, and all results as a table.
-#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+#![expect(clippy::print_stdout, reason = "an example that prints its result")]
 
 use barrelstack::ensemble::{Ensemble, Prepared, table};
 use barrelstack::{Scenario, outcome::Outcome};

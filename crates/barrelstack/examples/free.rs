@@ -1,5 +1,5 @@
 //! A free scene: the sliding distance of a block, against v²/(2 μ g).
-#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+#![expect(clippy::print_stdout, reason = "an example that prints its result")]
 
 use barrelstack::Scenario;
 

@@ -1,9 +1,5 @@
 //! Stores the bits of present results as reference; refuses if they changed under the same version.
-#![expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "a program for people at a terminal"
-)]
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "an example that prints its result")]
 
 #[path = "../tests/golden/mod.rs"]
 mod golden;

@@ -1,5 +1,5 @@
 //! A stack under user-supplied accelerations, scaled, with its response and its report as a page.
-#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+#![expect(clippy::print_stdout, reason = "an example that prints its result")]
 
 use std::ops::ControlFlow;
 

@@ -1,5 +1,5 @@
 //! A stack of wine barrels, shaken by a sine.
-#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+#![expect(clippy::print_stdout, reason = "an example that prints its result")]
 
 use barrelstack::Scenario;
 

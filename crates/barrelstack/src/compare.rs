@@ -1,4 +1,4 @@
-//! Comparison of two or more runs: inputs and results that differ.
+//! Comparison of two or more runs: their differing inputs and their results.
 
 mod labels;
 mod page;
@@ -20,40 +20,41 @@ pub use labels::labels;
 pub use page::document;
 pub use paired::Paired;
 
-/// One run among others.
+/// One run of a comparison.
 #[derive(Clone, Debug)]
 pub struct Side {
-    /// Its name, short enough for the head of a column.
+    /// Name of the run, short enough for a column heading.
     pub name: String,
     /// The run.
     pub run: Run,
-    /// Its summary.
+    /// Summary of the run.
     pub summary: Summary,
-    /// Results in the other plane, where the scenario has both.
+    /// Results in the plane that is not shown, if the scenario has both planes.
     pub other: Option<OtherPlane>,
-    /// For each plane, the shown one first, `true` for every variant that collapses, by its number; `None` for variants
-    /// without a verdict.
+    /// For each plane, the shown one first: whether each variant collapses, in the order of the
+    /// variant numbers; `None` for a variant without a verdict.
     pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
 }
 
 /// Results of a stack in the plane that is not shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherPlane {
-    /// The plane.
+    /// Plane of these results.
     pub view: View,
-    /// Outcome of the run with the number of the one that is shown.
+    /// Outcome of the run in this plane, for the same variant number as the shown run.
     pub outcome: Outcome,
-    /// Statistics of the variants, where there are any.
+    /// Statistics of the variants; `None` if no variants were run.
     pub spread: Option<Spread>,
 }
 
-/// Makes all answers show the same variant, under the same component of their motion: the medoid over all of them.
+/// Makes all answers show the same variant under the same component of the motion.
 ///
-/// Answers that show another variant run this one, with progress reported to an observer, which may cancel. Answers
-/// without variants stay as they are.
+/// The variant is the medoid over all answers. Answers that show another variant run the common
+/// one; the observer receives the progress and may cancel. Answers are returned unchanged if any of
+/// them has no variants.
 ///
 /// # Errors
-/// When one of them cannot be run.
+/// When the common variant cannot be run.
 pub fn aligned(
     answers: Vec<(String, Answer)>,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
@@ -69,8 +70,9 @@ pub fn aligned(
     answers.into_iter().map(align).collect()
 }
 
-/// Returns the runs of answers with their names, all in one plane where all have it: that of the worst result
-/// of any.
+/// Returns the runs of the answers with their names.
+///
+/// If all answers have both planes, every run is shown in the plane that governs the worst answer.
 pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
     let share = |answer: &Answer| match &answer.decides.summary.ensemble {
         Some(spread) => spread.share.unwrap_or(0.0),
@@ -116,23 +118,23 @@ pub enum CompareError {
         /// Maximum number of runs.
         most: usize,
     },
-    /// Two runs are equal.
+    /// Two runs have equal inputs.
     #[error("{first} and {second} ask for the same run: every input is equal")]
     Identical {
-        /// One of them.
+        /// The first of the two.
         first: String,
-        /// The other.
+        /// The second of the two.
         second: String,
     },
 }
 
-/// Maximum number of runs in a comparison; a seventh would repeat a color.
+/// Maximum number of runs in a comparison; a seventh run would repeat a color.
 pub const MOST: usize = 6;
 
 /// Checks a comparison before any work is done.
 ///
 /// # Errors
-/// When there are too few or too many runs, or two of them are equal.
+/// When there are too few or too many runs, or two of them have equal inputs.
 pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
     match scenarios.len() {
         found @ 0..=1 => return Err(CompareError::TooFew(found)),
@@ -156,43 +158,45 @@ described! {
         pub schema: &'static str ["comparison/1"] = "comparison/1",
         /// The runs, in order.
         pub runs: Vec<Compared> = sides.iter().map(Compared::of).collect(),
-        /// The first run beside each other one, variant by variant, in the plane that is shown and then in the other.
+        /// Paired comparison of the first run with every other run: the shown plane first, then the
+        /// other plane.
         pub paired: Vec<Paired> = pairs(sides),
-        /// Runs that were stopped before their end, or not begun, and so are not compared.
+        /// Names of the runs that were stopped early or never started; they are not compared.
         pub unfinished: Vec<String> = unfinished,
-        /// The inputs that differ.
+        /// The inputs that differ between the runs.
         pub differences: Vec<Difference> = differences(sides.iter().map(|side| &*side.run.stated)),
     }
 
-    /// One of them.
+    /// One run of a comparison.
     #[derive(Clone, Debug)]
     pub struct Compared of side: &Side {
-        /// Its name.
+        /// Name of the run.
         pub name: String = side.name.clone(),
-        /// Its summary.
+        /// Summary of the run.
         pub summary: Summary = side.summary.clone(),
-        /// Statistics of its variants in the other plane; null where it has one plane.
+        /// Statistics of the variants in the plane that is not shown; null if the scenario has one
+        /// plane.
         pub ensemble_of_other_plane: Option<Spread> =
             side.other.as_ref().and_then(|other| other.spread.clone()),
-        /// What becomes of the run that is shown in the other plane; null where it has one plane.
+        /// Outcome in the plane that is not shown; null if the scenario has one plane.
         pub outcome_of_other_plane: Option<&'static str>
             ["stable", "collapse", "not-judged", "interrupted", "invalid"] =
             side.other.as_ref().map(|other| other.outcome.kind()),
     }
 
-    /// One input that is not the same in all runs.
+    /// An input that is not equal in all runs.
     #[derive(Clone, Debug, PartialEq, Eq)]
     pub struct Difference {
-        /// Its path, as in an override.
+        /// Path of the input, as in an override.
         pub path: String,
-        /// Meaning of the field.
+        /// Meaning of the input.
         pub help: &'static str,
-        /// The value in each run; null where that run has no such field.
+        /// Value of the input in each run; null where a run has no such input.
         pub values: Vec<Option<String>>,
     }
 }
 
-/// Returns the inputs that differ, in the order of the file.
+/// Returns the inputs that differ between scenarios, in the order of the scenario file.
 pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec<Difference> {
     let all: Vec<_> = scenarios.into_iter().map(Scenario::settings).collect();
     let mut list: Vec<Difference> = Vec::new();
@@ -213,13 +217,13 @@ pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec
     list
 }
 
-/// Compares the first run with each other one, in every plane.
+/// Compares the first run with every other run, in every plane that both have.
 fn pairs(sides: &[Side]) -> Vec<Paired> {
     let Some((first, others)) = sides.split_first() else { return Vec::new() };
     others.iter().flat_map(|other| Paired::of(first, other)).collect()
 }
 
-/// Returns the letter of a run: A for the first.
+/// Returns the letter of a run by its position: A for the first.
 fn letter(at: usize) -> char {
     char::from(b'A' + u8::try_from(at).unwrap_or(0))
 }

@@ -1,4 +1,4 @@
-//! The files of a run, in one folder.
+//! Output files of a run, in one folder.
 
 mod dictionary;
 
@@ -25,27 +25,28 @@ use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 use barrelstack_input::system;
 
-/// Names of the files that every run writes; those of the run itself may have its plane as a prefix.
+/// Names of the files that every run writes once.
 const FILES: [&str; 5] =
     ["summary.json", "scenario.toml", "variants.csv", "report.html", "columns.csv"];
 const FILES_OF_PLANE: [&str; 5] =
     ["histories.csv", "histories.npz", "forces.csv", "envelopes.csv", "frames.csv"];
 
-/// Largest summary (bytes) that is read.
+/// Maximum size (bytes) of a summary that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Longest time between the first and the last file of a run; later changes are somebody else's.
+/// Longest time between writing the first and the last file of a run; a later modification is by
+/// someone else.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
-/// Error of writing files.
+/// Error of writing output files.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The folder is not empty.
-    #[error("{folder} is not empty (it holds {file})", folder = folder.display())]
+    #[error("{folder} is not empty (it contains {file})", folder = folder.display())]
     Occupied {
         /// The folder.
         folder: PathBuf,
-        /// A file in it.
+        /// Name of a file in the folder.
         file: String,
     },
     /// A file to be replaced was not written by a run.
@@ -56,15 +57,15 @@ pub enum ExportError {
     Foreign {
         /// The folder.
         folder: PathBuf,
-        /// The file.
+        /// Name of the file.
         file: String,
     },
     /// A system call failed.
     #[error("cannot write {path}: {reason}", path = path.display())]
     Write {
-        /// The path.
+        /// Path that cannot be written.
         path: PathBuf,
-        /// The message of the system.
+        /// Message of the operating system.
         reason: String,
     },
 }
@@ -75,7 +76,7 @@ impl ExportError {
         Self::Write { path: path.to_owned(), reason: reason.into() }
     }
 
-    /// Returns the error for a path that the system refuses.
+    /// Returns the error for a path at which a system call failed.
     pub(crate) fn refused(path: &Path, error: &std::io::Error) -> Self {
         Self::write(path, system::words(error))
     }
@@ -85,19 +86,19 @@ impl ExportError {
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// `true` if it existed before.
+    /// `true` if the folder existed before.
     existed: bool,
-    /// `true` if no existing file may be replaced.
+    /// `true` if existing files must not be replaced.
     fresh: bool,
-    /// `true` once this run has begun to write in it.
+    /// `true` once this run has begun to write into the folder.
     claimed: Arc<AtomicBool>,
 }
 
 impl Folder {
-    /// Checks a folder before the work is done; creates nothing yet.
+    /// Checks a folder before the computation starts; creates nothing yet.
     ///
     /// # Errors
-    /// When it is not empty and `overwrite` is not set, or is not a folder.
+    /// When the folder is not empty and `overwrite` is not set, or when the path is not a folder.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
         if path.as_os_str().is_empty() {
             return Err(ExportError::write(path, "the name is empty"));
@@ -111,7 +112,7 @@ impl Folder {
         if let (false, Some(file)) = (overwrite, first_in(path)) {
             return Err(ExportError::Occupied { folder: path.to_owned(), file });
         }
-        // What is known to be read already is refused before the work is done.
+        // A file that cannot be replaced is reported before the computation starts.
         for name in FILES {
             let file = path.join(name);
             system::replaceable(&file).map_err(|error| ExportError::refused(&file, &error))?;
@@ -121,15 +122,16 @@ impl Folder {
         Ok(Self { path: path.to_owned(), existed: path.exists(), fresh: !overwrite, claimed })
     }
 
-    /// Makes the folder where it is missing and returns whether it did; refuses one that another run has made or filled
-    /// since it was checked.
+    /// Creates the folder if it is missing, and returns whether it did.
+    ///
+    /// A folder that another run has created or filled since the check is refused.
     fn claim(&self) -> Result<bool, ExportError> {
         let refused = |error: std::io::Error| ExportError::refused(&self.path, &error);
         if let Some(above) = self.path.parent() {
             std::fs::create_dir_all(above).map_err(refused)?;
         }
         let first = self.fresh && !self.claimed.swap(true, Ordering::Relaxed);
-        // Of several that make it only one succeeds.
+        // If several processes create the folder, only one succeeds.
         match std::fs::create_dir(&self.path) {
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
                 let theirs = first_in(&self.path);
@@ -144,10 +146,11 @@ impl Folder {
         }
     }
 
-    /// Checks a folder like [`Folder::prepare`]; files of an earlier run are replaced, and no others.
+    /// Checks a folder like [`Folder::prepare`], but allows the files of an earlier run to be
+    /// replaced, and no others.
     ///
     /// # Errors
-    /// When a file to be replaced was not written by a run, or was changed since.
+    /// When a file that would be replaced was not written by a run, or was changed since.
     pub fn prepare_again(path: &Path) -> Result<Self, ExportError> {
         let folder = Self::prepare(path, true)?;
         let changed =
@@ -171,7 +174,7 @@ impl Folder {
         }
     }
 
-    /// Returns its path.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -181,11 +184,13 @@ impl Folder {
         self.path.join("report.html")
     }
 
-    /// Writes all [`files`]: under temporary names first and renamed together, so that none is ever incomplete and
-    /// a full disk leaves an earlier run as it was.
+    /// Writes all [`files`].
+    ///
+    /// The files get temporary names first and are renamed together, so none is ever incomplete,
+    /// and a full disk leaves the files of an earlier run as they were.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write(
         &self,
         answer: &Answer,
@@ -195,10 +200,11 @@ impl Folder {
         self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
-    /// Writes a page as `report.html`, and as `report.md` with its figures and tables in `figures/`.
+    /// Writes a page as `report.html` and as `report.md`, the latter with its figures and tables in
+    /// `figures/`.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_page(&self, document: &Document) -> Result<(), ExportError> {
         const FIGURES: &str = "figures";
         let page = barrelstack_report::html(document);
@@ -211,11 +217,11 @@ impl Folder {
         self.put(&figures.chain(texts))
     }
 
-    /// Writes files under temporary names, then renames them all.
+    /// Writes files under temporary names, then renames them together.
     ///
     /// # Errors
-    /// When the system refuses, when a file was read as an input, and when another run has written here since the
-    /// folder was checked.
+    /// When a file cannot be written, when one of the files was read as an input, or when another run has
+    /// written into the folder since the check.
     pub fn put<'a>(
         &self,
         files: &(impl Iterator<Item = (&'a str, &'a [u8])> + Clone),
@@ -231,17 +237,18 @@ impl Folder {
             });
         if new && written.is_err() {
             for part in below().chain([Path::new("")]) {
-                // What holds anything is not removed.
+                // A folder that holds any file is not removed.
                 let _ = std::fs::remove_dir(self.path.join(part));
             }
         }
         written.map_err(|(path, error)| ExportError::refused(&path, &error))
     }
 
-    /// Writes the report again, with an embedded page that holds the program and starts with this scenario.
+    /// Rewrites the report with an embedded page that contains the program and starts with this
+    /// scenario.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_with_engine(
         &self,
         answer: &Answer,
@@ -255,10 +262,10 @@ impl Folder {
         self.put(&std::iter::once(("report.html", bytes.as_slice())))
     }
 
-    /// Writes the report for printing, `report.pdf`, beside the other files.
+    /// Writes the report for printing, `report.pdf`, into the folder.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_pdf(
         &self,
         answer: &Answer,
@@ -271,13 +278,14 @@ impl Folder {
     }
 }
 
-/// The first file in a folder by its name.
+/// Returns the alphabetically first file in a folder.
 fn first_in(folder: &Path) -> Option<String> {
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten();
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by their names, with the name of their plane as a prefix where there are two.
+/// Returns the files of an answer by name; with two planes, those of one plane have its name as a
+/// prefix.
 ///
 /// # Errors
 /// When the archive of histories cannot be written.
@@ -295,7 +303,7 @@ pub fn files(
     ];
     let both = answer.other.is_some();
     for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
-        // With two planes each has its own files.
+        // With two planes, each has its own files.
         let view = run.assembly.view.filter(|_| both);
         let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
         let npz = format!("{plane}histories.npz");
@@ -314,8 +322,8 @@ pub fn files(
     Ok(files)
 }
 
-/// Returns the start data of a page that holds the program: the scenario as text, and its records by name in
-/// base64, independent of their paths.
+/// Returns the start data of a page that contains the program: the scenario as text, and its
+/// records by file name in base64, so that the page does not depend on paths.
 fn start_of(scenario: &Scenario) -> Value {
     let mut packed = scenario.clone();
     let mut records = Vec::new();
@@ -337,7 +345,7 @@ fn start_of(scenario: &Scenario) -> Value {
     json!({ "name": "scenario.toml", "text": packed.to_resolved_toml(), "records": records })
 }
 
-/// Writes all channels as arrays, named like the columns of the CSV, and "time".
+/// Writes all channels and "time" as arrays, named like the columns of the CSV file.
 fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     let recording = &run.recording;
     let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
@@ -352,12 +360,13 @@ fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     barrelstack_motion::write::archive(&arrays)
 }
 
-/// Names the columns of the forces of a contact, such as "R1 on ground".
+/// Returns the column names of the two forces of a contact such as "R1 on ground".
 fn force_names(contact: &str) -> [String; 2] {
     ["vertical", "horizontal"].map(|axis| format!("{}_{axis}_force", column_name(contact)))
 }
 
-/// Writes columns, `time (s)` first: their names, and the values of a row, which may be missing.
+/// Writes a table whose first column is `time (s)`: column names, then one row per time; missing
+/// values are left empty.
 fn csv<R: Iterator<Item = Option<f64>>>(
     times: &[f64],
     names: impl Iterator<Item = String>,
@@ -378,7 +387,7 @@ fn csv<R: Iterator<Item = Option<f64>>>(
     text
 }
 
-/// Writes one row for the nominal case and for every variant, in every plane.
+/// Writes one row for the nominal case and for each variant, in each plane.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "plane,variant,outcome,mode,first_body,first_loss (s),first_fall (s),barrels_fallen,barrels\n",

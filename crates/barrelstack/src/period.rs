@@ -1,27 +1,29 @@
-//! The period of rocking, which grows with its amplitude: of a rigid block, and as measured in a run.
+//! Amplitude-dependent rocking period: of an equivalent rigid block, and as measured in a run.
 
 use barrelstack_dynamics::Motion;
 
 use crate::assemble::{Assembly, PartKind};
 use crate::run::Run;
 
-/// Rigid block equivalent to a stack without internal motion.
+/// Rigid block equivalent to a stack whose parts do not move relative to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBlock {
-    /// Distance (m) from the edge about which it rocks to the center of mass.
+    /// Distance (m) from the edge about which the block rocks to its center of mass.
     pub radius: f64,
-    /// Angle (rad) at the edge between that line and the vertical: the tilt of no return.
+    /// Angle (rad) between that radius and the vertical; the block overturns if it tilts farther.
     pub slenderness: f64,
-    /// Frequency parameter `p` (1/s): `p² = m g R / I`, `I` about the edge.
+    /// Frequency parameter `p` (1/s): `p² = m g R / I`, with `I` about the edge.
     pub frequency: f64,
 }
 
-/// Height above the lowest point, as a share of the total, up to which a point belongs to the foot.
+/// Share of the total height, measured from the lowest point, up to which a point belongs to the
+/// foot.
 const FOOT: f64 = 1e-3;
 
 impl RigidBlock {
-    /// Returns the block of all free bodies as assembled, under gravity (m/s²); `None` if there are no such
-    /// bodies.
+    /// Returns the block equivalent to all free bodies as assembled, under gravity (m/s²).
+    ///
+    /// `None` if there are no free bodies, or if their foot has no width.
     pub fn of(assembly: &Assembly, gravity: f64) -> Option<Self> {
         let bodies =
             || assembly.model.bodies().iter().enumerate().filter(|(_, b)| b.motion == Motion::Free);
@@ -41,7 +43,7 @@ impl RigidBlock {
             bodies().map(|(_, body)| body.mass * axis(body.pose.position)).sum::<f64>() / mass
         };
         let (x, z) = (center(|p| p.x), center(|p| p.z) - low);
-        // It rocks about the nearer edge first.
+        // The block rocks about the nearer edge first.
         let edge = if x - left < right - x { left } else { right };
         let (half, radius) = ((x - edge).abs(), libm::hypot(x - edge, z));
         let inertia: f64 = bodies()
@@ -55,13 +57,14 @@ impl RigidBlock {
         (half > 0.0 && frequency.is_finite()).then_some(block)
     }
 
-    /// Returns the period (s) of free rocking between tilts of `±tilt` (rad) without energy loss:
+    /// Returns the period (s) of free rocking between tilts of `±tilt` (rad), without energy loss:
     ///
     /// ```text
     /// T = (4/p) arcosh( 1 / (1 − θ₀/α) )
     /// ```
     ///
-    /// for slender blocks (Housner 1963, eq. 4); 0 at rest, infinite at the tilt of no return.
+    /// The formula holds for slender blocks (Housner 1963, eq. 4). The period is 0 at rest and
+    /// infinite at the overturning tilt.
     pub fn period(&self, tilt: f64) -> f64 {
         let share = (tilt.abs() / self.slenderness).min(1.0);
         4.0 / self.frequency * libm::acosh(1.0 / (1.0 - share))
@@ -73,19 +76,19 @@ impl RigidBlock {
 pub struct Swing {
     /// Start (s).
     pub start: f64,
-    /// Period (s) of a motion of such swings: twice its duration.
+    /// Period (s) of a motion made of such swings: twice the duration of this one.
     pub period: f64,
-    /// Its largest absolute value, in the unit of the history.
+    /// Largest absolute value during the swing, in the unit of the history.
     pub amplitude: f64,
 }
 
-/// Smallest amplitude of a swing, as a share of the largest.
+/// Smallest amplitude of a reported swing, as a share of the largest amplitude.
 const SMALLEST: f64 = 0.1;
 
-/// Returns the swings of a history, each from one zero crossing to the next; crossings are interpolated
-/// linearly between samples.
+/// Returns the swings of a history, each from one zero crossing to the next.
 ///
-/// Swings below a tenth of the largest are left out: there small impacts cause random zero crossings.
+/// Zero crossings are interpolated linearly between samples. Swings below a tenth of the largest
+/// are left out, because small impacts cause random zero crossings there.
 pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
     let count = times.len().min(values.len());
     let mut crossings: Vec<(usize, f64)> = Vec::new();
@@ -109,19 +112,21 @@ pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
     swings
 }
 
-/// Drift of the top of a stack against its foot while it stood.
+/// Drift of the top of a stack relative to its foot, while the stack stood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
-    /// Height (m) of the tracked point: the center of the top left barrel, at rest.
+    /// Height (m) of the tracked point at rest: the center of the top left barrel.
     pub height: f64,
     /// Largest absolute drift (m).
     pub largest: f64,
-    /// Its swings, amplitudes in m.
+    /// Swings of the drift, with amplitudes in m.
     pub swings: Vec<Swing>,
 }
 
-/// Returns the drift of a stack: the displacement of its top left barrel less that of its bottom rack; `None`
-/// for a free scene.
+/// Returns the drift of a stack: the displacement of its top left barrel minus that of its bottom
+/// rack.
+///
+/// `None` for a free scene.
 pub fn drift(run: &Run) -> Option<Drift> {
     let (recording, assembly) = (&run.recording, &run.assembly);
     let of = |kind: PartKind, level: u32| {

@@ -1,4 +1,4 @@
-//! The report of a run: its sections, their order and their wording.
+//! Report of a run: sections, their order and their wording.
 
 mod depth;
 mod drawing;
@@ -34,7 +34,7 @@ pub use unknowns::unknowns;
 pub use words::{device as device_sentence, fine, stopped};
 pub(crate) use words::{headline, provenance};
 
-/// Summarizes the result in three plain sentences: the verdict, its cause, and its reliability.
+/// Summarizes the result in a few plain sentences: the verdict, its cause, and its reliability.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences = vec![headline(run, summary)];
     sentences.extend(summary.remedy.as_ref().map(Remedy::sentence));
@@ -42,20 +42,22 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Builds the whole report as a document, free of any output format.
+/// Builds the whole report as a document that is independent of any output format.
 pub fn document(run: &Run, summary: &Summary) -> Document {
     page(run, summary, (None, None), None)
 }
 
-/// Builds the report of an answer: of the governing plane, with the stage of the other one beside its own, and
-/// with the repeats of the shown run.
+/// Builds the report of an answer.
+///
+/// The report describes the governing plane, shows the stage of the other plane beside it, and
+/// includes the repeats of the shown run.
 pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> Document {
     let Answer { decides, other, .. } = answer;
     let variants = (decides.variants.as_ref(), other.as_ref());
     page(&decides.run, &decides.summary, variants, verification)
 }
 
-/// Returns the stage of an answer alone: the moving run, in each of its planes.
+/// Returns the stage of an answer: the moving picture of the run, in each of its planes.
 pub fn stage(answer: &Answer) -> Block {
     let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());
@@ -65,7 +67,7 @@ pub fn stage(answer: &Answer) -> Block {
 /// Returns the stage before any motion: the stack as assembled, in each of its planes.
 ///
 /// # Errors
-/// When it cannot be assembled.
+/// When the stack cannot be assembled.
 pub fn still(planes: &[Plane]) -> Result<Block, AssembleError> {
     let assemblies: Result<Vec<Assembly>, _> =
         planes.iter().map(|plane| assemble(&plane.scenario)).collect();
@@ -99,7 +101,7 @@ fn page(
     }
 }
 
-/// Returns the kind of verdict.
+/// Returns the tone of the verdict.
 pub(crate) fn tone(run: &Run, summary: &Summary) -> Tone {
     let spreads = summary.spreads();
     if !spreads.is_empty() {

@@ -1,6 +1,7 @@
-//! Static stability of a stack: settlement, natural period, and the tilt of the floor that fells it.
+//! Static stability of a stack: settlement, natural period, and the tilt of the floor at which the
+//! stack fails.
 //!
-//! All of it follows from equilibria, so no time is stepped through.
+//! All results follow from static equilibria, without integration over time.
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::settle::settle;
@@ -12,14 +13,15 @@ use barrelstack_stack::stand::{Standing, UNBALANCED, stand};
 
 use crate::run::RunFailure;
 
-/// Tilt (rad) of the floor under which a stack moves as it does when it sways: so small that nothing slips.
+/// Tilt (rad) of the floor for the period of sway; so small that nothing slips.
 const NUDGE: f64 = 1e-4;
 
-/// Steps (rad) in which the floor is tilted, and how closely the tilt at failure is found: 2° and 1/16°.
+/// Step (rad) by which the floor is tilted at first, 2°, and the resolution of the tilt at failure,
+/// 1/16°.
 const FIRST_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const FINEST_STEP: f64 = FIRST_STEP / 32.0;
 
-/// Tilt (rad) at which the search ends: 45°.
+/// Largest tilt (rad) that is tried: 45°.
 const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 
 described! {
@@ -28,48 +30,49 @@ described! {
     pub struct StabilityTable {
         /// Name and version of this layout.
         pub schema: &'static str ["stability/1"],
-        /// The scenario's title.
+        /// Title of the scenario.
         pub title: String,
-        /// The rows: first those of the scenario's own rack, then those of the other racks of the catalog.
+        /// The rows: first those of the rack of the scenario, then those of the other racks of the
+        /// catalog.
         pub rows: Vec<StabilityRow>,
     }
 
-    /// Static stability of one stack.
+    /// Static stability of one stack, or the reason why it does not stand.
     #[derive(Clone, Debug)]
     pub struct StabilityRow {
-        /// Its rack.
+        /// Name of the rack.
         pub rack: String,
         /// The plane of the model.
         pub view: &'static str ["transverse", "longitudinal"],
-        /// Its levels.
+        /// Number of levels.
         pub levels: u32,
-        /// Its stability at rest; null where it does not stand on a level floor.
+        /// Stability at rest; null if the stack does not stand on a level floor.
         pub stands: Option<Stability>,
-        /// Why it does not stand on a level floor, or cannot be built; null where it stands.
+        /// Why the stack does not stand on a level floor, or cannot be built; null if it stands.
         pub refused: Option<String>,
     }
 
-    /// Static stability of a stack.
+    /// Static stability of a stack that stands on a level floor.
     #[derive(Clone, Debug)]
     pub struct Stability {
-        /// Deepest sinking of a body into its contacts as the stack comes to rest, which is that of the top.
+        /// Largest downward displacement of a body as the stack settles into its contacts.
         pub sinking: f64 as "m",
-        /// Longest period of sway while nothing slips, by Rayleigh's quotient; null where the stack does not bear a push of
-        /// a ten thousandth of its weight.
+        /// Longest period of sway while nothing slips, by Rayleigh's quotient; null if the stack
+        /// does not withstand a sideways push of 1/10000 of its weight.
         pub period: Option<f64> as "s",
-        /// Tilt of the floor at which the stack stands no more; null where it stands at 45°.
+        /// Tilt of the floor at which the stack fails; null if it still stands at 45°.
         pub tilt: Option<f64> as "rad",
-        /// The body that goes first at that tilt.
+        /// Name of the body that fails first at that tilt.
         pub body: Option<String>,
-        /// Failure mode: slides, tips, or is displaced.
+        /// Failure mode of that body.
         pub failure: Option<&'static str> ["slides", "tips", "is displaced"],
     }
 }
 
-/// Finds how firmly the stack of a scenario stands, in the plane that it states.
+/// Computes the static stability of the stack of a scenario, in the plane that the scenario states.
 ///
 /// # Errors
-/// As [`Scenario::run`]; also where the stack does not stand on a level floor.
+/// As [`Scenario::run`]; also if the stack does not stand on a level floor.
 pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
     let standing = stand(scenario, 1.0)?;
     let (tilt, first) = tilt_at_failure(&standing).unzip();
@@ -83,8 +86,8 @@ pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
     })
 }
 
-/// Returns the longest period (s) of sway of the stack of a scenario while nothing slips; `None` where the stack does not
-/// bear a push of a ten thousandth of its weight.
+/// Returns the longest period (s) of sway of the stack of a scenario while nothing slips; `None` if
+/// the stack does not withstand a sideways push of 1/10000 of its weight.
 ///
 /// # Errors
 /// As [`stability`].
@@ -93,7 +96,7 @@ pub fn sway_period(scenario: &Scenario) -> Result<Option<f64>, RunFailure> {
 }
 
 impl StabilityRow {
-    /// The row of a scenario in one plane; none for a free scene.
+    /// Returns the row of a scenario in one plane; `None` for a free scene.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         let stack = scenario.stack()?;
         let (stands, refused) = match stability(scenario) {
@@ -106,11 +109,11 @@ impl StabilityRow {
 }
 
 impl StabilityTable {
-    /// The rows, as a line of text each.
+    /// Returns the table as lines of text.
     pub fn lines(&self) -> Vec<String> {
         let wide = self.rows.iter().map(|row| row.rack.len()).max().unwrap_or(0).max(4);
         let mut lines = vec![
-            format!("Racks and levels in place of those of: {}", self.title),
+            format!("Static stability with other racks and levels: {}", self.title),
             format!("{:wide$}  plane   levels  sinks (mm)  period (s)  falls at tilt", "rack"),
         ];
         lines.extend(self.rows.iter().map(|row| {
@@ -135,8 +138,11 @@ impl StabilityTable {
     }
 }
 
-/// Returns the longest period (s) of sway, by Rayleigh's quotient of the shape that a sideways push gives the stack: the
-/// work of the push against the kinetic energy of that shape. `None` where the pushed stack does not come to rest.
+/// Returns the longest period (s) of sway by Rayleigh's quotient; `None` if the pushed stack does
+/// not come to rest.
+///
+/// The shape of the motion is the displacement due to a sideways push; the quotient is the work of
+/// the push over the kinetic energy of that shape.
 fn period_of(standing: &Standing) -> Option<f64> {
     let model = &standing.assembly.model;
     let pull = -model.gravity().z * math::sin_cos(NUDGE).0;
@@ -159,17 +165,19 @@ fn period_of(standing: &Standing) -> Option<f64> {
     Some(std::f64::consts::TAU * (swung / work).sqrt())
 }
 
-/// The least tilt (rad) of the floor to either side at which the stack stands no more, and the body that goes first
-/// with how it goes; none where it stands at 45° to both sides.
+/// Returns the smallest tilt (rad) of the floor to either side at which the stack fails, with the
+/// body that fails first and its failure mode; `None` if the stack stands at 45° to both sides.
 fn tilt_at_failure(standing: &Standing) -> Option<(f64, (String, &'static str))> {
     let left = tilt_at_failure_to(standing, -1.0, STEEPEST);
-    // To the other side it is enough to see whether the stack stands as far.
+    // The other side needs to be tried only up to the tilt found for the first side.
     let steepest = left.as_ref().map_or(STEEPEST, |(tilt, _)| *tilt);
     tilt_at_failure_to(standing, 1.0, steepest).or(left)
 }
 
-/// The same to one side, none where it stands at `steepest` (rad): the floor is tilted step by step, and the stack comes
-/// to rest after each.
+/// Returns the tilt at failure to one side, like [`tilt_at_failure`]; `None` if the stack stands at
+/// `steepest` (rad).
+///
+/// The floor is tilted step by step, and the stack settles after each step.
 fn tilt_at_failure_to(
     standing: &Standing,
     side: f64,
@@ -192,7 +200,7 @@ fn tilt_at_failure_to(
                 failure = Some((error.body, word(&error.lack)));
             }
         }
-        // Once a steeper tilt is known to fail, half the distance to it is tried.
+        // Once a steeper tilt has failed, the step is halved.
         if failure.is_some() {
             if step <= FINEST_STEP {
                 break;
@@ -203,7 +211,7 @@ fn tilt_at_failure_to(
     failure.map(|failure| (tilt, failure))
 }
 
-/// Returns the failure mode that a lack causes, in words.
+/// Returns the failure mode that a cause of failure stands for.
 fn word(lack: &Lack) -> &'static str {
     match lack {
         Lack::Friction { .. } | Lack::Stick { .. } => "slides",
@@ -212,7 +220,8 @@ fn word(lack: &Lack) -> &'static str {
     }
 }
 
-/// Returns a model on a floor that is tilted by an angle (rad), in the frame of the floor: gravity acts to one side, too.
+/// Returns a model on a floor that is tilted by an angle (rad), in the frame of the floor, where
+/// gravity has a horizontal component.
 fn tilted(model: &Model<Planar>, angle: f64) -> Model<Planar> {
     let (sin, cos) = math::sin_cos(angle);
     let down = -model.gravity().z;

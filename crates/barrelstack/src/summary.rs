@@ -1,4 +1,4 @@
-//! The summary of a run: one JSON document, the same numbers in print.
+//! Summary of a run: one JSON document whose numbers the report prints.
 
 mod devices;
 
@@ -18,60 +18,62 @@ use crate::watch::{Fate, Joint, PeakForces, StressEnvelope};
 pub use devices::{Device, Devices, ElementSummary};
 
 described! {
-    /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
-    /// happen or does not apply.
+    /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null for what
+    /// did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct Summary of run: &Run, wall_seconds: Option<f64> {
         /// Name and version of this layout.
         pub schema: &'static str ["summary/2"] = "summary/2",
-        /// The scenario's title.
+        /// Title of the scenario.
         pub title: String = run.stated.title.clone(),
         /// The plane of the model; null for a free scene.
         pub view: Option<&'static str> ["transverse", "longitudinal"] = run.assembly.view.map(View::name),
-        /// Which variant of the stack this is; 0 as it is stated.
+        /// Number of the variant of the stack; 0 is the stack as stated.
         pub variant: u32 = 0,
-        /// Statistics of all variants; null where none were run.
+        /// Statistics of all variants; null if none were run.
         pub ensemble: Option<Spread> = None,
-        /// Number of its runs that were done; null unless they were stopped before all were.
+        /// Progress of the runs; null unless they were stopped early.
         pub unfinished: Option<Unfinished> = None,
-        /// Changes that would have kept the stack up; null where it stands, or none was searched.
+        /// Changes that would have kept the stack up; null if the stack stands, or if none were
+        /// searched.
         pub remedy: Option<Remedy> = None,
         /// Outcome of the run.
         pub outcome: OutcomeSummary = outcome(run),
-        /// Every body but the ground; none where the run is invalid.
+        /// Every body except the ground; empty if the run is invalid.
         pub bodies: Vec<BodySummary> = bodies(run),
         /// Demands on the stack until the first loss of seat.
         pub demands: Demands = demands(run, Span::UntilLoss),
         /// Demands on the stack over the whole run, falls included.
         pub demands_whole_run: Demands = demands(run, Span::WholeRun),
-        /// Forces between all bodies that have pressed on each other; none where the run is invalid.
+        /// Forces between all bodies that pressed on each other; empty if the run is invalid.
         pub interfaces: Vec<JointSummary> = joints(run),
-        /// The force elements of every device, where there are any.
+        /// The force elements of every device.
         #[serde(flatten)]
         pub devices: Devices = Devices::of(run),
-        /// The energy balance; null where numbers were lost.
+        /// The energy balance; null if the computation failed.
         pub energy: Option<EnergyBalance> = run.energy.as_ref().map(EnergyBalance::of),
-        /// Ground motion of the run.
+        /// Ground motion of the run; null without one.
         pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
-        /// Settings and work of the computation.
+        /// Settings of the computation, and its amount of work.
         pub run: RunSummary = RunSummary::of(run, wall_seconds),
-        /// Warnings.
+        /// Warnings about inputs and results.
         pub warnings: Vec<String> = run.warnings.clone(),
         /// Provenance of the result.
         pub provenance: Provenance = Provenance::of(run),
-        /// Comparison with its repeats; null where there were none.
+        /// Comparison of the run with its repeats; null if there were none.
         pub verification: Option<Verification> = None,
-        /// The same of the other plane, where the scenario looks at its stack in both: this one is the worse.
+        /// Summary of the other plane, if the scenario has both planes; the outer summary is that
+        /// of the governing plane.
         pub other_plane: Option<Box<Summary>> = None,
     }
 
-    /// Runs of the stack as it is stated and of its variants, in all planes, which were stopped before all were done:
-    /// those that collapse end first, so what is done is no sample of all.
+    /// Progress of runs that were stopped early, counted over the nominal case and all variants in
+    /// all planes. Runs that collapse end first, so the finished runs are not a fair sample.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct Unfinished {
-        /// Runs that are done.
+        /// Number of finished runs.
         pub done: usize,
-        /// Runs in all.
+        /// Number of all runs.
         pub of: usize,
     }
 
@@ -82,28 +84,29 @@ described! {
         pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
         /// Mode of the collapse.
         pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
-        /// When the first body left its seat.
+        /// Time at which the first body left its seat.
         pub time: Option<f64> as "s",
         /// Name of the first body that left its seat.
         pub first: Option<String>,
-        /// The lowest level that gave way.
+        /// The lowest level that lost its seat.
         pub from_level: Option<u32>,
-        /// The highest level that went.
+        /// The highest level involved in the collapse.
         pub to_level: Option<u32>,
-        /// When the first barrel had fallen.
+        /// Time at which the first barrel had fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end; null where the run is invalid or was stopped before.
+        /// Number of barrels that had fallen at the end; null if the run is invalid or was stopped
+        /// early.
         pub barrels_fallen: Option<usize>,
-        /// Barrels in all.
+        /// Number of all barrels.
         pub barrels: usize,
-        /// Why the run is invalid.
+        /// Reason why the run is invalid.
         pub reason: Option<String>,
     }
 
-    /// One body.
+    /// Result of one body.
     #[derive(Clone, Debug)]
     pub struct BodySummary of part: &Part, fate: Fate, stress: Option<&StressEnvelope> {
-        /// Its name.
+        /// Name of the body.
         pub name: String = part.name.clone(),
         /// Kind of the body.
         pub kind: &'static str ["barrel", "rack", "body"] = part.kind.name(),
@@ -111,67 +114,72 @@ described! {
         pub level: Option<u32> = part.level,
         /// Column, 1 at the left.
         pub column: Option<u32> = part.column,
-        /// When it left its seat.
+        /// Time at which the body left its seat.
         pub left_seat_at: Option<f64> as "s" = fate.left_seat.map(|(time, _)| time),
-        /// When it had fallen.
+        /// Time at which the body had fallen.
         pub fell_at: Option<f64> as "s" = fate.fell_at,
-        /// Largest drop below its place at rest, for what fell.
+        /// Largest drop of a fallen body below its position at rest.
         pub fall_height: Option<f64> as "m" = fate.fell_at.map(|_| fate.drop),
-        /// When it landed: when it went down less than half as fast as it had since it fell.
+        /// Time at which a fallen body landed: when its downward speed fell below half of its
+        /// maximum since the fall.
         pub landed_at: Option<f64> as "s" = fate.landed_at,
-        /// Its largest speed downward until then.
+        /// Largest downward speed before the landing.
         pub landing_speed: Option<f64> as "m/s" = fate.landing_speed,
-        /// Largest force on it since it had fallen.
+        /// Largest force on the body since it had fallen.
         pub fall_force: Option<f64> as "N" = fate.fall_force,
         /// Displacement along x relative to the ground, at the end.
         pub residual_displacement: f64 as "m" = fate.residual_displacement,
         /// Largest displacement along x relative to the ground, while the stack stood.
         pub peak_displacement: f64 as "m" = fate.peak_displacement,
-        /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's slip in its
-        /// cradle.
+        /// Displacement relative to the support of the body, at the end: the walk of a rack, or the
+        /// slip of a barrel in its cradle.
         pub residual_slip: f64 as "m" = fate.residual_slip,
-        /// Largest such displacement while the stack stood.
+        /// Largest displacement relative to the support, while the stack stood.
         pub peak_slip: f64 as "m" = fate.peak_slip,
-        /// Largest rise above its place at rest while the stack stood.
+        /// Largest rise above the position at rest, while the stack stood.
         pub peak_uplift: f64 as "m" = fate.peak_uplift,
         /// Largest tilt while the stack stood; racks only.
         pub peak_tilt: Option<f64> as "rad" = (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
         /// Largest normal stress at rest, per meter of boundary.
         pub stress_at_rest: Option<f64> as "N/m" = stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
-        /// Largest normal stress until the first loss of seat, over the largest at rest, wherever each of them is.
+        /// Largest normal stress until the first loss of seat, over the largest at rest; the two
+        /// may occur at different points.
         pub stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification),
-        /// The largest normal stresses until the first loss of seat, averaged over the boundary that is loaded at
-        /// rest, over the average at rest.
+        /// Largest normal stresses until the first loss of seat over those at rest, each averaged
+        /// over the boundary that is loaded at rest.
         pub mean_stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::mean_amplification),
-        /// Largest sum of all normal contact forces on the body until the first loss of seat, over that at rest.
+        /// Largest sum of all normal contact forces on the body until the first loss of seat, over
+        /// that sum at rest.
         pub total_force_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::total_amplification),
-        /// As `stress_amplification`, over the whole run.
+        /// Stress amplification over the whole run.
         pub stress_amplification_whole_run: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification_whole_run),
     }
 
-    /// The force between two bodies: on the upper one, or on the one that is named first where neither leans on the
-    /// other by design. Largest forces are those of any step that are largest in size, in a plane with their sign.
+    /// The force between two bodies: on the upper one, or on the one named first if neither rests
+    /// on the other. Largest forces are those with the largest magnitude in any step; in a plane
+    /// they have a sign.
     #[derive(Clone, Debug)]
     pub struct JointSummary {
-        /// Such as "R1 on ground"; "R1.1 against R1.2" where the two have met while shaken.
+        /// Names of the bodies, such as "R1 on ground", or "R1.1 against R1.2" for bodies that met
+        /// during the motion.
         pub name: String,
         /// Vertical force at rest.
         pub at_rest: f64 as "N",
-        /// Largest vertical force until the first loss of seat; zero where the two met only later.
+        /// Largest vertical force until the first loss of seat; zero if the two met only later.
         pub peak_vertical: f64 as "N",
-        /// When.
+        /// Time of this vertical force.
         pub peak_vertical_at: f64 as "s",
         /// Largest horizontal force until the first loss of seat.
         pub peak_horizontal: f64 as "N",
-        /// When.
+        /// Time of this horizontal force.
         pub peak_horizontal_at: f64 as "s",
         /// Largest vertical force over the whole run, falls included.
         pub peak_vertical_whole_run: f64 as "N",
-        /// When.
+        /// Time of this vertical force.
         pub peak_vertical_whole_run_at: f64 as "s",
         /// Largest horizontal force over the whole run.
         pub peak_horizontal_whole_run: f64 as "N",
-        /// When.
+        /// Time of this horizontal force.
         pub peak_horizontal_whole_run_at: f64 as "s",
     }
 
@@ -182,82 +190,84 @@ described! {
         pub kinetic: f64 as "J" = balance.kinetic,
         /// Potential energy in gravity.
         pub potential: f64 as "J" = balance.potential,
-        /// In contact springs and force elements.
+        /// Energy stored in contact springs and force elements.
         pub elastic: f64 as "J" = balance.elastic,
-        /// In sticks.
+        /// Energy stored in the tangential springs of sticking contacts.
         pub stick: f64 as "J" = balance.stick,
-        /// Lost in the dampers of contacts and elements, and with elements that broke.
+        /// Energy dissipated by the dampers of contacts and elements, and lost with broken
+        /// elements.
         pub damped: f64 as "J" = balance.damped,
-        /// Lost to friction.
+        /// Energy dissipated by friction.
         pub friction: f64 as "J" = balance.friction,
-        /// Lost to viscous damping.
+        /// Energy dissipated by viscous damping.
         pub viscous: f64 as "J" = balance.viscous,
-        /// Work of the ground.
+        /// Work done by the ground.
         pub ground_work: f64 as "J" = balance.ground_work,
-        /// Residual of the balance.
+        /// Residual of the balance, the error of the computation.
         pub residual: f64 as "J" = balance.residual,
-        /// Energy that went through: absolute work of the ground plus the drop of potential energy.
+        /// Energy supplied: absolute work of the ground plus the drop of potential energy.
         pub input: f64 as "J" = balance.throughput,
-        /// |residual| / input.
+        /// Absolute residual over the energy supplied.
         pub residual_ratio: f64 as "1" = balance.residual_ratio(),
     }
 
-    /// Settings and work of the computation.
+    /// Settings of the computation, and its amount of work.
     #[derive(Clone, Debug)]
     pub struct RunSummary of run: &Run, wall_seconds: Option<f64> {
         /// Integration method.
         pub method: &'static str = run.simulation.method.name(),
         /// Time step.
         pub time_step: f64 as "s" = run.simulation.time_step,
-        /// Accepted steps.
+        /// Number of accepted steps.
         pub steps: u64 = run.work.steps,
-        /// Evaluations of all forces.
+        /// Number of evaluations of all forces.
         pub evaluations: u64 = run.work.evaluations,
-        /// Contact elements tested.
+        /// Number of contact elements tested.
         pub contact_evaluations: u64 = run.work.contact_evaluations,
         /// Simulated time reached.
         pub end_time: f64 as "s" = run.end_time,
-        /// Why it ended.
+        /// Reason why the run ended.
         pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"] = run.ending.name(),
-        /// True if the user stopped it early.
+        /// True if the user stopped the run early.
         pub interrupted: bool = run.interrupted,
         /// Basis of the contact constants.
         pub stiffness_basis: &'static str ["seat", "node", "length", "mixed"] = run.stiffness_basis(),
         /// Length scale of similitude.
         pub similitude: f64 as "1" = run.scenario.run.similitude,
-        /// Steps taken to find equilibrium.
+        /// Number of steps taken to find equilibrium.
         pub settle_steps: Option<u64> = run.settled.map(|settled| settled.steps),
-        /// Time on the clock.
+        /// Elapsed real time.
         pub wall_seconds: Option<f64> as "s" = wall_seconds,
     }
 
     /// Provenance of the result.
     #[derive(Clone, Debug)]
     pub struct Provenance of run: &Run {
-        /// The program.
+        /// Name of the program.
         pub program: &'static str = "barrelstack",
-        /// Its version.
+        /// Version of the program.
         pub version: &'static str = env!("CARGO_PKG_VERSION"),
-        /// Hash of the scenario with every default written out.
+        /// Hash of the scenario, including all defaults.
         pub scenario_hash: String = format!("{:016x}", run.stated.fingerprint()),
-        /// Where the motion came from and what was done to it, one sentence each.
+        /// Source of the motion and the processing steps applied to it, one sentence each.
         pub motion: Vec<String> = run.ground.motion.iter().flat_map(|motion| motion.provenance.clone()).collect(),
     }
 }
 
 impl Unfinished {
-    /// Returns a caveat for the reader of a result.
+    /// Returns a caveat about incomplete results.
     pub fn warning(&self) -> String {
         let Self { done, of } = self;
         format!(
-            "{done} of {of} runs were done when it was stopped, those that collapse sooner than others: nothing \
-             is said of the share that collapses"
+            "stopped when {done} of {of} runs were finished: runs that collapse finish sooner, so the share that \
+             collapses is not known"
         )
     }
 }
 
 impl Summary {
-    /// Returns the statistics of variants in each plane in which they were run, across the barrels first.
+    /// Returns the statistics of the variants in each plane in which they were run, the plane
+    /// across the barrels first.
     pub fn spreads(&self) -> Vec<(View, &Spread)> {
         let own = std::iter::once(self).chain(self.other_plane.as_deref());
         let known = |one: &Self| View::ALL.into_iter().find(|view| Some(view.name()) == one.view);
@@ -267,7 +277,7 @@ impl Summary {
         all
     }
 
-    /// Returns the summary as JSON text, indented.
+    /// Returns the summary as indented JSON text.
     ///
     /// ```
     /// use barrelstack::{Scenario, Summary};
@@ -277,18 +287,18 @@ impl Summary {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn to_json(&self) -> String {
-        // Only maps with non-text keys could fail, and there are none.
+        // Only maps with keys other than text could fail, and there are none.
         described::to_json(self).unwrap_or_default()
     }
 }
 
-/// `true` if the numbers of a run are valid; those of a failed computation merely look like results.
+/// `true` if the numbers of a run are valid; those of a failed computation only look like results.
 fn sound(run: &Run) -> bool {
     !matches!(run.outcome, Outcome::Invalid { .. })
 }
 
 fn outcome(run: &Run) -> OutcomeSummary {
-    // Events before an interruption are reported with the bodies.
+    // For an interrupted run, falls are reported per body but not in the outcome.
     let ended = sound(run) && run.outcome != Outcome::Interrupted;
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
     let summary = OutcomeSummary {
@@ -330,7 +340,8 @@ fn demands(run: &Run, span: Span) -> Demands {
 }
 
 impl JointSummary {
-    /// Returns the summary of a joint under its name; `None` if its bodies never touched.
+    /// Returns the summary of the forces between two bodies under a name; `None` if the bodies
+    /// never touched.
     pub fn of(name: String, joint: &Joint) -> Option<Self> {
         let PeakForces { vertical, horizontal } = joint.until_loss;
         let whole = joint.whole_run;

@@ -1,7 +1,7 @@
-//! Reliability of a run: repeats with a finer step, finer nodes and tiny perturbations.
+//! Reliability of a run, from repeats with a finer step, finer nodes and tiny perturbations.
 //!
-//! Contact is chaotic: after enough impacts two runs that differ in the last digit diverge.
-//! Results before that are predictions; later ones are one possible course.
+//! Contact is chaotic: after enough impacts, two runs that differ only in the last digit diverge.
+//! Results before the divergence are predictions; later results are one possible course.
 //! A verdict that all repeats share is robust nevertheless.
 
 mod robust;
@@ -21,10 +21,11 @@ use crate::variants::run_together;
 
 pub use robust::Robust;
 
-/// Distance (m at full scale) between two runs from which a body counts as diverged.
+/// Distance (m at full scale) between the positions of a body in two runs above which they count as
+/// diverged.
 pub const APART: f64 = 0.01;
 
-/// Largest displacement (m at full scale) of a body at the start of a perturbed repeat.
+/// Largest initial displacement (m at full scale) of a body in a perturbed repeat.
 pub const DISTURBANCE: f64 = 1e-9;
 
 /// Number of perturbed repeats.
@@ -34,51 +35,54 @@ described! {
     /// Comparison of a run with its repeats. Times in s, lengths in m, at the scale of the run.
     #[derive(Clone, Debug)]
     pub struct Verification {
-        /// Distance between two runs at which the paths of a body count as different.
+        /// Distance between the positions of a body in two runs above which they count as
+        /// different.
         pub apart: f64 as "m",
-        /// Until when no body of any repeat is that far from where the run has it; none where that holds
-        /// for all that both ran.
+        /// Time until which every body in every repeat stays within the distance `apart` of its
+        /// position in the run; null if it does so to the end.
         pub predictable_until: Option<f64> as "s",
-        /// Properties of the run that all repeats share; there is at least one repeat.
+        /// Properties of the run that all repeats share.
         pub robust: Robust,
         /// The repeats.
         pub repeats: Vec<Repeat>,
-        /// Repeats that were skipped.
+        /// Repeats that were not made, or were stopped.
         pub skipped: Vec<Skipped>,
     }
 
-    /// One repeat.
+    /// One repeat of the run.
     #[derive(Clone, Debug)]
     pub struct Repeat of base: &Run, other: &Run, change: &str {
-        /// Change against the run.
+        /// What the repeat changes in the run.
         pub change: String = change.to_owned(),
         /// Outcome of the repeat.
         pub outcome: OutcomeSummary = Summary::of(other, None).outcome,
-        /// True if kind, mode and first body are those of the run.
+        /// True if kind, mode and first body are the same as in the run.
         pub same_outcome: bool = same_outcome(base, other),
-        /// When some body is first too far from where the run has it; none where that does not happen.
+        /// Time at which a body is first farther than the distance `apart` from its position in the
+        /// run; null if none ever is.
         pub apart_at: Option<f64> as "s" = apart_at(base, other),
-        /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
+        /// Largest difference between the fall times of a barrel in the repeat and in the run,
+        /// before any repeat diverges; null if no barrel falls by then.
         pub fall_difference: Option<f64> as "s" = None,
-        /// When each barrel had fallen.
+        /// Time at which each barrel had fallen.
         #[serde(skip)]
         falls: Vec<Option<f64>> = falls(other),
     }
 
-    /// A repeat that was not done.
+    /// A repeat that was not made.
     #[derive(Clone, Debug)]
     pub struct Skipped {
-        /// Change that the repeat would have made.
+        /// What the repeat would have changed.
         pub change: &'static str,
-        /// Why it says nothing here.
+        /// Why the repeat was not made.
         pub reason: String,
     }
 }
 
-/// Repeats a run: with half the step, with nodes at half the spacing, and four times with every barrel
-/// displaced by up to a nanometer.
+/// Repeats a run: with half the step, with nodes at half the spacing, and four times with every
+/// barrel displaced by up to a nanometer.
 ///
-/// `progress` receives the progress of all repeats, in aggregate, and may cancel; canceled ones are
+/// `progress` receives the combined progress of all repeats and may cancel; canceled repeats are
 /// listed as skipped.
 ///
 /// # Errors
@@ -102,7 +106,7 @@ pub fn verify(
         add(change, disturbed(&base.scenario, seed));
     }
     let mut repeats = Vec::new();
-    // `None` for a canceled repeat.
+    // A canceled repeat becomes `None`.
     let repeat =
         |at: usize, run: Run| (!run.interrupted).then(|| Repeat::of(base, &run, &changes[at]));
     let done = run_together(&scenarios, base.simulation.end_time, progress, &repeat)?;
@@ -118,7 +122,8 @@ pub fn verify(
     Ok(judge(base, repeats, skipped))
 }
 
-/// Returns the run with half its step; with an adaptive method, with a tenth of its tolerance.
+/// Returns the scenario with half the step, or with a tenth of the tolerance for an adaptive
+/// method, and the name of the change.
 fn finer_step(base: &Run) -> (String, Scenario) {
     let mut scenario = base.scenario.clone();
     if let Method::BogackiShampine { tolerance } = &mut scenario.run.method {
@@ -129,7 +134,8 @@ fn finer_step(base: &Run) -> (String, Scenario) {
     ("half the step".into(), scenario)
 }
 
-/// Returns the scenario with nodes at half the spacing, or the reason why that would be another stack.
+/// Returns the scenario with nodes at half the spacing, or the reason why this would be a different
+/// stack.
 fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
     let mut finer = scenario.clone();
@@ -145,8 +151,8 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
             if stack.view == View::Transverse && !per_seat {
                 return Err(
-                    "across the barrels single nodes (cradle supports, corners of beams, rolling \
-                            barrels) stand for one spacing, so halving it would soften them"
+                    "across the barrels, single nodes (cradle supports, corners of beams, rolling \
+                            barrels) represent one spacing, so halving the spacing would soften them"
                         .into(),
                 );
             }
@@ -177,7 +183,8 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     Ok(finer)
 }
 
-/// Returns the scenario with every barrel (every body of a free scene) displaced by up to a nanometer.
+/// Returns the scenario with every barrel, or every body of a free scene, displaced by up to a
+/// nanometer.
 fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     let mut changed = scenario.clone();
     let mut state = seed;
@@ -211,8 +218,7 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     changed
 }
 
-/// Returns a number between −1 and 1 from a generator with one word of state (`SplitMix64` of Steele, Lea and
-/// Flood 2014).
+/// Returns a pseudorandom number between −1 and 1 (`SplitMix64` of Steele, Lea and Flood 2014).
 fn noise(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
@@ -223,7 +229,7 @@ fn noise(state: &mut u64) -> f64 {
     (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// `true` if kind, mode and first body of two runs are the same.
+/// `true` if kind, mode and first body of two runs agree.
 fn same_outcome(base: &Run, other: &Run) -> bool {
     let [own, outcome] = [base, other].map(|run| Summary::of(run, None).outcome);
     (outcome.kind, outcome.mode, outcome.first) == (own.kind, own.mode, own.first)
@@ -234,7 +240,8 @@ fn falls(run: &Run) -> Vec<Option<f64>> {
     run.assembly.of_kind(PartKind::Barrel).map(|body| run.fates.fate(body).fell_at).collect()
 }
 
-/// Returns the first sample time (s) at which some body has diverged from its place in the run.
+/// Returns the first sample time (s) at which a body is farther than [`APART`] from its position in
+/// the base run.
 fn apart_at(base: &Run, other: &Run) -> Option<f64> {
     let limit = APART * base.scenario.run.similitude;
     let pairs: Vec<_> = base
@@ -249,7 +256,8 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
     let times = &other.recording.times;
     let mut before = 0;
     for (at, time) in base.recording.times.iter().enumerate() {
-        // Samples are taken at the first step after they are due, which differs between the runs.
+        // Samples are taken at the first step after they are due, so their times differ between the
+        // runs.
         while before + 2 < times.len() && times[before + 1] <= *time {
             before += 1;
         }
@@ -258,14 +266,14 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
             break;
         }
         let share = ((time - from) / (to - from)).clamp(0.0, 1.0);
-        // Displacements are x and z of one body after the other.
+        // Displacement channels come in pairs, x and z of each body.
         for body in pairs.chunks_exact(2) {
             let [x, z] = [0, 1].map(|axis| {
                 let (mine, theirs) = body[axis];
                 let (a, b) = (theirs.values[before], theirs.values[before + 1]);
                 a + (b - a) * share - mine.values[at]
             });
-            // A number that is not finite counts as diverged.
+            // A value that is not finite counts as diverged.
             let distance = libm::hypot(x, z);
             if distance > limit || distance.is_nan() {
                 return Some(*time);
@@ -275,7 +283,7 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
     None
 }
 
-/// Combines the repeats.
+/// Evaluates all repeats.
 fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verification {
     let predictable_until = repeats.iter().filter_map(|repeat| repeat.apart_at).reduce(f64::min);
     let until = predictable_until.unwrap_or(f64::INFINITY);
@@ -283,7 +291,7 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     let own = falls(base);
     for repeat in &mut repeats {
         let pairs = own.iter().zip(&repeat.falls);
-        // A barrel that stands in one run and falls in the other differs infinitely.
+        // A barrel that falls in only one of the two runs has an infinite difference.
         let differences = pairs.filter_map(|pair| match pair {
             (Some(mine), Some(theirs)) if mine.min(*theirs) < until => Some((mine - theirs).abs()),
             (Some(one), None) | (None, Some(one)) if *one < until => Some(f64::INFINITY),
@@ -301,7 +309,8 @@ fn shortly(time: f64) -> String {
 }
 
 impl Verification {
-    /// Returns the summary of the run as JSON text with this as its field `verification`.
+    /// Returns the summary of the run as JSON text, with this verification in its field
+    /// `verification`.
     pub fn with_summary(&self, summary: &Summary) -> String {
         Summary { verification: Some(self.clone()), ..summary.clone() }.to_json()
     }
@@ -310,7 +319,8 @@ impl Verification {
         self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged")
     }
 
-    /// Returns the comparable parts of an outcome: of a standing stack its kind alone.
+    /// Returns the parts of the outcome that are compared; of a stack that stands everywhere, its
+    /// kind alone.
     fn parts(&self) -> &'static [&'static str] {
         let collapses = self.repeats.iter().any(|repeat| repeat.outcome.mode.is_some());
         if collapses { &["kind", "mode", "first body"] } else { &["kind"] }
@@ -320,7 +330,7 @@ impl Verification {
     pub fn sentences(&self) -> Vec<String> {
         if self.repeats.is_empty() {
             return vec![
-                "No repeat of this run reached its end, so nothing more is known of it.".into(),
+                "No repeat of this run reached its end, so its reliability is not known.".into(),
             ];
         }
         let mut sentences = Vec::new();
@@ -329,34 +339,37 @@ impl Verification {
             let count = self.repeats.len();
             sentences.push(if self.robust.outcome() {
                 format!(
-                    "The outcome is robust in {}: {count} repeats, with a finer step and with barrels a \
-                     nanometer elsewhere, agree.",
+                    "The outcome is robust in {}: {count} repeats, with a finer step and with barrels displaced \
+                     by a nanometer, agree.",
                     self.parts().join(", ")
                 )
             } else {
                 let others = self.repeats.iter().filter(|repeat| !repeat.same_outcome).count();
                 format!(
-                    "The outcome is not robust: {others} of {count} repeats, with a finer step or barrels \
-                     a nanometer elsewhere, end otherwise; judge this stack by many variants."
+                    "The outcome is not robust: {others} of {count} repeats, with a finer step or with barrels \
+                     displaced by a nanometer, end differently; judge this stack by many variants."
                 )
             });
             sentences.extend(first_fall_within.map(|late| {
-                format!("The first barrel falls within {} of this run in all.", shortly(late))
+                format!(
+                    "The first barrel falls within {} of its time in this run in all repeats.",
+                    shortly(late)
+                )
             }));
             sentences.extend((most > 0).then(|| match least {
-                _ if least == most => format!("{most} barrels fall in all."),
-                _ => format!("How many fall is not robust: {least} to {most}."),
+                _ if least == most => format!("{most} barrels fall in the run and in all repeats."),
+                _ => format!("The number of barrels that fall is not robust: {least} to {most}."),
             }));
         }
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
         sentences.push(match self.predictable_until {
             Some(time) => format!(
-                "Details are predicted until {time:.2} s; what a body does later, farther than \
-                 {centimeters} cm from where a repeat has it, is one possible course."
+                "Details are predictable until {time:.2} s; after that, a body in some repeat is more than \
+                 {centimeters} cm from its position here, so the run shows one possible course."
             ),
             None => format!(
-                "Details are predicted to the end: no body is more than {centimeters} cm elsewhere in a \
-                 repeat."
+                "Details are predictable to the end: in every repeat each body stays within \
+                 {centimeters} cm of its position in the run."
             ),
         });
         sentences
@@ -371,11 +384,11 @@ impl Verification {
         let predictable = match self.predictable_until {
             None if self.repeats.is_empty() => UNKNOWN.to_owned(),
             Some(time) => format!(
-                "until {time:.2} s; after that a repeat puts some body more than {centimeters} cm from its place in the run"
+                "until {time:.2} s; then a body in a repeat is more than {centimeters} cm from its position in the run"
             ),
             None => {
                 format!(
-                    "to the end; no repeat puts a body more than {centimeters} cm from its place in the run"
+                    "to the end; every body in every repeat stays within {centimeters} cm of its position in the run"
                 )
             }
         };
@@ -414,7 +427,7 @@ impl Verification {
                 let _ = write!(what, "; falls within {:.1} ms", 1e3 * difference);
             }
             if let Some(time) = repeat.apart_at {
-                let _ = write!(what, "; parts at {time:.2} s");
+                let _ = write!(what, "; diverges at {time:.2} s");
             }
             row(&format!("  {}", repeat.change), what);
         }

@@ -106,7 +106,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     let document = compare::document(&sides);
     let Block::Players(players) = &document.blocks[0] else { panic!("players come first") };
     assert_eq!(players.panes.len(), 2);
-    let outcomes = table(&document, "What came of it");
+    let outcomes = table(&document, "Outcomes");
     assert_eq!(outcomes.columns.len(), 3);
     let demands = table(&document, "Demands");
     let drift = demands.rows.iter().find(|row| format!("{:?}", row[0]).contains("drift")).unwrap();
@@ -115,7 +115,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
         let own = 100.0 * side.summary.demands.top_drift_ratio.unwrap();
         assert_eq!(*cell, barrelstack_report::Cell::Measured(own, 1));
     }
-    let inputs = table(&document, "What is different");
+    let inputs = table(&document, "Differences");
     assert_eq!(inputs.rows.len(), 1);
     let text = markdown(&document, "figures").text;
     assert!(text.contains("They differ in one input: stack.levels, 4 and 2."), "{text}");
@@ -275,7 +275,7 @@ fn without_variants_both_planes_are_judged_and_named() {
     let fallen: Vec<&str> = fallen.map(|(view, _)| view.words()).collect();
     assert!(!fallen.is_empty());
     let expected = format!(
-        "Stands: weak. Falls: strong ({}). Runs end before their motion does: what stands until then may fall later.",
+        "Stands: weak. Falls: strong ({}). Runs end before their motion does, so a stack that stands at the end may still fall later.",
         listed(fallen)
     );
     assert_eq!(compare::document(&sides).verdict.headline, expected);
@@ -283,7 +283,7 @@ fn without_variants_both_planes_are_judged_and_named() {
 
 #[test]
 fn a_stack_that_falls_in_the_plane_that_is_not_shown_falls() {
-    let cut = " Runs end before their motion does: what stands until then may fall later.";
+    let cut = " Runs end before their motion does, so a stack that stands at the end may still fall later.";
     let mut sides = vec![
         side("one", &scenario("candia-8-barrels", &["run.duration=0.2 s"])),
         side("other", &scenario("candia-8-barrels", &["run.duration=0.3 s"])),

@@ -1,5 +1,5 @@
 //! Devices on a stack: no effect out of reach, their effects, and stacks that they do not fit.
-#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+#![allow(clippy::print_stdout, reason = "measured values are shown with --nocapture")]
 
 use barrelstack::assemble::PartKind;
 use barrelstack::device::{DEVICES, Setting};

@@ -1,5 +1,5 @@
 //! Cases in lanes have the same bits as alone.
-#![expect(clippy::print_stdout, reason = "what was compared, and in which lanes")]
+#![expect(clippy::print_stdout, reason = "prints the comparisons and their lanes")]
 
 use crate::common::Random;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};

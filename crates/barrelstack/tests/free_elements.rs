@@ -1,5 +1,5 @@
 //! Free scenes with force elements, against closed forms.
-#![allow(clippy::print_stdout, reason = "how near the closed forms are")]
+#![allow(clippy::print_stdout, reason = "prints the differences from closed forms")]
 
 use barrelstack::{Run, Scenario, Summary};
 

@@ -1,5 +1,5 @@
 //! Free scenes of solid bodies: several parts, exact boundaries, nodes at chosen places.
-#![allow(clippy::print_stdout, reason = "what was refused")]
+#![allow(clippy::print_stdout, reason = "prints error messages and results")]
 
 use std::fmt::Write as _;
 

@@ -2,7 +2,7 @@
 //!
 //! One program, since each would compile and link what it tests anew.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 
 mod accuracy;
 mod common;

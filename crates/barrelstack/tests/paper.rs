@@ -4,7 +4,7 @@
 //! impacts; so the bands are those in which a faithful model must fall, not its decimals.
 //! The six-barrel cases need a record that may not be redistributed; without it they are reported as skipped.
 
-#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+#![allow(clippy::print_stdout, reason = "measured values are shown with --nocapture")]
 
 use crate::common;
 use std::path::Path;

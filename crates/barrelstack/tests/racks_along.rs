@@ -1,5 +1,5 @@
 //! Racks along their barrels: on posts, and with rails that raise one end of every barrel.
-#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+#![allow(clippy::print_stdout, reason = "measured values are shown with --nocapture")]
 
 use std::collections::BTreeSet;
 

@@ -91,7 +91,7 @@ fn a_search_that_is_stopped_says_so_and_states_nothing() {
     assert!(!found.complete && found.height.is_none() && found.straps.is_none());
     assert_eq!(
         found.sentence(),
-        "What would have kept it up is not known: the search was stopped."
+        "The changes that would have kept the stack up are not known, because the search was stopped."
     );
     assert!(asked.into_inner() < 100);
 }
@@ -131,36 +131,36 @@ fn sentences_say_what_suffices_and_what_does_not() {
             Some(straps(1)),
             &both[..],
             "Three levels, or five levels strapped together at 4 kN, would have stood in 63 of 64 variants. \
-             At most 12 % of either would fall (95 % confidence, the choice among 9 changes counted).",
+             At most 12 % of either would fall (95 % confidence, allowing for the choice among 9 changes).",
         ),
         (
             Some(height(1)),
             Some(straps(0)),
             &both,
             "Three levels would have stood in 63 of 64 variants, five levels strapped together at 4 kN in all 64 \
-             variants. At most 12 % of the former and 9 % of the latter would fall (95 % confidence, the choice among 9 \
-             changes counted).",
+             variants. At most 12 % of the former and 9 % of the latter would fall (95 % confidence, allowing for the choice among 9 \
+             changes).",
         ),
         (
             Some(height(0)),
             None,
             &both,
             "Three levels would have stood in all 64 variants; straps tightened to 4 kN would not suffice. At most 9 % of \
-             stacks with three levels would fall (95 % confidence, the choice among 9 changes counted).",
+             stacks with three levels would fall (95 % confidence, allowing for the choice among 9 changes).",
         ),
         (
             None,
             Some(straps(0)),
             &both,
-            "Five levels strapped together at 4 kN would have stood in all 64 variants; fewer levels without them \
+            "Five levels strapped together at 4 kN would have stood in all 64 variants; fewer levels without straps \
              would not suffice. At most 9 % of stacks with five levels strapped together at 4 kN would fall (95 % \
-             confidence, the choice among 9 changes counted).",
+             confidence, allowing for the choice among 9 changes).",
         ),
         (
             None,
             None,
             &both,
-            "Nothing that was tried would have kept it up: neither fewer levels, down to one, nor straps tightened \
+            "None of the changes that were tried would have kept the stack up: neither fewer levels, down to one, nor straps tightened \
              to 4 kN.",
         ),
     ] {

@@ -1,5 +1,5 @@
 //! A run ends when all moving bodies have come to rest, and not later.
-#![expect(clippy::print_stdout, reason = "how long cases ran, and how many barrels fell")]
+#![expect(clippy::print_stdout, reason = "prints durations and numbers of fallen barrels")]
 
 use std::ops::ControlFlow;
 

@@ -1,6 +1,6 @@
 //! The scenarios shipped with the program, and properties of every scenario.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "prints measured values")]
 
 use std::num::NonZero;
 use std::ops::ControlFlow;

@@ -1,5 +1,5 @@
 //! Every stack that stands comes to rest, whatever its dampers, and every other one is refused.
-#![expect(clippy::print_stdout, reason = "what was tried, and what it cost")]
+#![expect(clippy::print_stdout, reason = "prints the attempts and their cost")]
 
 use std::ops::ControlFlow;
 use std::time::Instant;

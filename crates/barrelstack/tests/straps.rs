@@ -1,5 +1,5 @@
 //! Straps on a stack: their effect, their forces, and independence of step and scale.
-#![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
+#![allow(clippy::print_stdout, reason = "measured values are shown with --nocapture")]
 
 use barrelstack::outcome::Outcome;
 use barrelstack::summary::ElementSummary;
@@ -51,7 +51,8 @@ fn a_stack_that_falls_stands_when_all_its_levels_are_strapped_together() {
     assert!((3e3..6e3).contains(&most)); // measured 3795 N
     assert!(residual < 1e-6); // measured 6.3e-10
     let said = barrelstack::report::sentences(&held, &Summary::of(&held, None));
-    let holds = format!("All 36 straps hold; one bears up to {:.1} kN.", 1e-3 * most);
+    let holds =
+        format!("All 36 straps hold; the largest force in one of them is {:.1} kN.", 1e-3 * most);
     assert!(said.contains(&holds), "{said:?}");
 }
 

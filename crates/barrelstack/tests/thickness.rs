@@ -1,5 +1,5 @@
 //! No body is so thin, or falls so fast, that another could pass through it within a step.
-#![expect(clippy::print_stdout, reason = "how near the nearest comes")]
+#![expect(clippy::print_stdout, reason = "prints the smallest distance")]
 
 use barrelstack::Scenario;
 use barrelstack::assemble::{Outline, PartKind, assemble};

@@ -1,6 +1,6 @@
 //! A stack and its variants: their draws, their results, and the wording of these.
 
-#![allow(clippy::print_stdout, reason = "the shares at every step")]
+#![allow(clippy::print_stdout, reason = "prints the shares at every step")]
 
 use std::ops::ControlFlow;
 
@@ -288,7 +288,7 @@ fn what_is_stopped_says_nothing_of_shares() {
             .summary
             .warnings
             .iter()
-            .any(|text| text.contains("runs were done when it was stopped"))
+            .any(|text| text.contains("runs were finished: runs that collapse finish sooner"))
     );
 }
 

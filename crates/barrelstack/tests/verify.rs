@@ -82,7 +82,7 @@ fn a_long_collapse_is_predictable_only_for_a_while() {
     let said = found.sentences().join(" ");
     let changed =
         fallen.chain([Summary::of(&run, None).outcome.barrels_fallen.unwrap()]).any(|n| n != most);
-    assert_eq!(said.contains("How many fall is not robust"), changed, "{said}");
+    assert_eq!(said.contains("The number of barrels that fall is not robust"), changed, "{said}");
     let earliest = found.repeats.iter().filter_map(|repeat| repeat.apart_at).reduce(f64::min);
     assert_eq!(earliest, Some(until));
 }

@@ -1,10 +1,10 @@
-//! The command line that compares the remedy with the stack as it is.
+//! The command that compares the remedy with the stack as it is.
 
 use barrelstack::variants::Remedy;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 
-/// Arguments of the run to compare with.
+/// Arguments of the run with which the remedy is compared.
 pub(crate) struct Command<'a> {
     scenario: &'a ScenarioArgs,
     variants: VariantArgs,
@@ -15,8 +15,10 @@ impl<'a> Command<'a> {
         Self { scenario, variants }
     }
 
-    /// Returns the command for all sufficient changes; `None` if there is none, if one option cannot state it, or
-    /// if the scenario was read from standard input.
+    /// Returns the command for all sufficient changes.
+    ///
+    /// `None` if there is no sufficient change, if one option cannot express it, or if the scenario
+    /// was read from standard input.
     pub(crate) fn against(&self, found: &Remedy) -> Option<String> {
         let ScenarioArgs { scenario, set, record } = self.scenario;
         let all = [&found.height, &found.straps].into_iter().flatten();
@@ -63,7 +65,7 @@ mod tests {
         for word in
             ["stack.levels=3", "a b", "stack.strap={ ties = \"x\" }", "it's", "", "$HOME `x`"]
         {
-            // Without a shell nothing needs quoting.
+            // The test passes without a shell.
             assert!(said(word).map_or(true, |said| said == word), "{word}");
         }
     }

@@ -1,4 +1,4 @@
-//! Formats of figures, from the options.
+//! Options for the formats of figures.
 
 use barrelstack_report::{Format, Paper};
 
@@ -7,10 +7,10 @@ use crate::typed::typed;
 /// Formats of figures besides SVG.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FigureArgs {
-    /// Write figures in this format besides SVG; may be repeated. Without it: PNG and PDF.
+    /// Format of figures in addition to SVG; may be repeated. The default is PNG and PDF.
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Vec<FormatName>,
-    /// Dots per inch of figures as PNG.
+    /// Resolution (dots per inch) of figures in PNG.
     #[arg(long, value_name = "DPI", default_value = "200", value_parser = dpi)]
     pub(crate) dpi: f64,
 }
@@ -32,7 +32,7 @@ impl FigureArgs {
 }
 
 typed! {
-    /// The formats, as typed.
+    /// The formats, by their names on the command line.
     pub(crate) enum FormatName of Format {
         /// Vector graphics, for web pages and for editing.
         Svg = Self::Svg,
@@ -44,7 +44,7 @@ typed! {
 }
 
 typed! {
-    /// The papers, as typed.
+    /// The paper sizes, by their names on the command line.
     pub(crate) enum PaperName of Paper {
         /// 210 by 297 mm.
         A4 = Self::A4,

@@ -1,5 +1,5 @@
-//! Ctrl-C and other requests to terminate: within a second work has stopped, finished results are kept, and the user is
-//! informed of them.
+//! Handling of Ctrl-C and other requests to terminate: work stops within a second, finished results
+//! are kept, and the user is told where they are.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -11,28 +11,28 @@ use barrelstack_input::system;
 
 use crate::printer;
 
-/// `true` if the user requested a stop; global, since a program can have one handler only.
+/// `true` if the user requested a stop; global, because a program can have only one handler.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// `true` if some work polls the request.
+/// `true` if some work polls the stop request.
 static LISTENS: AtomicBool = AtomicBool::new(false);
 
-/// `true` if work has stopped since, and its finished results are being kept.
+/// `true` if work has stopped on request, and its finished results are being kept.
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
-/// `true` if all work is finished, and its results are being written.
+/// `true` if all work is finished and its results are being written.
 static FINISHED: AtomicBool = AtomicBool::new(false);
 
-/// Description of what is kept if the program is terminated during work.
+/// Description of the results that are kept if the program is terminated now.
 static KEPT: Mutex<Option<String>> = Mutex::new(None);
 
 /// Folders that may contain unfinished files.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Time for work to notice the request; the rest of a second is for printing what is kept.
+/// Time for work to react to the request; the rest of a second is for printing what is kept.
 const GRACE: Duration = Duration::from_millis(600);
 
-/// Time for stopping work to print and write its finished results.
+/// Time for stopped work to print and write its finished results.
 const KEEPING: Duration = Duration::from_secs(30);
 
 /// Exit status of an interrupted program.
@@ -41,14 +41,14 @@ pub(crate) const STATUS: u8 = 130;
 /// Access to the stop request.
 pub(crate) struct Interrupt;
 
-/// Number of pieces of work that have begun to listen.
+/// Number of pieces of work that have started to listen.
 static WORKS: AtomicUsize = AtomicUsize::new(0);
 
-/// Place at which a test stops the program.
+/// Point of the work at which a test stops the program.
 static PLACE: OnceLock<Option<Place>> = OnceLock::new();
 
-/// A place in the work of the program, independent of the load: `2:variants:3` is reached when three variants are done
-/// in the second piece of work.
+/// A point in the work of the program, independent of the machine load: `2:variants:3` is reached
+/// when three variants are finished in the second piece of work.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     work: usize,
@@ -72,20 +72,21 @@ impl std::str::FromStr for Place {
     }
 }
 
-/// Stops the program at a place as a signal would.
+/// Stops the program at a point of the work, as a signal would.
 pub(crate) fn stop_at(place: Option<Place>) {
-    // Only the first call counts, and there is one.
+    // Only the first call has an effect, and there is only one.
     let _ = PLACE.set(place);
 }
 
-/// Handles the signals of the whole program; `json` is `true` if a document is printed.
+/// Installs the signal handler of the program; `json` is `true` if a document is printed.
 ///
-/// The first requests a stop. Work that does not listen, or does not notice in time, is terminated; work that stops has
-/// time to keep its finished results; a second signal terminates at once. Files are written under their own names only
-/// when complete, and unfinished ones are removed.
+/// The first signal requests a stop. Work that does not listen, or does not react in time, is
+/// terminated; work that stops gets time to keep its finished results. A second signal terminates
+/// at once. Files get their own names only when they are complete, and unfinished files are
+/// removed.
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
-    // An error means that the system refuses a handler: then Ctrl-C terminates the program as by default.
+    // On an error the system refuses a handler, so that Ctrl-C terminates the program as usual.
     drop(ctrlc::set_handler(request_stop));
 }
 
@@ -98,19 +99,21 @@ fn request_stop() {
     if REQUESTED.swap(true, Ordering::Relaxed) || !LISTENS.load(Ordering::Relaxed) {
         end(json);
     }
-    // The handler's own thread has to be free for the second signal.
+    // The handler thread must be free for the second signal.
     std::thread::spawn(move || {
         std::thread::sleep(GRACE);
         if STOPPED.load(Ordering::Relaxed) || FINISHED.load(Ordering::Relaxed) {
-            printer::note("stopping; what is finished is kept, a second Ctrl-C ends at once");
+            printer::note(
+                "stopping; finished results are kept; a second Ctrl-C ends the program at once",
+            );
             std::thread::sleep(KEEPING);
         }
         end(json);
     });
 }
 
-/// Terminates the program, prints what is kept and removes unfinished files.
-#[expect(clippy::exit, reason = "the work does not end by itself")]
+/// Terminates the program, after printing what is kept and removing unfinished files.
+#[expect(clippy::exit, reason = "the work does not stop by itself")]
 fn end(json: bool) -> ! {
     system::write_no_more();
     let folders = FOLDERS.lock().map(|folders| folders.clone()).unwrap_or_default();
@@ -118,7 +121,7 @@ fn end(json: bool) -> ! {
         folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten()
     {
         if entry.file_name().to_string_lossy().ends_with(&system::unfinished()) {
-            // If it was renamed in the meantime it is complete, and there is nothing to remove.
+            // If the file was renamed meanwhile, it is complete and there is nothing to remove.
             let _ = std::fs::remove_file(entry.path());
         }
     }
@@ -132,19 +135,20 @@ pub(crate) fn has_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// Marks all work as finished: its results are being written, which a first signal does not cut short.
+/// Marks all work as finished: its results are being written, and a first signal does not interrupt
+/// that.
 pub(crate) fn finished() {
     FINISHED.store(true, Ordering::Relaxed);
 }
 
-/// Sets the description of what is kept if the program is terminated from now on.
+/// Sets the description of the results that are kept if the program is terminated from now on.
 pub(crate) fn keeps(words: String) {
     if let Ok(mut kept) = KEPT.lock() {
         *kept = Some(words);
     }
 }
 
-/// Registers a folder for unfinished files.
+/// Registers a folder that may contain unfinished files.
 pub(crate) fn writes_to(folder: &Path) {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     if let Ok(mut folders) = FOLDERS.lock()
@@ -154,7 +158,7 @@ pub(crate) fn writes_to(folder: &Path) {
     }
 }
 
-/// Error of work that stopped on request; what is kept was printed beforehand.
+/// Error of work that stopped on request; what is kept has been printed before.
 #[derive(Debug)]
 pub(crate) struct Stopped;
 
@@ -168,7 +172,7 @@ impl std::fmt::Display for Stopped {
 }
 
 impl Interrupt {
-    /// Begins to listen; also returns earlier requests.
+    /// Starts to listen for stop requests; earlier requests count too.
     pub(crate) fn listen() -> Self {
         LISTENS.store(true, Ordering::Relaxed);
         WORKS.fetch_add(1, Ordering::Relaxed);
@@ -185,7 +189,7 @@ impl Interrupt {
         requested
     }
 
-    /// Reports the progress of work of a kind: the place at which a test stops it.
+    /// Reports the progress of work on `things`, for tests that stop it at a certain point.
     #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
         let Some(Some(place)) = PLACE.get() else { return };

@@ -1,17 +1,17 @@
-//! `--lanes`: the vector unit in which the cases of an ensemble run.
+//! Option `--lanes`: the vector unit that runs the cases of an ensemble.
 
 use barrelstack::ensemble::Width;
 
-/// The option of all commands that run ensembles.
+/// Option of all commands that run ensembles.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(crate) struct LanesArgs {
-    /// Vector unit in which cases run side by side: avx512, avx2, or scalar for one after the other;
-    /// the widest of this machine without. Results do not depend on it.
+    /// Vector unit in which cases run side by side: avx512, avx2, or scalar for one case at a time;
+    /// by default the widest of this machine. Results do not depend on it.
     #[arg(long, value_name = "UNIT", value_parser = here)]
     pub(crate) lanes: Option<Width>,
 }
 
-/// Parses the name of a width, if this machine has it.
+/// Parses the name of a vector unit that this machine has.
 fn here(name: &str) -> Result<Width, String> {
     Width::named(name).filter(|width| width.is_here()).ok_or_else(|| {
         let here = Width::ALL.into_iter().filter(|width| width.is_here()).map(Width::name);

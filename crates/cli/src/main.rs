@@ -21,12 +21,13 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    // Parse `--json` first, so that argument errors honor it.
+    // `--json` is parsed first, so that argument errors honor it.
     let json = std::env::args_os().any(|argument| argument == "--json");
     interrupt::watch(json);
     let args = match args::Args::try_parse() {
         Ok(args) => args,
-        // Arguments may contain anything, so the message is printed through the escaping printer.
+        // Arguments may contain any characters, so the message is printed through the escaping
+        // printer.
         Err(error) if error.use_stderr() => {
             printer::usage(&error.render().to_string(), json);
             return ExitCode::from(2);
@@ -44,7 +45,7 @@ fn main() -> ExitCode {
     barrelstack_input::system::guard_inputs();
     interrupt::stop_at(args.stop_at.clone());
     match commands::dispatch(args) {
-        // Stopped work is not a success, whatever is kept.
+        // Stopped work is not a success, even if results are kept.
         Ok(code) if code == ExitCode::SUCCESS && interrupt::has_stopped() => {
             ExitCode::from(interrupt::STATUS)
         }
@@ -55,7 +56,8 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             printer::error(&error, json);
-            // The same status as for a mistyped option, so that scripts can distinguish both from a verdict.
+            // The status is that of a mistyped option, so that scripts can distinguish errors from
+            // a verdict.
             ExitCode::from(2)
         }
     }

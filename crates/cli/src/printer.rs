@@ -1,5 +1,5 @@
-//! All printing: results to standard output, errors and warnings to standard error.
-#![expect(clippy::print_stderr, reason = "this is where printing is done")]
+//! Printing: results to standard output, errors and warnings to standard error.
+#![expect(clippy::print_stderr, reason = "all printing is done here")]
 
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
@@ -28,10 +28,10 @@ pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow
     text(&whole)
 }
 
-/// Prints a text unchanged except for control characters.
+/// Prints a text, unchanged except for control characters.
 ///
-/// A reader that has closed the pipe (`| head`) is not an error.
-/// Any other failure, such as a full disk, would leave half a result behind and is an error.
+/// A reader that has closed the pipe (`| head`) is not an error. Any other failure, such as a full
+/// disk, would leave an incomplete result and is an error.
 pub(crate) fn text(text: &str) -> anyhow::Result<()> {
     raw(&harmless(text))
 }
@@ -42,7 +42,7 @@ fn raw(text: &str) -> anyhow::Result<()> {
     printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// The help or the version of the program, in color where the terminal has any.
+/// Prints the help or the version of the program, in color if the terminal supports it.
 pub(crate) fn help(help: &clap::Error) -> anyhow::Result<()> {
     printed(help.print().and_then(|()| std::io::stdout().flush()))
 }
@@ -52,20 +52,20 @@ fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
     const WHERE: &str = "cannot write to standard output";
     match result {
         _ if process::output_was_closed() => {
-            bail!("{WHERE}: it is closed; name a file (> result.txt) or /dev/null for it")
+            bail!("{WHERE}: it is closed; redirect it to a file (> result.txt) or to /dev/null")
         }
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context(WHERE),
         _ => Ok(()),
     }
 }
 
-/// Prints a document for programs.
+/// Prints a JSON document.
 pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     let text = described::to_json(document)? + "\n";
     PRINTED.store(true, Ordering::Relaxed);
     let mut whole = String::with_capacity(text.len());
     for c in text.chars() {
-        // Escape control characters that JSON leaves as they are and a terminal interprets.
+        // Escapes control characters that JSON leaves unchanged but a terminal interprets.
         if c.is_control() && c != '\n' {
             let _ = write!(whole, "\\u{:04x}", u32::from(c));
         } else {
@@ -75,7 +75,7 @@ pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     raw(&whole)
 }
 
-/// `true` if a document was printed: then no second one follows.
+/// `true` if a document was printed, so that no second one follows.
 static PRINTED: AtomicBool = AtomicBool::new(false);
 
 /// Replaces control characters, which could disturb a terminal.
@@ -84,12 +84,12 @@ pub(crate) fn harmless(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Formats a number of things, such as "1 case" and "2 cases".
+/// Formats a number of things, such as "1 case" or "2 cases".
 pub(crate) fn counted(count: u64, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Prints an error, with its causes, as one paragraph; with `json` also as a document.
+/// Prints an error with its causes as one paragraph; with `json`, also as a document.
 pub(crate) fn error(error: &anyhow::Error, json: bool) {
     let (next, words) = (remedy(error), bounded(&format!("{error:#}")));
     match next {
@@ -101,7 +101,7 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     error_document(&ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
-/// Shortens an overlong text in the middle.
+/// Shortens an overlong text by omitting its middle.
 fn bounded(text: &str) -> String {
     const LONGEST: usize = 2000;
     const KEPT: usize = 400;
@@ -121,57 +121,57 @@ pub(crate) fn usage(words: &str, json: bool) {
     error_document(&ErrorDocument::of(&(first, None, None, 2)), json);
 }
 
-/// Prints that the program was stopped, and what is kept.
+/// Prints that the program was stopped, and which results are kept.
 pub(crate) fn stopped(json: bool) {
     let words = Stopped.to_string();
     note(&words);
     error_document(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
 }
 
-/// Prints the document of an error if documents are requested and none was printed.
+/// Prints the document of an error if documents are requested and none was printed yet.
 fn error_document(document: &ErrorDocument, json: bool) {
     if json && !PRINTED.load(Ordering::Relaxed) {
-        // If standard output is closed, standard error has it all.
+        // If standard output is closed, standard error has the message.
         drop(self::document(document));
     }
 }
 
 described! {
-    /// Why there is no result.
+    /// The reason why a command has no result.
     pub(crate) struct ErrorDocument of error: &(&str, Option<&str>, Option<&Place>, u8) {
         /// Name and version of this layout.
         schema: &'static str ["error/1"] = "error/1",
-        /// Message, with the causes.
+        /// Error message, with the causes.
         error: String = error.0.to_owned(),
-        /// Command to type next, if one option helps.
+        /// Command or option that may help; null if there is no single one.
         next: Option<String> = error.1.map(str::to_owned),
-        /// The file that is wrong.
+        /// The file that contains the error; null if none does.
         file: Option<String> = match error.2 {
             Some(Place::File { file, .. } | Place::Whole { file }) => Some(file.clone()),
             Some(Place::Override { .. } | Place::Unknown) | None => None,
         },
-        /// The override that is wrong, as typed.
+        /// The override that contains the error, as typed; null if none does.
         change: Option<String> = if let Some(Place::Override { text }) = error.2 { Some(text.clone()) } else { None },
-        /// The line, from 1.
+        /// Line of the error, counted from 1.
         line: Option<usize> = if let Some(Place::File { line, .. }) = error.2 { Some(*line) } else { None },
-        /// The column, in characters from 1.
+        /// Column of the error in characters, counted from 1.
         column: Option<usize> = if let Some(Place::File { column, .. }) = error.2 { Some(*column) } else { None },
         /// Exit status of the program.
         status: u32 = u32::from(error.3),
     }
 }
 
-/// Prints a note on the work, beside a result.
+/// Prints a note about the work, separate from the result.
 pub(crate) fn note(text: &str) {
     eprintln!("{}", harmless(text));
 }
 
-/// Prints a warning to the reader of a result, one sentence.
+/// Prints a warning about a result, in one sentence.
 pub(crate) fn warning(text: &str) {
     eprintln!("warning: {}", harmless(text));
 }
 
-/// Prints all warnings to the reader of a result.
+/// Prints all warnings about a result.
 pub(crate) fn warnings(answer: &Answer) {
     let own = &answer.decides.summary.warnings;
     let other = answer.other.iter().flat_map(|other| &other.summary.warnings);
@@ -179,7 +179,7 @@ pub(crate) fn warnings(answer: &Answer) {
     all.for_each(|text| warning(text));
 }
 
-/// Returns a verdict, with its sentences below its headline.
+/// Returns the lines of a verdict: its headline, then its sentences.
 pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
     let sentences = verdict.sentences.iter().map(|sentence| format!("  {sentence}"));
     std::iter::once(verdict.headline.clone()).chain(sentences).collect()
@@ -188,7 +188,7 @@ pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
 /// Returns the command that compares the remedy with the stack.
 pub(crate) fn side_by_side(summary: &Summary) -> Option<String> {
     let command = summary.remedy.as_ref()?.comparison.as_ref()?;
-    Some(format!("To see it side by side: {command}"))
+    Some(format!("To compare them side by side: {command}"))
 }
 
 /// Prints the answer as text; `changes` are the values changed on the command line.

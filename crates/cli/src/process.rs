@@ -1,9 +1,9 @@
-//! Setup that precedes the start of the runtime of Rust.
+//! Setup that must run before the Rust runtime starts.
 //!
-//! The runtime opens `/dev/null` in the place of a standard output that is closed (`>&-`), so that results would be lost
-//! without an error; and a file that grows beyond the limit of the process (`ulimit -f`) kills it, which leaves half a
-//! file. So the output is tested, and the signal ignored, by a function that the loader calls. Where a system has no
-//! place for that, neither is noticed.
+//! If standard output is closed (`>&-`), the runtime opens `/dev/null` in its place, and results
+//! would be lost without an error. A file that grows beyond the limit of the process (`ulimit -f`)
+//! kills the process and leaves an incomplete file. A function that the loader calls therefore tests
+//! the output and ignores the signal. On systems without such a function, neither is detected.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,15 +15,16 @@ pub(crate) fn output_was_closed() -> bool {
 }
 
 #[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
-#[expect(unsafe_code, reason = "a section of the loader, and a function of the system's library")]
+#[expect(unsafe_code, reason = "a loader section and a C library function")]
 mod before_main {
     use std::os::fd::AsFd as _;
     use std::sync::atomic::Ordering;
 
-    /// Error number of a descriptor that is not open (EBADF).
+    /// Error number for a descriptor that is not open (EBADF).
     const NOT_OPEN: i32 = 9;
 
-    /// The signal for a file beyond the limit of the process (SIGXFSZ), and the handler that ignores it (`SIG_IGN`).
+    /// The signal for a file beyond the size limit (SIGXFSZ), and the handler that ignores it
+    /// (`SIG_IGN`).
     const FILE_TOO_LARGE: i32 = 25;
     const IGNORE: usize = 1;
 

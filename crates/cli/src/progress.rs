@@ -1,4 +1,5 @@
-//! Progress: a bar on a terminal, occasional lines elsewhere; and Ctrl-C that keeps computed results.
+//! Progress display: a bar on a terminal, occasional lines elsewhere. Ctrl-C keeps finished
+//! results.
 
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -12,19 +13,20 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::interrupt::Interrupt;
 use crate::printer;
 
-/// Interval of lines without a terminal.
+/// Interval between lines without a terminal.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Warm-up before an estimate of the total time is shown.
+/// Time before an estimate of the total time is shown.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
-/// Minimum share of the work done for an estimate, unless the work takes long.
+/// Minimum finished share of the work for an estimate, unless the work takes long.
 const SHARE: f64 = 0.02;
 
-/// The number of runs of many that predict the others; fewer with half of all.
+/// Number of finished runs from which the others are predicted; half of all runs suffices if that
+/// is less.
 const ENOUGH: f64 = 24.0;
 
-/// Shortest total time for which an estimate is shown.
+/// Shortest total time for which an estimate is printed.
 const LONG: Duration = Duration::from_secs(10);
 
 /// Progress display and cancellation.
@@ -34,11 +36,11 @@ pub(crate) struct Progress {
     interrupt: Interrupt,
 }
 
-/// A bar on a terminal, if requested; removed on drop, also after an error.
+/// A bar on a terminal, if requested; removed when dropped, also after an error.
 pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
 
 impl Bar {
-    /// Creates it if there is a terminal.
+    /// Creates the bar if there is a terminal.
     pub(crate) fn new(show: bool, make: impl FnOnce() -> ProgressBar) -> Self {
         Self((show && std::io::stderr().is_terminal()).then(make))
     }
@@ -53,7 +55,7 @@ impl Drop for Bar {
 }
 
 impl Progress {
-    /// Starts the display; shows something only if requested.
+    /// Starts the display, which shows something only if requested.
     pub(crate) fn new(show: bool) -> Self {
         let bar = Bar::new(show, || {
             let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
@@ -71,7 +73,7 @@ impl Progress {
         self.report(time, end_time, Of::One, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
-    /// Reports the number of finished things of a total.
+    /// Reports the number of finished things, of a total.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.interrupt.reached(things, done as f64);
         self.report(done as f64, of as f64, Of::Many, || format!("{done} of {of} {things}"))
@@ -90,13 +92,13 @@ impl Progress {
         }
     }
 
-    /// Reports the number of finished things of a part of the work, after which others may follow.
+    /// Reports the number of finished things in a part of the work, which other parts may follow.
     pub(crate) fn counted_of_part(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.lines.part();
         self.counted(done, of, things)
     }
 
-    /// Prints a line of its own, if progress is shown.
+    /// Prints a separate line, if progress is shown.
     fn said(&self, line: &str) -> ControlFlow<()> {
         if let Some(bar) = &self.bar.0 {
             bar.println(line);
@@ -106,7 +108,7 @@ impl Progress {
         self.interrupt.flow()
     }
 
-    /// Reports the number of tries of a search of unknown length.
+    /// Reports the number of attempts in a search of unknown length.
     pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
         let words = || format!("{done} {things}");
         if let Some(bar) = &self.bar.0 {
@@ -132,20 +134,20 @@ impl Progress {
     }
 }
 
-/// Kind of work, which decides when its first part predicts the rest.
+/// Kind of work, which determines when its beginning predicts the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Of {
-    /// One run, whose simulated time advances evenly.
+    /// One run, whose simulated time advances steadily.
     One,
     /// Many runs side by side, of which the short ones end first.
     Many,
 }
 
 impl Of {
-    /// Returns the estimated time to go, or none as long as too little is done.
+    /// Returns the estimated remaining time; `None` while too little is done.
     ///
-    /// Many runs are judged by the simulated time of all of them, where that is known: the first to end are those that
-    /// collapse early, and none may have ended while all are half done.
+    /// Many runs are judged by their total simulated time, if that is known: the first runs to end
+    /// are those that collapse early, and possibly none has ended when all are half finished.
     fn to_go(
         self,
         spent: Duration,
@@ -167,13 +169,16 @@ impl Of {
     }
 }
 
-/// Returns the factor from the time spent to that left for `open` of `all` cases; none before any was shaken.
+/// Returns the ratio of the remaining time to the time spent, for `open` of `all` cases; `None`
+/// before any stack is shaken.
 ///
-/// Cases end early at the rate at which they did so far; the first are expected to take 0.7 of their time. Those whose
-/// stack is not at rest yet take as long for that as the others did.
+/// Cases are expected to end early at the rate observed so far; the first of them are expected to
+/// take 0.7 of their full time. Stacks that are still settling are expected to settle as long as
+/// the others did.
 fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     let rate = (work.early + 0.75) / (work.done + 1.0);
-    // Close to (1 - exp(-rate)) / rate, the mean share of a case that ends early at a constant rate.
+    // Close to (1 - exp(-rate)) / rate, the mean share of a case that ends early at a constant
+    // rate.
     let mean = 1.0 / (1.0 + rate / 2.0 + rate * rate / 12.0);
     if work.done <= 0.0 || work.shaking <= 0.0 {
         return None;
@@ -183,35 +188,36 @@ fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     Some((shaking + settling) / (work.shaking + work.settling))
 }
 
-/// Lines without a terminal: an estimate of the total time, then the progress every few seconds.
+/// Lines without a terminal: first an estimate of the total time, then the progress every few
+/// seconds.
 pub(crate) struct Lines {
-    /// `None` if no lines are requested.
+    /// State of the lines; `None` if no lines are requested.
     last: Option<Mutex<LastLine>>,
 }
 
-/// State of the lines of some work.
+/// State of the lines of a piece of work.
 struct LastLine {
     /// Time of the last line.
     last: Instant,
-    /// `true` if the total time was printed, or is unknown.
+    /// `true` if the total time was printed or cannot be known.
     whole: bool,
-    /// Start of this work, or of this part of it, and the amount done by then: results of an earlier run took this one
-    /// no time.
+    /// Start of this work, or of this part of it, and the amount finished by then, because results
+    /// of an earlier run took no time now.
     start: Option<(Instant, f64, Work)>,
-    /// Amount done at the last report, and the total.
+    /// Amount finished at the last report, and the total.
     done: f64,
     of: f64,
 }
 
 impl Lines {
-    /// Starts; prints only if requested, and only without a terminal.
+    /// Starts the display, which prints only if requested and only without a terminal.
     pub(crate) fn new(show: bool) -> Self {
         let line = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
         Self { last: wanted.then(|| Mutex::new(line)) }
     }
 
-    /// Marks the work as a part, so that the total time is unknown.
+    /// Marks the work as one of several parts, so that the total time is unknown.
     fn part(&self) {
         if let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) {
             line.whole = true;
@@ -227,10 +233,10 @@ impl Lines {
         }
     }
 
-    /// Reports the progress of work.
+    /// Reports the progress of work with a known total.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
-        // A large decrease starts the next part; a small one comes from another thread.
+        // A large decrease means the next part; a small one comes from another thread.
         let anew = of != line.of || done < 0.5 * line.done;
         (line.done, line.of) = (done, of);
         let (start, first, before) = match line.start {
@@ -258,15 +264,15 @@ impl Lines {
 }
 
 pub(crate) fn style(template: &str) -> ProgressStyle {
-    // The templates are constants, and each is shown in a test of the command on a terminal.
+    // The templates are constants, and a test of the command on a terminal shows each of them.
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
 }
 
-/// Converts to the unit of the bar.
+/// Converts a value to the unit of the bar.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "what is counted is not negative"
+    reason = "counts are not negative"
 )]
 fn thousandths(value: f64) -> u64 {
     (1e3 * value) as u64
@@ -285,8 +291,8 @@ fn rounded(time: Duration) -> String {
 mod tests {
     use super::*;
 
-    /// A run: start (s) of the search for rest, of the shaking, and end (s), and the time (s) that the shaking would take
-    /// without a collapse.
+    /// A run with the times (s) at which its settling, its shaking and the run itself end or begin,
+    /// and the time (s) that the shaking would take without a collapse.
     struct Timed {
         first: f64,
         start: f64,
@@ -294,7 +300,8 @@ mod tests {
         whole: f64,
     }
 
-    /// Returns runs of these lengths and whole times after `settling`, `width` of them side by side, in their order.
+    /// Returns runs with these durations and full durations after `settling`, `width` of them side
+    /// by side, in order.
     fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {
@@ -306,7 +313,7 @@ mod tests {
         lengths.iter().map(run).collect()
     }
 
-    /// Returns the time (s) of the first estimate and the total (s) that it states.
+    /// Returns the time (s) of the first estimate, and the total (s) that it states.
     fn first(runs: &[Timed], known: bool) -> Option<(f64, f64)> {
         let all = runs.iter().map(|run| run.end).fold(0.0, f64::max);
         let times = (1..).map(|tenth| 0.1 * f64::from(tenth));
@@ -332,7 +339,8 @@ mod tests {
         })
     }
 
-    /// Runs that stand take their whole time, those that collapse a part of it; simulated, so that no clock counts.
+    /// Runs that stand take their full time, and those that collapse a part of it; time is
+    /// simulated, so that the test does not depend on a clock.
     #[test]
     fn first_estimates_come_after_five_seconds_and_are_within_a_factor_of_two() {
         let mut state = 1_u64;
@@ -358,11 +366,12 @@ mod tests {
             }
             made += 1;
             let (at, estimate) = first(&runs, true).expect("an estimate");
-            // Before the first stack is shaken nothing is known.
+            // No estimate is possible before the first stack is shaken.
             assert!(at < 5.2_f64.max(settling + 0.2), "{at} s");
             assert!((0.25..=4.0).contains(&(estimate / all)), "{estimate} of {all} s");
             wrong[0] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
-            // Without simulated times the number of finished runs decides, and the estimate comes later.
+            // Without simulated times, the number of finished runs decides, and the estimate comes
+            // later.
             let (at, estimate) = first(&runs, false).expect("an estimate");
             assert!(at <= 0.75 * all, "{at} of {all} s");
             wrong[1] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));

@@ -1,4 +1,5 @@
-//! The next command after an error: libraries state the fact, the command line has its own options.
+//! Advice after an error: libraries state the fact, and the command line names the option that
+//! helps.
 
 use anyhow::Error;
 use barrelstack::RunFailure;
@@ -12,17 +13,17 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
     error.chain().find_map(|cause| {
         if let Some(ExportError::Occupied { .. }) = cause.downcast_ref() {
             return Some(
-                "name another folder, or add --overwrite to replace what an earlier run wrote there",
+                "give another folder, or add --overwrite to replace the files of an earlier run",
             );
         }
         if let Some(ExportError::Foreign { .. }) = cause.downcast_ref() {
-            return Some("move the file away, or name another folder with --out");
+            return Some("move the file away, or give another folder with --out");
         }
         if let Some(ExportError::Write { .. }) = cause.downcast_ref() {
-            return Some("name another folder with --out");
+            return Some("give another folder with --out");
         }
         if let Some(CompareError::TooFew(_)) = cause.downcast_ref() {
-            return Some("name another scenario, or add --against PATH=VALUE");
+            return Some("give another scenario, or add --against PATH=VALUE");
         }
         if let Some(RunFailure::Ground(ground)) = cause.downcast_ref() {
             return of_ground(ground);
@@ -33,9 +34,9 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
 
 fn of_ground(error: &GroundError) -> Option<&'static str> {
     match error {
-        GroundError::Unreadable { .. } => Some("name your file with --record FILE"),
+        GroundError::Unreadable { .. } => Some("give your file with --record FILE"),
         GroundError::Motion(MotionError::NoChannel { .. }) => Some(
-            "a horizontal one is chosen with --set motion.component=NAME, and a vertical one alone moves \
+            "select a horizontal component with --set motion.component=NAME; a vertical component alone moves \
              nothing sideways",
         ),
         GroundError::Read(_)

@@ -8,12 +8,12 @@ use barrelstack::variants::words::{course, percent};
 use barrelstack::{Run, Summary};
 use barrelstack_report::{Characters, measured};
 
-/// Width of the name of a row.
+/// Width (characters) of the name of a row.
 const NAME: usize = 24;
-/// Width of the history of the drift.
+/// Width (characters) of the history of the drift.
 const SPARKS: usize = 40;
 
-/// Returns the rows, in reading order; `changes` are the values changed on the command line.
+/// Returns the rows in reading order; `changes` are the values changed on the command line.
 pub(crate) fn rows(
     run: &Run,
     summary: &Summary,
@@ -46,7 +46,7 @@ pub(crate) fn rows(
             row("", modes.join(", "));
         }
         let shown = match summary.variant {
-            0 => "the stack as it is stated".to_owned(),
+            0 => "the stack as stated".to_owned(),
             number => format!("variant {number}"),
         };
         row("shown below", shown);
@@ -88,7 +88,7 @@ pub(crate) fn rows(
         let falls = whole.map_or_else(String::new, |whole| {
             format!(" until the first loss of seat, {:.0} % over the whole run", 100.0 * whole)
         });
-        row("load on staves", format!("{:.0} % of what they bear{falls}", 100.0 * load));
+        row("load on staves", format!("{:.0} % of their capacity{falls}", 100.0 * load));
     }
     if let Some(slip) = demands.base_slip_residual {
         row("slip of the bottom rack", moved(slip));
@@ -97,7 +97,7 @@ pub(crate) fn rows(
         row(
             "energy balance",
             format!(
-                "residual {:.1e} of the {} that went through",
+                "residual {:.1e} of the {} supplied",
                 energy.residual_ratio,
                 joules(energy.input)
             ),
@@ -108,7 +108,7 @@ pub(crate) fn rows(
     rows
 }
 
-/// Draws the stack at the end of the run, under a title.
+/// Draws the stack at the end of the run, below a title.
 pub(crate) fn picture(run: &Run, characters: Characters) -> Vec<String> {
     let picture = final_picture(run, characters);
     if picture.is_empty() {
@@ -130,7 +130,7 @@ fn verdict(summary: &Summary) -> String {
     }
 }
 
-/// Describes the computation, and its speed.
+/// Describes the computation and its speed.
 fn computed(summary: &Summary) -> String {
     let run = &summary.run;
     let mut text = format!(
@@ -141,7 +141,7 @@ fn computed(summary: &Summary) -> String {
         run.method
     );
     if let Some(wall) = run.wall_seconds {
-        let _ = write!(text, ", {wall:.2} s on the clock");
+        let _ = write!(text, ", {wall:.2} s elapsed");
     }
     text
 }
@@ -155,7 +155,7 @@ fn joules(energy: f64) -> String {
     }
 }
 
-/// Formats a displacement (m) with its side.
+/// Formats a displacement (m) with its direction.
 fn moved(distance: f64) -> String {
     if distance.abs() < 5e-4 {
         return "none at the end".to_owned();
@@ -172,7 +172,7 @@ fn three_digits(value: f64) -> String {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::disallowed_methods,
-        reason = "a small exponent, of a number for the eye"
+        reason = "a small exponent of a printed number"
     )]
     let exponent = value.abs().log10().floor() as i32;
     let decimals = usize::try_from((2 - exponent).max(0)).unwrap_or(0);

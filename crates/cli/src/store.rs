@@ -13,7 +13,7 @@ pub(crate) fn store(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Writes files of a folder, all of them or none.
+/// Writes the files of a folder: either all of them or none.
 pub(crate) fn store_all<'a>(
     folder: &Path,
     files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
@@ -23,30 +23,30 @@ pub(crate) fn store_all<'a>(
         .map_err(|(path, error)| plain(error).context(format!("cannot write {}", path.display())))
 }
 
-/// Creates a folder if missing.
+/// Creates a folder if it is missing.
 pub(crate) fn folder(path: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(path)
         .map_err(plain)
-        .with_context(|| format!("cannot make the folder {}", path.display()))
+        .with_context(|| format!("cannot create the folder {}", path.display()))
 }
 
-/// Creates a folder below one of results; refuses a link in its place.
+/// Creates a folder within the folder of results; refuses a link in its place.
 pub(crate) fn folder_below(root: &Path, name: &str) -> anyhow::Result<PathBuf> {
     system::folder_below(root, Path::new(name))
         .map_err(plain)
-        .with_context(|| format!("cannot make the folder {}", root.join(name).display()))
+        .with_context(|| format!("cannot create the folder {}", root.join(name).display()))
 }
 
-/// Refuses a folder that is not writable, before the work is done.
+/// Refuses a folder that is not writable, before the computation starts.
 pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     system::writable(folder).map_err(|reason| {
-        anyhow!("cannot write in {}: {reason}; name another folder", folder.display())
+        anyhow!("cannot write in {}: {reason}; give another folder", folder.display())
     })
 }
 
-/// Converts the message of the system to plain words.
-#[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
+/// Converts an error of the system to an error in plain words.
+#[expect(clippy::needless_pass_by_value, reason = "used with map_err")]
 pub(crate) fn plain(error: std::io::Error) -> anyhow::Error {
     anyhow!(system::words(&error))
 }

@@ -1,8 +1,8 @@
-//! Closed sets as arguments.
+//! Closed sets of values as command-line arguments.
 
 use clap::ValueEnum;
 
-/// Declares the argument words of the members of a closed set, with their help.
+/// Declares the argument words for the members of a closed set, with their help.
 macro_rules! typed {
     (
         $(#[$about:meta])*

@@ -248,7 +248,10 @@ fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
     let output = barrelstack(["run", "candia-8-barrels", ONE].into_iter().chain(broken));
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("The run broke down and says nothing about the stack."), "{text}");
+    assert!(
+        text.contains("The computation failed, so the run says nothing about the stack."),
+        "{text}"
+    );
     assert!(text.contains("outcome                 invalid\n"), "{text}");
     assert!(!text.contains("fall"), "{text}");
     let json_run = ["run", "candia-8-barrels", ONE, "--json"].into_iter().chain(broken);
@@ -312,7 +315,7 @@ fn both_planes_are_printed_and_written() {
     let rows = fs::read_to_string(out.join("variants.csv")).unwrap();
     assert_eq!(rows.lines().count(), 1 + 2 * 4, "{rows}");
     let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("In all variants") && page.contains("player several"));
+    assert!(page.contains("Results of all variants") && page.contains("player several"));
     let summary = json(&fs::read_to_string(out.join("summary.json")).unwrap());
     let views = [&summary["view"], &summary["other_plane"]["view"]];
     assert_ne!(views[0], views[1], "{views:?}");
@@ -377,7 +380,7 @@ fn the_demo_writes_its_report_and_may_be_repeated() {
         let report = Path::new("barrelstack-demo").join("report.html");
         assert!(
             stdout(&output)
-                .starts_with("Not decided, since the runs end at 1.0 s and the motion does not. Shaken across the barrels none of 4")
+                .starts_with("Not decided, because the runs end at 1.0 s, before the motion does. Shaken across the barrels none of 4")
         );
         let open = format!("\n\nOpen {} in a browser to watch it.\n", report.display());
         assert!(stdout(&output).ends_with(&open), "{}", stdout(&output));

@@ -34,7 +34,7 @@ fn two_runs_become_one_page_and_a_few_lines() {
     assert!(text.contains("\nreport: "), "{text}");
     assert_eq!(names(&out).unwrap(), ["figures", "report.html", "report.md"]);
     let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("What is different") && page.contains("player several"));
+    assert!(page.contains(">Differences<") && page.contains("player several"));
     // Every figure that the text names exists.
     let markdown = fs::read_to_string(out.join("report.md")).unwrap();
     let links: Vec<&str> = markdown.split("](figures/").skip(1).collect();

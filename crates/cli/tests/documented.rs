@@ -9,7 +9,7 @@
 #![allow(
     clippy::print_stdout,
     clippy::format_push_string,
-    reason = "a test fails by panic, in its helpers too, and shows what it ran"
+    reason = "tests and their helpers fail by panicking, and print what they ran"
 )]
 
 use crate::common;

@@ -375,12 +375,12 @@ fn figures_come_with_their_numbers() {
         assert!(fs::read(&picture).unwrap().starts_with(start), "{ending}");
         assert!(picture.with_extension("csv").is_file());
         let again = barrelstack(["motion", "plot", text(&first), "-o", text(&picture)]);
-        assert!(stderr(&again).contains("is there already"), "{}", stderr(&again));
+        assert!(stderr(&again).contains("exists already"), "{}", stderr(&again));
         fs::remove_file(picture.with_extension("csv")).unwrap();
     }
     let one = folder.path().join("one.svg");
     let torn = barrelstack(["motion", "plot", text(&first), "-o", text(&one), "--format", "png"]);
-    refused("a file and a format", &torn, &one, &["one.svg", "--format goes with a folder"]);
+    refused("a file and a format", &torn, &one, &["one.svg", "--format applies to a folder"]);
     motion(&["plot", text(&first), "-o", text(&one), "--figure", "velocity", "--component", "h1"]);
     assert!(fs::read_to_string(&one).unwrap().contains("velocity (cm/s)"));
     let again = barrelstack(["motion", "plot", text(&first), "-o", text(&pictures)]);
@@ -395,7 +395,7 @@ fn what_is_there_is_not_replaced_unasked() {
     fs::write(&file, "mine").unwrap();
     let output = barrelstack(["motion", "convert", text(&first), "-o", text(&file)]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("is there already"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("exists already"), "{}", stderr(&output));
     assert_eq!(fs::read(&file).unwrap(), b"mine");
     motion(&["convert", text(&first), "-o", text(&file), "--overwrite"]);
     assert_eq!(rows(&file), rows(&first));
@@ -432,7 +432,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["convert", timed, "--unit", "furlong"], &["--unit", "furlong", "cm/s2"]),
         (&["convert", columns, "--time-step", "0.01"], &["--time-step", "no unit", "0.01 s"]),
         (&["convert", first, "--component", "west"], &["west", "\"Up\""]),
-        (&["convert", first, "--component", "h1", "--component", "90"], &["chosen already"]),
+        (&["convert", first, "--component", "h1", "--component", "90"], &["already selected"]),
         (&["convert", "--join", first, timed, "--unit", "g"], &["no channel E"]),
         (&["scale", first], &["--to", "--factor", "--froude"]),
         (&["scale", first, "--to", "pgv=60"], &["pgv", "no unit", "60 cm/s"]),
@@ -448,7 +448,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
             &["process", first, "--low-pass", "1e-9 Hz"],
             &["channel E: low-pass", "one over the duration, 0.02", "give a value in this range"],
         ),
-        (&["process", first, "--chain", "none"], &["does nothing"]),
+        (&["process", first, "--chain", "none"], &["has no steps"]),
         (&["match", first, "--to", "asce8:a=1"], &["asce8", "nzs1170"]),
         (&["match", first, "--to", "asce7:sds=1"], &["sd1 is missing"]),
         (&["match", first, "--to", "ec8:ag=0.3,site=F"], &["site", "\"F\""]),
@@ -472,7 +472,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
     }
     let at2 = folder.path().join("three.at2");
     let output = barrelstack(["motion", "convert", first, "-o", text(&at2)]);
-    refused("three components", &output, &at2, &["holds one component", "--component"]);
+    refused("three components", &output, &at2, &["an AT2 file has one component", "--component"]);
 }
 
 /// Returns options for files that lack information, from the README of the folder.

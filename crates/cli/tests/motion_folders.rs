@@ -89,7 +89,7 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     fs::write(&journal, cut).unwrap();
     fs::remove_file(out.join("records.csv")).unwrap();
     let printed = motion(&all);
-    assert!(printed.contains(" of them before), 1 file refused"), "{printed}");
+    assert!(printed.contains(" of them earlier), 1 file refused"), "{printed}");
     assert_eq!(fs::read_to_string(out.join("records.csv")).unwrap(), table);
     assert_eq!(fs::read(out.join("records.parquet")).unwrap(), parquet);
 
@@ -97,10 +97,10 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let one = records.join("below/RSN1_made.txt");
     let bytes = fs::read(&one).unwrap();
     fs::write(&one, &bytes).unwrap();
-    assert!(motion(&all).contains("6 of them before"), "{printed}");
+    assert!(motion(&all).contains("6 of them earlier"), "{printed}");
     fs::write(&one, [&bytes[..], b"0 0\n"].concat()).unwrap();
     let printed = motion(&all);
-    assert!(printed.starts_with("6 records measured (5 of them before)"), "{printed}");
+    assert!(printed.starts_with("6 records measured (5 of them earlier)"), "{printed}");
 
     let other = ["info", text(&records), "--out", text(&out), "--table-periods", "1,2"];
     refused(
@@ -114,11 +114,11 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let kept = fs::read(&journal).unwrap();
     let lock = fs::File::open(&journal).unwrap();
     lock.lock().unwrap();
-    refused(&all, "another command is at work in");
+    refused(&all, "another command is working in");
     drop(lock);
     for foreign in ["{\"my\": \"results\"}", "{\"my\": \"results\"}\n", "my notes\n", "my notes"] {
         fs::write(&journal, foreign).unwrap();
-        refused(&all, "a rows.jsonl that is none of this program");
+        refused(&all, "a rows.jsonl of another program");
         assert_eq!(fs::read_to_string(&journal).unwrap(), foreign);
     }
     // A truncated head is written anew.
@@ -196,7 +196,7 @@ fn a_folder_is_processed_converted_and_drawn() {
     // Missing files are made again.
     fs::remove_file(out("d").join("below/RSN1_made.txt.png")).unwrap();
     let printed = motion(&["plot", text(&records), "--out", text(&out("d"))]);
-    assert!(printed.starts_with("2 records measured (1 of them before)"), "{printed}");
+    assert!(printed.starts_with("2 records measured (1 of them earlier)"), "{printed}");
     assert!(out("d").join("below/RSN1_made.txt.png").is_file());
 }
 
@@ -231,7 +231,7 @@ fn a_set_for_a_target_is_a_study_that_runs() {
     };
     let arguments = select(&out, &["--magnitude", "5.6..", "--distance", "..20"]);
     let printed = motion(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
-    assert!(printed.contains("10 of 12 records may be chosen"), "{printed}");
+    assert!(printed.contains("10 of 12 records are eligible"), "{printed}");
     assert!(printed.contains("; 1 file could not be read, see refused.csv"), "{printed}");
     assert!(
         printed.contains("1 outside the limit of magnitude, 0 of unknown magnitude"),

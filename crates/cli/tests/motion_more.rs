@@ -288,7 +288,7 @@ fn matching_and_processing_are_drawn_beside_what_they_start_from() {
     // The page is checked before the work, as the motion is.
     let again =
         barrelstack(["motion", "process", text(&first), "-o", "x.txt", "--figure", text(&page)]);
-    assert!(stderr(&again).contains("is there already"), "{}", stderr(&again));
+    assert!(stderr(&again).contains("exists already"), "{}", stderr(&again));
 }
 
 #[test]

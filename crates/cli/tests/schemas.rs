@@ -281,7 +281,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
         for command in ["heights", "protect", "score"] {
             let long = [command, "--json", "--quiet", "--out", &at(command)];
             let error = documents.output("stopped", &interrupted(&long), 130);
-            assert!(error["error"].as_str().unwrap().contains("goes on from there"), "{error}");
+            assert!(error["error"].as_str().unwrap().contains("continues from there"), "{error}");
         }
     }
 

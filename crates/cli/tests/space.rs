@@ -147,7 +147,7 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
             "--verify is known in a plane, not yet in space",
         ),
         (&["run", "rolling-ball", "--variants=3"], "a free scene has no variants"),
-        (&["render", "rolling-ball", "--only=animation", "--out", &place], "take --only paraview"),
+        (&["render", "rolling-ball", "--only=animation", "--out", &place], "use --only paraview"),
         (
             &["compare", "rolling-ball", "--against=run.duration=2 s"],
             "this analysis works in a plane",

@@ -82,7 +82,7 @@ fn chunks_run_one_by_one_in_any_order_give_the_table_of_the_whole() {
             assert!(stderr(&output).contains("with 6 of 10 chunks done"), "{}", stderr(&output));
             let again =
                 barrelstack(["study", "run-chunk", &file, "--chunk", &chunk, "--out", &parts]);
-            assert!(stdout(&again).contains("chunk 4 was done before"), "{}", stdout(&again));
+            assert!(stdout(&again).contains("chunk 4 is already finished"), "{}", stdout(&again));
         }
     }
     let output = barrelstack(["study", "collect", &parts]);
@@ -144,7 +144,7 @@ fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     let message = stderr(&output);
-    assert!(message.contains("run the same command again to go on from there"), "{message}");
+    assert!(message.contains("run the same command again to continue from there"), "{message}");
     assert_eq!(barrelstack(run(&file, &out, "2")).status.code(), Some(0));
 }
 
@@ -202,7 +202,7 @@ fn a_folder_that_cannot_be_made_is_reported_in_plain_words() {
     let inside = folder.path().join("study.toml").join("out").display().to_string();
     let output = barrelstack(run(&file, &inside, "1"));
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("cannot make the folder"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot create the folder"), "{}", stderr(&output));
     let output = barrelstack(run(&file, "/proc/barrelstack", "1"));
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("/proc/barrelstack"), "{}", stderr(&output));
@@ -275,7 +275,7 @@ fn job_files_name_every_chunk() {
         let words = ["study", "emit", &file, "--engine", engine, "--out", "x", option, "3"];
         let output = barrelstack(words);
         assert_eq!(output.status.code(), Some(2));
-        assert!(stderr(&output).contains(&format!("{option} says nothing to this engine")));
+        assert!(stderr(&output).contains(&format!("{option} does not apply to this scheduler")));
     }
 }
 

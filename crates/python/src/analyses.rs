@@ -1,4 +1,5 @@
-//! Analyses of several runs or records: comparisons, heights, protections, scores, the paper's cases, sets of records.
+//! Analyses of several runs or records: comparisons, safe heights, protections, scores, the cases
+//! of the paper, and record sets.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -27,7 +28,7 @@ use crate::interruptible::run_interruptible;
 use crate::page::Page;
 use crate::scenario::{Scenario, report_advance, with_variants};
 
-/// Runs scenarios and compares them; unnamed ones are named by their differences.
+/// Runs scenarios and compares them; unnamed scenarios are named by their differences.
 #[pyfunction]
 pub(crate) fn compare(
     py: Python<'_>,
@@ -67,7 +68,7 @@ pub(crate) fn compare(
 
 /// Runs the study of safe heights.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn heights(
     py: Python<'_>,
     folder: PathBuf,
@@ -98,9 +99,10 @@ pub(crate) fn heights(
     Page::of(&found.to_document(), document)
 }
 
-/// Ranks protections of a stack by benefit and cost; by the hazard of a site, or at velocities (m/s).
+/// Ranks protections of a stack by benefit and cost, for the hazard of a site or at given
+/// velocities (m/s).
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn protect(
     py: Python<'_>,
     scenario: &Scenario,
@@ -172,16 +174,17 @@ pub(crate) fn score(
     Page::of(&sheet.to_document(), sheet.document)
 }
 
-/// A set: indices and factors of the chosen records; mean and standard deviation of ln Sa of the target, then of the
-/// set; number of candidates.
+/// A set of records: indices and factors of the selected records; mean and standard deviation of ln
+/// Sa, of the target and then of the set; number of candidates.
 type SetFacts = (Vec<(usize, f64)>, [Vec<f64>; 4], usize);
 
-/// Selects the spectra (m/s²), at the periods (s) of a target, that together match its mean and standard deviation.
+/// Selects spectra (m/s²), given at the periods (s) of a target, that together match its mean and
+/// standard deviation.
 ///
-/// A target is a code's name, or medians (m/s²) and standard deviations of ln Sa; `given` is a period (s) with the
-/// pseudo-acceleration (m/s²) there.
+/// The target is the name of a code, or medians (m/s²) and standard deviations of ln Sa. `given` is
+/// a period (s) with the pseudo-acceleration (m/s²) at that period.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn select(
     py: Python<'_>,
     periods: Vec<f64>,

@@ -29,7 +29,7 @@ fn table(name: &str, text: &str) -> PyResult<Table> {
     Table::parse(name, text).map_err(errors::general)
 }
 
-/// Parses a positive quantity (SI).
+/// Parses a positive quantity to SI units.
 fn positive(name: &str, text: &str, dimension: Dimension) -> PyResult<f64> {
     let value = Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value);
     let example = dimension.example();
@@ -41,7 +41,7 @@ fn positive(name: &str, text: &str, dimension: Dimension) -> PyResult<f64> {
     }
 }
 
-/// Parses parameters by their words, each once.
+/// Parses the names of parameters, each of which may be given once.
 fn parameters(fit: &[String]) -> PyResult<Vec<Parameter>> {
     let known = Parameter::NAMES.map(|(word, _)| word).join(", ");
     let mut found = Vec::new();
@@ -68,7 +68,7 @@ pub(crate) fn calibrate_stiffness(
     page(stiffness::stiffness(&table(name, text)?, nodes, interface), None)
 }
 
-/// Fits restitution and damping of drops.
+/// Fits restitution and damping of drop tests.
 #[pyfunction]
 pub(crate) fn calibrate_drop(
     name: &str,
@@ -89,7 +89,7 @@ pub(crate) fn calibrate_drop(
     page(drop::drop(&table(name, text)?, striker, interface), None)
 }
 
-/// Fits friction of pulls or tilts.
+/// Fits friction of pull or tilt tests.
 #[pyfunction]
 pub(crate) fn calibrate_friction(name: &str, text: &str, interface: &str) -> PyResult<Page> {
     page(friction::friction(&table(name, text)?, interface), None)
@@ -119,7 +119,7 @@ pub(crate) fn calibrate_response(
 
 /// Fits parameters to observed collapses.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn calibrate_collapse(
     py: Python<'_>,
     scenario: &Scenario,

@@ -1,4 +1,4 @@
-//! Converts errors of the library to exceptions of the package, with their places.
+//! Converts errors of the library to exceptions of the package, with their positions.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use barrelstack_motion::{MotionError, ReadError};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Place of an error, as far as known.
+/// Position of an error, as far as it is known.
 #[derive(Default)]
 struct Spot {
     path: Option<String>,
@@ -40,7 +40,7 @@ impl Spot {
     }
 }
 
-/// Creates an exception of the package, by the name of its class in `barrelstack._errors`.
+/// Creates an exception of the package; `class` is the name of its class in `barrelstack._errors`.
 fn raise(class: &str, message: String, spot: Spot) -> PyErr {
     Python::attach(|py| {
         let made = py.import("barrelstack._errors").and_then(|errors| {
@@ -56,19 +56,19 @@ pub(crate) fn scenario(error: &ScenarioError) -> PyErr {
     raise("ScenarioError", error.to_string(), Spot::of(error.place()))
 }
 
-/// Creates the error of a field that contradicts the request.
+/// Creates the error for a field that contradicts the request.
 pub(crate) fn inconsistent(message: String) -> PyErr {
     raise("ScenarioError", message, Spot::default())
 }
 
-/// Converts the error of a record that cannot be read.
+/// Converts the error of a record file that cannot be read.
 pub(crate) fn read(error: &ReadError) -> PyErr {
     let path = Some(error.file.clone());
     let (line, column) = (error.line, error.column);
     raise("RecordError", error.to_string(), Spot { path, line, column, value: None })
 }
 
-/// Converts the error of a request that a record cannot satisfy.
+/// Converts the error of an operation that a record does not permit.
 pub(crate) fn motion(error: MotionError) -> PyErr {
     raise("RecordError", error.to_string(), Spot::default())
 }
@@ -87,7 +87,7 @@ pub(crate) fn ground(error: &GroundError) -> PyErr {
     }
 }
 
-/// Converts the error of a run, with its place in the scenario.
+/// Converts the error of a run, with its position in the scenario.
 pub(crate) fn run(failure: &RunFailure, scenario: &Scenario) -> PyErr {
     if let RunFailure::Ground(error) = failure {
         return ground(error);
@@ -118,7 +118,7 @@ pub(crate) fn study(error: StudyError) -> PyErr {
         | StudyError::Folder { folder: path, .. } => {
             raise("StudyError", error.to_string(), Spot::at(path))
         }
-        // Only a signal stops it; the caught signal is raised by `run_interruptible`.
+        // Only a signal stops a study; `run_interruptible` raises the exception of the signal.
         StudyError::Stopped => PyKeyboardInterrupt::new_err(()),
         StudyError::BuiltIn(_) | StudyError::Table(_) | StudyError::Chunk(_) => {
             raise("StudyError", error.to_string(), Spot::default())
@@ -126,7 +126,7 @@ pub(crate) fn study(error: StudyError) -> PyErr {
     }
 }
 
-/// Converts the error of a study that supports no decision or cannot be written.
+/// Converts the error of a study whose results support no decision or cannot be written.
 pub(crate) fn study_result<E: ToString>(error: E) -> PyErr {
     raise("StudyError", error.to_string(), Spot::default())
 }

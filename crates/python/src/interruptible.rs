@@ -1,4 +1,5 @@
-//! Runs work without the interpreter's lock, while the calling thread watches for Ctrl-C and reports progress.
+//! Runs work without the interpreter lock, while the calling thread watches for Ctrl-C and reports
+//! progress.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,10 +9,10 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-/// Polling interval for signals; far below the promised second.
+/// Interval at which signals are polled; far below the promised second.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
 
-/// Progress and cancellation of work.
+/// Progress and cancellation state of the work.
 #[derive(Default)]
 pub(crate) struct ProgressState {
     stop: AtomicBool,
@@ -27,14 +28,14 @@ struct Latest {
 }
 
 impl ProgressState {
-    /// Reports the progress of the work.
+    /// Reports progress from the work, and returns whether to continue.
     pub(crate) fn report(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
         *self.latest.lock().unwrap_or_else(PoisonError::into_inner) =
             Some(Latest { done, of, what });
         if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// `true` if the work is to stop.
+    /// `true` if the work should stop.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
@@ -49,8 +50,10 @@ impl ProgressState {
     }
 }
 
-/// Runs work on another thread without the lock; once it has stopped, raises the exception of a signal or of
-/// `progress`.
+/// Runs work on another thread without the interpreter lock.
+///
+/// If a signal or the `progress` callback stops the work, its exception is raised after the work
+/// has ended.
 pub(crate) fn run_interruptible<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -63,7 +66,7 @@ pub(crate) fn run_interruptible<T: Send>(
         let (give, take) = sync_channel(1);
         let state = &state;
         let worker = scope.spawn(move || {
-            // The receiver is dropped only after it has received.
+            // The receiver is dropped only after it has received the result.
             let _ = give.send(work(state));
         });
         let take = Mutex::new(take);
@@ -99,6 +102,6 @@ pub(crate) fn run_interruptible<T: Send>(
             Ok(done)
         }
         Err(Err(panic)) => std::panic::resume_unwind(panic),
-        Err(Ok(())) => Err(crate::errors::general("the work ended without a result")),
+        Err(Ok(())) => Err(crate::errors::general("the computation ended without a result")),
     }
 }

@@ -1,10 +1,10 @@
 //! The native module of the Python package, `barrelstack._native`.
 //!
-//! It holds the parts that need Rust: handles of the library's types, arrays and tables without copies, and work
-//! without the interpreter's lock.
-//! The public interface, with its documentation, is in `python/barrelstack`.
+//! It contains the parts that need Rust: handles of library types, arrays and tables without
+//! copies, and work without the interpreter lock. The public interface and its documentation are in
+//! `python/barrelstack`.
 
-#![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
+#![allow(clippy::needless_pass_by_value, reason = "the interpreter passes arguments by value")]
 
 mod analyses;
 mod calibrate;

@@ -1,4 +1,4 @@
-//! Results as numbers and as a page: comparisons, rankings, calibrations, decisions of a study.
+//! Results with numbers and a page: comparisons, rankings, calibrations, and decisions of a study.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use crate::errors;
 use crate::scenario::bytes;
 
-/// Numbers for programs, and the page for people.
+/// A result with its numbers as JSON and its page.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Page {
     numbers: String,
@@ -62,7 +62,7 @@ impl Page {
     }
 }
 
-/// Returns the paper of a name.
+/// Returns the paper size with a name.
 pub(crate) fn paper_of(name: &str) -> PyResult<Paper> {
     match name {
         "a4" => Ok(Paper::A4),

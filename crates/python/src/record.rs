@@ -1,4 +1,4 @@
-//! Records: read, made from arrays, processed, scaled, matched, measured.
+//! Records: read from files or made from arrays, processed, scaled, matched and measured.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ impl From<barrelstack_motion::Record> for Record {
     }
 }
 
-/// Name, azimuth (degrees), `true` if vertical, step (s), start.
+/// Facts of a channel: name, azimuth (degrees), whether vertical, time step (s), start time.
 type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>);
 
 #[pymethods]
@@ -153,17 +153,19 @@ impl Record {
         Ok((array(motion.velocity()), array(motion.displacement())))
     }
 
-    /// Returns the index of a channel by its customary name.
+    /// Returns the index of a channel by its usual name.
     fn find(&self, name: &str) -> PyResult<usize> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let found = self.inner.component(&wanted).map_err(errors::motion)?;
         let known = self.inner.channels.iter().position(|channel| channel.name == found.name);
         known.ok_or_else(|| {
-            PyIndexError::new_err(format!("no channel of the record is {name}; turn it first"))
+            PyIndexError::new_err(format!(
+                "the record has no channel {name}; rotate the record first"
+            ))
         })
     }
 
-    /// Returns the record with one component alone, which may be turned to an azimuth.
+    /// Returns the record with one component only, which may be rotated to an azimuth.
     fn component(&self, name: &str) -> PyResult<Self> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let channel = self.inner.component(&wanted).map_err(errors::motion)?;
@@ -171,10 +173,7 @@ impl Record {
         Ok(barrelstack_motion::Record { channels, ..(*self.inner).clone() }.into())
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the settings of a chain, each with its name in Python"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn process(
         &self,
         py: Python<'_>,
@@ -228,7 +227,7 @@ impl Record {
     fn multiplied(&self, factor: f64) -> PyResult<Self> {
         if !(factor.is_finite() && factor != 0.0) {
             return Err(PyValueError::new_err(format!(
-                "a factor is a number other than 0, found {factor}"
+                "expected a factor other than 0, found {factor}"
             )));
         }
         let mut record = self.inner.multiplied(factor);
@@ -236,8 +235,8 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Multiplies all components by the factor that brings a measure of one component, or of both horizontals, to a
-    /// value (SI).
+    /// Scales all components by the factor that brings a measure of one component, or of both
+    /// horizontals, to a value (SI units).
     fn scaled_to(&self, measure: &str, value: f64, of: &str) -> PyResult<Self> {
         let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
         let factor = self.factor(measure, value, of).map_err(errors::motion)?;
@@ -249,12 +248,9 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Returns the record with one component, or both horizontals over all directions, matched to a target, the misfit, and a description of the remaining
-    /// misfits.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the settings of a match, each with its name in Python"
-    )]
+    /// Returns the matched record, its misfit, and a description of the remaining misfits; one
+    /// component is matched, or both horizontals over all directions.
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn matched(
         &self,
         py: Python<'_>,
@@ -290,7 +286,8 @@ impl Record {
         Ok((record.into(), misfit, missed_in_words(&missed)))
     }
 
-    /// Returns a measure of every component (SI), with its unit; NaN where the component is too short for it.
+    /// Returns a measure of every component (SI units) and its unit; NaN for a component that is
+    /// too short.
     fn intensity(&self, py: Python<'_>, measure: &str) -> PyResult<(Vec<f64>, &'static str)> {
         let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
         let of = |channel: &Channel| measure.of(&channel.sampled()?);
@@ -299,7 +296,7 @@ impl Record {
         Ok((values.map_err(errors::motion)?, measure.unit()))
     }
 
-    /// Returns the pseudo-accelerations (m/s²) of a component at some periods (s).
+    /// Returns the pseudo-acceleration (m/s²) of a component at given periods (s).
     fn spectrum<'py>(
         &self,
         py: Python<'py>,
@@ -379,7 +376,7 @@ impl Record {
     }
 }
 
-/// Samples a motion as a record, at the step of its own samples or the natural one of its formula.
+/// Samples a motion as a record, at the step of its samples, or at the natural step of its formula.
 pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     let step = match &motion.vertical {
         // A purely vertical motion has a horizontal component of length zero.
@@ -389,13 +386,13 @@ pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     barrelstack_motion::Record::of_motion(motion, step).map(Record::from).map_err(errors::motion)
 }
 
-/// Returns periods (s) from 0.01 to 10 s, with a number per decade.
+/// Returns periods (s) from 0.01 to 10 s, with the given number per decade.
 #[pyfunction]
 pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Numbers<'_> {
     barrelstack_motion::standard_periods(per_decade).into_pyarray(py)
 }
 
-/// Converts a value of a measure with its unit to SI.
+/// Converts the value of a measure, given with its unit, to SI units.
 #[pyfunction]
 pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
     let of: IntensityMeasure = measure.parse().map_err(errors::motion)?;
@@ -416,7 +413,7 @@ pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
         .map_err(|error| PyValueError::new_err(format!("{measure}: {error}")))
 }
 
-/// Groups paths, relative to a folder, by record; returns names and files.
+/// Groups paths, relative to a folder, into records; returns the name and the files of each.
 #[pyfunction]
 pub(crate) fn group_files(paths: Vec<String>) -> Vec<(String, Vec<String>)> {
     barrelstack_motion::group_files(&paths)
@@ -425,7 +422,7 @@ pub(crate) fn group_files(paths: Vec<String>) -> Vec<(String, Vec<String>)> {
         .collect()
 }
 
-/// Returns names and titles of the supported formats.
+/// Returns names and titles of the supported file formats.
 #[pyfunction]
 pub(crate) fn formats() -> Vec<(&'static str, &'static str)> {
     FORMATS.iter().map(|format| (format.name, format.title)).collect()

@@ -1,4 +1,4 @@
-//! A run: its outcome, its histories without copies, its page.
+//! Runs: outcome, histories without copies, and page.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -31,10 +31,12 @@ pub(crate) struct Run {
     beside: bool,
 }
 
-/// The largest forces between two bodies: vertical (N) and its time (s), horizontal and its time.
+/// The largest forces between two bodies: vertical (N) and its time (s), horizontal (N) and its
+/// time (s).
 type Peaks = ((f64, f64), (f64, f64));
 
-/// Two bodies and their forces: name, at rest (N), largest until the first loss of seat, and over the whole run.
+/// Forces between two bodies: name, force at rest (N), largest forces until the first loss of seat,
+/// and over the whole run.
 type JointFacts = (String, f64, Peaks, Peaks);
 
 impl Run {
@@ -62,7 +64,7 @@ impl Run {
     }
 }
 
-/// Returns the named members, in their own order; all of them if none is named.
+/// Returns the members with the given names, in their own order; all members if no names are given.
 fn chosen<T: Copy, const N: usize>(
     what: &str,
     names: &[String],
@@ -85,7 +87,7 @@ fn missing(what: &str) -> PyErr {
 
 #[pymethods]
 impl Run {
-    /// Returns the other plane, where the scenario has both.
+    /// Returns the result of the other plane, if the scenario has both.
     fn other(&self) -> Option<Self> {
         let (answer, repeated) = (Arc::clone(&self.answer), self.repeated.clone());
         self.answer.other.as_ref().map(|_| Self { answer, repeated, beside: !self.beside })
@@ -204,7 +206,7 @@ impl Run {
         Ok((numbers(&envelope.at_rest)?, peaks.0, peaks.1))
     }
 
-    /// Returns the nominal case and its variants, a row each; `None` if none were run.
+    /// Returns the nominal case and its variants, one row each; `None` if no variants were run.
     fn variants(&self) -> Option<Table> {
         let results = &self.shown().variants.as_ref()?.results;
         Some(Table { columns: ensemble::variants(results.iter()) })
@@ -222,8 +224,8 @@ impl Run {
         Ok(bytes(py, &made))
     }
 
-    /// Writes parts as pictures, films and series; returns the place and the number of files of each.
-    #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
+    /// Writes parts of a rendering; returns the place and the number of files of each.
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,
         py: Python<'_>,
@@ -249,7 +251,7 @@ impl Run {
         Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
     }
 
-    /// Writes the files that the command writes.
+    /// Writes the same files as the command.
     fn write(&self, py: Python<'_>, folder: PathBuf, overwrite: bool) -> PyResult<()> {
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
@@ -259,7 +261,7 @@ impl Run {
     }
 }
 
-/// State of a run for an observer.
+/// State of a run, passed to an observer.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Glance {
     #[pyo3(get)]

@@ -1,4 +1,4 @@
-//! Scenarios: read, changed, run.
+//! Scenarios: read, changed and run.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -88,13 +88,13 @@ impl Scenario {
         settings.map(|setting| (setting.path, setting.value, setting.help)).collect()
     }
 
-    /// Returns the ground motion, if any.
+    /// Returns the ground motion as a record, if there is one.
     fn ground(&self, py: Python<'_>) -> PyResult<Option<Record>> {
         let ground = py.detach(|| self.inner.ground()).map_err(|error| errors::ground(&error))?;
         ground.motion.as_ref().map(of_motion).transpose()
     }
 
-    /// Checks every plane and returns the findings, each as JSON.
+    /// Checks every plane and returns the findings of each as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let found = py.detach(|| {
             let planes = variants::planes(&self.inner)?;
@@ -124,7 +124,7 @@ impl Scenario {
                 variants::answer(&scenario, choice, &mut |now| report_advance(state, now))?;
             if remedy && !state.stopped() {
                 let found = variants::remedy(&answer, &|done| {
-                    state.report(done as f64, f64::NAN, "runs of what would have helped")
+                    state.report(done as f64, f64::NAN, "runs of changed stacks")
                 })?;
                 answer.decides.summary.remedy = found;
             }
@@ -165,7 +165,7 @@ impl Scenario {
             })?;
             if remedy && !state.stopped() {
                 answer.summary.remedy = barrelstack_space::variants::remedy(&answer, &|done| {
-                    state.report(done as f64, f64::NAN, "runs of what would have helped")
+                    state.report(done as f64, f64::NAN, "runs of changed stacks")
                 })?;
             }
             Ok(answer)
@@ -173,8 +173,9 @@ impl Scenario {
         answer.map(SpatialRun::of).map_err(|error: RunFailure| errors::run(&error, &scenario))
     }
 
-    /// Runs it as stated in one plane, with an observer function that is called every few steps and stops the run by
-    /// returning anything true.
+    /// Runs the scenario as stated in one plane, with an observer function.
+    ///
+    /// The observer is called every few steps, and stops the run by returning a true value.
     fn run_before(
         &self,
         py: Python<'_>,
@@ -211,7 +212,7 @@ impl Scenario {
                     }
                 }
             };
-            // At every step, so that Ctrl-C is handled between two calls.
+            // Called at every step, so that Ctrl-C is handled between two calls of the observer.
             let run =
                 stated.run_before(stated.ground()?, Pace::Steps(NonZero::<u64>::MIN), &mut eye)?;
             let summary = Summary::of(&run, None);
@@ -229,18 +230,18 @@ impl Scenario {
     }
 }
 
-/// Returns the selection of the variant to show, among a number of variants.
+/// Returns the selection of the variant to show; `count` is the number of variants.
 fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     match variant {
         Some(number) if number > count => Err(PyValueError::new_err(format!(
-            "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated"
+            "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as stated"
         ))),
         Some(number) => Ok(RunChoice::Number(number)),
         None => Ok(RunChoice::Typical),
     }
 }
 
-/// Returns a scenario with a number of variants, and that number.
+/// Returns a scenario with the given number of variants, and that number.
 pub(crate) fn with_variants(
     of: &barrelstack::Scenario,
     variants: Option<u32>,
@@ -253,7 +254,7 @@ pub(crate) fn with_variants(
         }
         Scene::Free(_) | Scene::Spatial(_) if variants.is_some_and(|count| count > 0) => {
             return Err(PyValueError::new_err(
-                "a free scene has no variants, since nothing says how it may differ",
+                "a free scene has no variants, because it states no imperfections",
             ));
         }
         Scene::Free(_) | Scene::Spatial(_) => 0,
@@ -304,7 +305,7 @@ pub(crate) fn reference(of: &str) -> PyResult<String> {
     }
 }
 
-/// Returns the keys of the summary: path, unit and meaning.
+/// Returns the keys of the summary as path, unit and meaning.
 #[pyfunction]
 pub(crate) fn fields() -> Vec<(String, String, String)> {
     let schema = barrelstack_report::described::document::<Summary>("summary");
@@ -312,7 +313,7 @@ pub(crate) fn fields() -> Vec<(String, String, String)> {
     rows.into_iter().map(|[path, unit, meaning]| (path, unit, meaning)).collect()
 }
 
-/// Converts bytes for Python.
+/// Converts bytes to a Python object.
 pub(crate) fn bytes<'py>(py: Python<'py>, of: &[u8]) -> Bound<'py, PyBytes> {
     PyBytes::new(py, of)
 }

@@ -1,4 +1,4 @@
-//! A run in space: its document, the trajectories of its bodies, its page.
+//! Runs in space: summary, trajectories of the bodies, and page.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ impl SpatialRun {
         &self.answer.run.frames
     }
 
-    /// Returns numbers of every frame and body as one array.
+    /// Returns the numbers of every frame and body as one array.
     fn stacked<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -82,7 +82,7 @@ impl SpatialRun {
         self.stacked(py, &self.frames().twists)
     }
 
-    /// Returns the nominal case and its variants, a row each; `None` if none were run.
+    /// Returns the nominal case and its variants, one row each; `None` if no variants were run.
     fn variants(&self) -> Option<Table> {
         let cases = &self.answer.cases;
         if cases.is_empty() {
@@ -95,7 +95,7 @@ impl SpatialRun {
         py.detach(|| html(&document(&self.answer)))
     }
 
-    /// Writes the files that the command writes, with the scenario as stated.
+    /// Writes the same files as the command, with the scenario as stated.
     fn write(
         &self,
         py: Python<'_>,

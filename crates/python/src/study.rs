@@ -1,4 +1,4 @@
-//! Studies: planned, run chunk by chunk, collected, decided.
+//! Studies: planned, run in chunks, collected and evaluated.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -25,10 +25,10 @@ pub(crate) struct Study {
     inner: Arc<study::Study>,
 }
 
-/// A file: name and text.
+/// Name and text of a file.
 type NamedText = (&'static str, String);
 
-/// A chunk: number, cases, first and last case.
+/// Facts of a chunk: number, number of cases, first and last case.
 type ChunkFacts = (usize, usize, u64, u64);
 
 impl Study {
@@ -86,7 +86,7 @@ impl Study {
             .collect()
     }
 
-    /// Runs the missing chunks of a folder.
+    /// Runs the missing chunks in a folder.
     fn run(
         &self,
         py: Python<'_>,
@@ -110,7 +110,7 @@ impl Study {
         Ok(done.map_err(errors::study)? != ChunkRun::Before)
     }
 
-    /// Returns its motions by their names, unscaled.
+    /// Returns the motions of the study by name, unscaled.
     fn records(&self, py: Python<'_>) -> PyResult<Vec<(String, Record)>> {
         let grounds = py.detach(|| self.inner.grounds()).map_err(errors::study)?;
         let record = |(name, ground): (String, Arc<Ground>)| {
@@ -120,7 +120,7 @@ impl Study {
         grounds.into_iter().filter_map(record).collect()
     }
 
-    /// Returns its table, without a folder.
+    /// Runs the study without a folder and returns its table.
     fn table(&self, py: Python<'_>) -> PyResult<Table> {
         let table = py.detach(|| self.inner.table()).map_err(errors::study)?;
         Ok(Table { columns: table.columns().to_vec() })
@@ -137,7 +137,7 @@ pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
     study::builtin_names().filter_map(|name| Some((name, study::builtin(name)?))).collect()
 }
 
-/// Returns the finished rows in the folder of a study; `write` also writes its tables.
+/// Returns the finished rows in the folder of a study; with `write`, also writes its tables.
 #[pyfunction]
 pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResult<Table> {
     let read = py.detach(|| {
@@ -149,7 +149,7 @@ pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResu
     Ok(Table { columns: read.map_err(errors::study)?.table.columns().to_vec() })
 }
 
-/// Returns the provenance of the rows of a folder, as JSON, and the missing chunks.
+/// Returns the provenance of the rows in a folder as JSON, and the missing chunks.
 #[pyfunction]
 pub(crate) fn provenance(py: Python<'_>, folder: PathBuf) -> PyResult<(String, Vec<usize>)> {
     let status = py.detach(|| Collected::status(&folder)).map_err(errors::study)?;
@@ -162,7 +162,7 @@ fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
     Ok(Request { hazard, years })
 }
 
-/// Computes the decision of the study in a folder.
+/// Computes the decision from the study in a folder.
 #[pyfunction]
 pub(crate) fn decision(
     py: Python<'_>,
@@ -176,7 +176,8 @@ pub(crate) fn decision(
     Page::of(&decision.to_document(), decision.document)
 }
 
-/// Exports the curves of the study in a folder for other programs: name and text of each file, and missing parts.
+/// Exports the curves of the study in a folder for other programs; returns name and text of each
+/// file, and a list of missing parts.
 #[pyfunction]
 pub(crate) fn export(
     py: Python<'_>,

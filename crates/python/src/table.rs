@@ -1,4 +1,4 @@
-//! Tables: input of cases and output of results, through Arrow's capsules.
+//! Tables: cases as input and results as output, exchanged through Arrow capsules.
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -34,13 +34,13 @@ use crate::record::Record;
 use crate::scenario::{Scenario, bytes};
 use crate::view::Numbers;
 
-/// Columns of one length.
+/// A table: columns of equal length.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Table {
     pub(crate) columns: Vec<Column>,
 }
 
-/// A column: name, unit, role, kind, meaning.
+/// Facts of a column: name, unit, role, type, meaning.
 type Facts = (String, String, String, String, &'static str);
 
 #[pymethods]
@@ -54,7 +54,7 @@ impl Table {
         Ok(Self { columns: columns.iter().map(column).collect::<PyResult<_>>()? })
     }
 
-    /// Creates a table of numbers: name, unit, values.
+    /// Creates a table of numbers from name, unit and values of each column.
     #[staticmethod]
     fn of_numbers(columns: Vec<(String, String, PyReadonlyArray1<'_, f64>)>) -> Self {
         let column = |(name, unit, values): &(String, String, PyReadonlyArray1<'_, f64>)| Column {
@@ -64,8 +64,8 @@ impl Table {
         Self { columns: columns.iter().map(column).collect() }
     }
 
-    /// Creates a table from name, unit, role, kind and values of each column, as [`Self::specs`] and [`Self::values`]
-    /// return them.
+    /// Creates a table from name, unit, role, type and values of each column, as returned by
+    /// [`Self::specs`] and [`Self::values`].
     #[staticmethod]
     fn of_parts(
         columns: Vec<(String, String, String, String, Bound<'_, PyAny>)>,
@@ -86,7 +86,7 @@ impl Table {
         Ok(Self { columns: columns.into_iter().map(column).collect::<PyResult<_>>()? })
     }
 
-    /// Creates a table of cases from any object with an Arrow stream.
+    /// Creates a table of cases from an object that exports an Arrow stream.
     #[staticmethod]
     fn from_arrow(table: &Bound<'_, PyAny>) -> PyResult<Self> {
         let batches = stream(table)?;
@@ -117,7 +117,7 @@ impl Table {
         py: Python<'py>,
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
-        // The requested schema may be ignored: consumers cast.
+        // The requested schema may be ignored, because consumers cast.
         drop(requested_schema);
         let batch = self.batch().map_err(errors::general)?;
         let schema = batch.schema();
@@ -140,7 +140,7 @@ impl Table {
         self.columns.iter().map(facts).collect()
     }
 
-    /// Returns the values of a column, with None where missing.
+    /// Returns the values of a column, with None for missing values.
     fn values<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         match &self.column(name)?.values {
             Values::Integer(values) => values.clone().into_pyobject(py).map(Bound::into_any),
@@ -149,7 +149,7 @@ impl Table {
         }
     }
 
-    /// Returns the numbers of a column, with NaN where missing.
+    /// Returns the numbers of a column, with NaN for missing values.
     fn numbers<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Numbers<'py>> {
         let column = self.column(name)?;
         let number = |row| match column.values.get(row) {
@@ -158,7 +158,7 @@ impl Table {
             Some(Value::Text(_)) | None => f64::NAN,
         };
         if column.spec.kind == ValueKind::Text {
-            return Err(PyTypeError::new_err(format!("the column `{name}` holds texts")));
+            return Err(PyTypeError::new_err(format!("the column `{name}` contains texts")));
         }
         Ok((0..column.values.len()).map(number).collect::<Vec<f64>>().into_pyarray(py))
     }
@@ -207,19 +207,21 @@ impl Table {
     }
 }
 
-/// Reads the batches of a table of another library.
+/// Reads the record batches of a table of another library.
 fn stream(table: &Bound<'_, PyAny>) -> PyResult<RecordBatchStreamReader> {
     let capsule = table.call_method0("__arrow_c_stream__")?;
     let capsule = capsule.cast_into::<PyCapsule>()?;
     let pointer = capsule.pointer_checked(Some(c"arrow_array_stream"))?;
-    #[expect(unsafe_code, reason = "the door of Arrow's C interface")]
-    // SAFETY: by the protocol of Arrow's capsules one of this name holds a stream that lives as long as the capsule
-    // does, and a consumer that takes the stream out leaves an emptied one behind, as this call does.
+    #[expect(unsafe_code, reason = "the C interface of Arrow")]
+    // SAFETY: in the Arrow capsule protocol, a capsule with this name contains a stream that lives
+    // as long as the capsule, and a consumer that takes the stream out leaves an empty one behind,
+    // as this call does.
     let reader = unsafe { RecordBatchStreamReader::from_raw(pointer.cast().as_ptr()) };
     reader.map_err(errors::general)
 }
 
-/// Creates a column of a table of cases: its heading may state a unit, such as `motion.scale.pgv (cm/s)`.
+/// Creates a column of a table of cases; its heading may state a unit, as in `motion.scale.pgv
+/// (cm/s)`.
 fn given(heading: &str, values: Values) -> Column {
     let stated = heading.trim().strip_suffix(')').and_then(|text| text.rsplit_once(" ("));
     let (name, unit) = stated.unwrap_or((heading.trim(), ""));
@@ -268,13 +270,13 @@ fn of_values(heading: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Values> {
         }
         let kind = value.get_type().name()?;
         Err(PyTypeError::new_err(format!(
-            "the column `{heading}` holds a {kind}; numbers, truths and texts are read"
+            "the column `{heading}` contains a {kind}; expected numbers, booleans or texts"
         )))
     };
     values.iter().map(text).collect::<PyResult<_>>().map(Values::Text)
 }
 
-#[expect(clippy::wildcard_enum_match_arm, reason = "a list of another library, which grows")]
+#[expect(clippy::wildcard_enum_match_arm, reason = "the enum of another library may grow")]
 fn of_array(heading: &str, array: &ArrayRef) -> PyResult<Values> {
     macro_rules! whole {
         ($kind:ty) => {
@@ -315,13 +317,14 @@ fn of_array(heading: &str, array: &ArrayRef) -> PyResult<Values> {
         DataType::Null => Values::Text(vec![None; array.len()]),
         other => {
             return Err(PyTypeError::new_err(format!(
-                "the column `{heading}` holds {other}; whole numbers, numbers, truths and texts are read"
+                "the column `{heading}` contains {other}; expected whole numbers, numbers, booleans or texts"
             )));
         }
     })
 }
 
-/// The cases of a table: a base, the changes of each row, and the records that rows name.
+/// The cases of a table: a base scenario, the changes of each row, and the records to which rows
+/// refer.
 struct Cases<'a> {
     base: &'a barrelstack::Scenario,
     columns: &'a [Column],
@@ -329,7 +332,7 @@ struct Cases<'a> {
     grounds: Grounds,
 }
 
-/// The column that names a record in place of a field.
+/// The column that gives a record by name instead of setting a field.
 const RECORD: &str = "record";
 
 impl Cases<'_> {
@@ -367,14 +370,14 @@ impl Cases<'_> {
         Ok(Prepared { scenario: Arc::new(scenario), ground })
     }
 
-    /// Returns a hash that separates cases of different topologies.
+    /// Returns a hash of the topology, to separate cases that cannot run together.
     fn kind(scenario: &barrelstack::Scenario) -> u64 {
         let Some(stack) = scenario.stack() else { return 0 };
         fnv1a(format!("{:?} {} {}", stack.view, stack.levels, stack.columns).as_bytes())
     }
 }
 
-/// Converts a unit to the form of scenario files: `m/s^2` where headings of tables have `m/s2`.
+/// Converts a unit to the form of scenario files: table headings have `m/s2` for `m/s^2`.
 fn with_powers(unit: &str) -> String {
     let mut text = String::new();
     for sign in unit.chars() {
@@ -386,7 +389,7 @@ fn with_powers(unit: &str) -> String {
     text
 }
 
-/// Error of a case.
+/// Reason why a case cannot be run.
 enum CaseError {
     Scenario(ScenarioError),
     Planes,
@@ -399,8 +402,8 @@ impl CaseError {
         match self {
             Self::Scenario(error) => error.sentence(),
             Self::Planes => {
-                "a table of cases looks at one plane: leave stack.columns_along out and set stack.view to \
-                 \"transverse\", or to \"longitudinal\" with stack.columns as many as stack.columns_along"
+                "a table of cases is run in one plane: leave stack.columns_along out and set stack.view to \
+                 \"transverse\", or to \"longitudinal\" with stack.columns equal to stack.columns_along"
                     .to_owned()
             }
             Self::Record(name) => format!("no record named \"{name}\" was given"),
@@ -413,7 +416,7 @@ impl CaseError {
             Self::Scenario(error) => {
                 let raised = errors::scenario(error);
                 Python::attach(|py| {
-                    // The number of the row, where the exception can hold it.
+                    // Sets the number of the row on the exception.
                     let _ = raised.value(py).setattr("row", row);
                 });
                 raised
@@ -425,7 +428,7 @@ impl CaseError {
     }
 }
 
-/// Runs the cases of a table on all cores.
+/// Runs the cases of a table on all cores and returns their results.
 #[pyfunction]
 pub(crate) fn ensemble(
     py: Python<'_>,
@@ -442,7 +445,7 @@ pub(crate) fn ensemble(
     let all =
         Cases { base: &base.inner, columns: &cases.columns, records, grounds: Grounds::default() };
     let found = run_interruptible(py, progress, |state| {
-        // Fail early: check every row before the work.
+        // Fail early: every row is checked before the computation starts.
         let numbers: Vec<usize> = (0..count).collect();
         let kinds =
             pool::map(&numbers, |row| all.scenario(*row).map(|one| Cases::kind(&one)), &|_| ());
@@ -451,7 +454,7 @@ pub(crate) fn ensemble(
             known.push(kind.map_err(|error| (error, row))?);
         }
         if count > 0 {
-            // Report once what all cases lack, and not in every row.
+            // A problem of all cases is reported once, not in every row.
             let first = all.scenario(0).map_err(|error| (error, 0))?;
             all.grounds.of(&first).map_err(|error| (CaseError::Ground(error), 0))?;
         }

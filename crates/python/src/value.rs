@@ -1,4 +1,4 @@
-//! Converts values of Python to values of a scenario.
+//! Converts Python values to values of a scenario.
 
 use barrelstack::scenario::tree::{Entry, Node, Origin, Table, Value};
 use pyo3::exceptions::PyTypeError;
@@ -14,7 +14,7 @@ pub(crate) fn table(dict: &Bound<'_, PyDict>) -> PyResult<Table> {
     let mut entries = Vec::new();
     for (key, value) in dict {
         let key: String = key.extract().map_err(|_| {
-            PyTypeError::new_err(format!("keys of a scenario are texts, found {key:?}"))
+            PyTypeError::new_err(format!("keys of a scenario must be texts, found {key:?}"))
         })?;
         entries.push(Entry { origin: Origin::Default, node: node(of(&value, &key)?), key });
     }
@@ -29,7 +29,7 @@ fn of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
         let items = value.try_iter()?.map(|item| Ok(node(of(&item?, key)?)));
         return items.collect::<PyResult<_>>().map(Value::Array);
     }
-    // Test for bool first: it is a subclass of int in Python.
+    // Tests for bool first, because bool is a subclass of int in Python.
     if value.is_instance_of::<PyBool>() {
         return value.extract().map(Value::Flag);
     }
@@ -43,7 +43,7 @@ fn of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
         return value.extract().map(Value::Text);
     }
     Err(PyTypeError::new_err(format!(
-        "`{key}` is a {}, and a scenario holds texts, numbers, truths, lists and dicts",
+        "`{key}` is a {}; a scenario contains texts, numbers, booleans, lists and dicts",
         value.get_type().name()?
     )))
 }

@@ -96,9 +96,9 @@ def test_a_set_that_cannot_be_is_refused(library: Path) -> None:
         records = read_folder(library)
     with pytest.raises(RecordError, match="30"):
         select(records, "ec8:ag=0.3,site=B", spectrum="h1")
-    with pytest.raises(ValueError, match="level or with epsilon"):
+    with pytest.raises(ValueError, match="either level or epsilon"):
         select(records, ([0.5, 1.0], [1.0, 0.5], [0.6, 0.6]), at=1.0)
-    with pytest.raises(ValueError, match="none of the target's periods"):
+    with pytest.raises(ValueError, match="not a period of the target"):
         select(records, ([0.5, 1.0], [1.0, 0.5], [0.6, 0.6]), at=0.7, epsilon=1.0, count=3)
 
 

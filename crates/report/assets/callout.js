@@ -1,6 +1,6 @@
-// The callout: a sentence beside the stack with a line to the body that it is about.
+// The callout: a sentence beside the stack, with a line to the body that it concerns.
 
-const LINE = 17, WORDS = 150; // height of a line and most width of one (px)
+const LINE = 17, WORDS = 150; // height and maximum width of a line of text (px)
 
 function wrapped(context, text, most) {
   const lines = [""];
@@ -12,7 +12,8 @@ function wrapped(context, text, most) {
   return lines;
 }
 
-// The free place nearest to the body; it is found once for a size, so that it does not jump about.
+// Finds the free place nearest to the body. It is computed once per picture size, so that the
+// callout does not jump.
 function calloutPlace(pen, wide, high, body, others) {
   const cost = (x, y) => {
     const box = [x, y, x + wide, y + high];
@@ -30,7 +31,7 @@ function calloutPlace(pen, wide, high, body, others) {
   return best ?? { x: 8, y: 38 };
 }
 
-// `circles` are the places of all bodies as [x, y, radius] (px), `at` the place of its own.
+// `circles` are the bodies as [x, y, radius] (px); `at` is the body concerned.
 function drawCallout(pen, text, at, circles, cache) {
   const { context, paint } = pen;
   context.font = "600 13px system-ui, sans-serif";

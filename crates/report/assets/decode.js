@@ -1,4 +1,5 @@
-// Numbers of the page: base64 to bytes to differences to values; missing ones are NaN.
+// Decodes the numbers of the page: base64 to bytes, to differences, to values; missing values are
+// NaN.
 
 function bytesOf(text) {
   const raw = atob(text);
@@ -7,8 +8,8 @@ function bytesOf(text) {
   return bytes;
 }
 
-// One Float64Array for each channel. Integers stay below 2^53, so sums and products are exact.
-// What a worker has unpacked before is taken as it is.
+// Returns one Float64Array per channel. Integers stay below 2^53, so sums and products are exact.
+// Data already unpacked by a worker are returned as they are.
 function unpack(packed) {
   if (Array.isArray(packed)) return packed;
   const bytes = bytesOf(packed.d);
@@ -44,7 +45,8 @@ function columnOf(column) {
   return unpack(column)[0];
 }
 
-// Place of the value nearest to `wanted` in a list that never decreases; the earlier of two.
+// Returns the index of the value nearest to `wanted` in a non-decreasing list; the earlier of two
+// equally near ones.
 function nearest(values, wanted) {
   let low = 0, high = values.length - 1;
   while (high - low > 1) {
@@ -55,7 +57,7 @@ function nearest(values, wanted) {
   return high > low && Math.abs(values[high] - wanted) < Math.abs(values[low] - wanted) ? high : low;
 }
 
-// The largest of 1, 2, 5 × 10ⁿ not above `most`.
+// Returns the largest of 1, 2, 5 × 10ⁿ that does not exceed `most`.
 function roundLength(most) {
   if (!(most > 0) || !isFinite(most)) return 0;
   const scale = 10 ** Math.floor(Math.log10(most));

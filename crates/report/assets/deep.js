@@ -1,16 +1,17 @@
-// The stage in three dimensions: barrels, racks and floor of one frame, drawn with WebGL into the canvas of the flat stage.
+// The stage in three dimensions: barrels, racks and floor of one frame, drawn with WebGL into the
+// canvas of the flat stage.
 
-const FLOOR = 60; // reach of the floor around what stands on it (m)
-const SAMPLES = 240; // frames by which the room that the bodies take is known
-const SINCE = 3; // time (s) for which the picture keeps room where bodies have been
-const AHEAD = 0.5; // time (s) over which the picture widens for what flies out of it
-const SHARPEST = 2; // pixels of a picture for each of the page
-const SLOW_FRAME = 45, PATIENCE = 12; // time of a picture that is too long (ms), and how many of them in a row are
+const FLOOR = 60; // extent of the floor around the bodies (m)
+const SAMPLES = 240; // number of frames from which the extent of the bodies is sampled
+const SINCE = 3; // time (s) for which the picture keeps showing where bodies have been
+const AHEAD = 0.5; // time (s) over which the picture widens for bodies that leave it
+const SHARPEST = 2; // maximum number of picture pixels per page pixel
+const SLOW_FRAME = 45, PATIENCE = 12; // duration (ms) of a slow picture, and the number of slow pictures in a row before quality is reduced
 
-// All directions in space, in eighths of a turn.
+// Directions in space, in steps of an eighth turn.
 const SIDES = [-1, 0, 1].flatMap((x) => [-1, 0, 1].flatMap((y) => [-1, 0, 1].map((z) => [x, y, z]))).filter((side) => side.some(Boolean));
 
-// The renderer of all stages, with their materials.
+// The renderer that all stages share, with its materials.
 function makeEngine(three, canvas, context) {
   const renderer = new three.WebGLRenderer({ canvas, context, alpha: true, antialias: true });
   renderer.shadowMap.enabled = true;
@@ -34,7 +35,7 @@ function makeEngine(three, canvas, context) {
     shadow: new three.ShadowMaterial({ depthWrite: false }),
   };
   const names = new Map();
-  // The name of a barrel as it is painted on its heads.
+  // Returns the texture of the name of a barrel, as painted on its heads.
   function nameOf(text, ink) {
     const key = `${ink} ${text}`;
     if (!names.has(key)) {
@@ -59,7 +60,7 @@ function makeEngine(three, canvas, context) {
     materials.grid.color.set(paint.soft);
     materials.shadow.opacity = isDark(paint) ? 0.5 : 0.28;
   }
-  // Without a graphics card pictures take long: shadows go first, then sharpness.
+  // Without a graphics card pictures are slow: shadows are dropped first, then sharpness.
   const pace = { slow: 0, plainness: 0 };
   function timed(duration) {
     pace.slow = duration > SLOW_FRAME ? pace.slow + 1 : 0;
@@ -73,7 +74,8 @@ function makeEngine(three, canvas, context) {
 
 const isDark = (paint) => parseInt(paint.paper.slice(1, 3), 16) < 128;
 
-// `flat` is the stage whose canvas and options it shares, `eye` that of all `stages`.
+// `flat` is the flat stage whose canvas and options this stage shares; `eye` is the camera of all
+// `stages`.
 function makeDeepStage(data, flat, engine, eye, stages) {
   const { three, renderer, materials } = engine, { depth } = data, { canvas } = flat;
   const scene = new three.Scene(), camera = new three.PerspectiveCamera();
@@ -85,7 +87,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   const [matrix, quaternion, vector, one] = [new three.Matrix4(), new three.Quaternion(), new three.Vector3(), new three.Vector3(1, 1, 1)];
   let paint = {}, width = 0, height = 0, target = [0, 0, 0], away = 1, back = [0, -1, 0];
 
-  // The pose of a body as place and quaternion; null where it is not known.
+  // Returns the pose of a body as position and quaternion; null if unknown.
   function poseOf(body, frame) {
     if (!depth.plane) {
       const [x, y, z, w, a, b, c] = [0, 1, 2, 3, 4, 5, 6].map((k) => depth.poses[7 * body + k][frame]);
@@ -103,7 +105,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     return true;
   }
 
-  // Bodies of one shape and material are drawn at once.
+  // Bodies with the same shape and material are drawn in one call.
   const geometries = depth.shapes.map(() => new Map());
   const groups = [], labels = [], corners = [];
   function geometryOf({ places, normals, maps, faces }) {
@@ -173,7 +175,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   sun.shadow.radius = 5;
   scene.add(sky, sun, sun.target);
 
-  // The floor fades into the paper; its grid of a meter moves with the ground.
+  // The floor fades into the paper; its one-meter grid moves with the ground.
   const floor = new three.Group(), field = new three.Group();
   {
     const rings = [0, 0.08, 0.2, 0.45, 1], sides = 64, places = [], colors = [], faces = [];
@@ -215,7 +217,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     scene.add(floor);
   }
 
-  // By how much the camera rides with the ground or the stack (m).
+  // Returns the displacement (m) of the camera that follows the ground or the stack.
   function shiftAt(frame) {
     const shift = (body) => {
       const [was, is] = [poseOf(body, 0), poseOf(body, frame)];
@@ -228,8 +230,9 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     return [middle(0), middle(1), moving.length === 1 ? all[0][2] : 0];
   }
 
-  // The farthest points of the bodies to all sides at about a time, as the camera rides: they spread, and begin to before
-  // the bodies reach the edge of the picture. Where paths are shown, these are all since the start.
+  // For sampled times, the farthest points of the bodies in all directions, relative to the camera.
+  // They spread ahead of time, before the bodies reach the edge of the picture. If paths are shown,
+  // the points cover the time since the start.
   const rooms = {};
   function known(back) {
     const stride = Math.max(1, Math.ceil(data.count / SAMPLES)), times = [], alone = [];
@@ -278,7 +281,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     return threes(sum);
   }
 
-  // Puts the camera where it sees the rooms of all stages.
+  // Places the camera where it sees the points of all stages.
   function aim(time, shift) {
     const list = stages().flatMap((one) => one.room(time));
     const [low, high] = [Math.min, Math.max].map((end) => [0, 1, 2].map((axis) => end(...list.map((point) => point[axis]))));
@@ -286,7 +289,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     const center = plus(middle, shift), axes = eye.axes(), tan = Math.tan(0.5 * LENS), aspect = width / height;
     const [above, below] = [flat.head + 8, 34];
     const [tanX, tanY] = [(tan * aspect * (width - 28)) / width, (tan * (height - above - below)) / height];
-    // What is nearer looks larger: the middle of the picture is found in a few rounds.
+    // Nearer points look larger, so the center of the picture is found by iteration.
     for (let round = 0; round < 4; round++) {
       const inView = list.map((corner) => {
         const offset = plus(corner, middle, -1);
@@ -313,7 +316,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     camera.matrixWorldNeedsUpdate = true;
     camera.updateMatrixWorld(true);
     stage.perPixel = () => (2 * away * tan) / height;
-    // The sun stands to the left of the eye, so that the visible side is lit from wherever it is looked at.
+    // The sun is to the left of the camera, so that the visible side is lit from every viewpoint.
     const size = 0.5 * Math.hypot(...high.map((value, axis) => value - low[axis])) + 0.3;
     const around = eye.around - 0.7, from = [0.75 * Math.sin(around), -0.75 * Math.cos(around), 1.15];
     sun.position.set(...plus(center, from, 2 * size));
@@ -322,7 +325,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     sun.shadow.camera.updateProjectionMatrix();
   }
 
-  // A point (m) on the page: its place (px) and how many pixels a meter has there.
+  // Projects a point (m) onto the page: its position (px), and the scale (px/m) there.
   function project(point) {
     const offset = plus(plus(point, target, -1), back, -away), { right, up } = eye.axes();
     const far = -dot(offset, back), scale = height / (2 * Math.tan(0.5 * LENS) * far);
@@ -339,7 +342,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
         mesh.setMatrixAt(k, matrix);
         if (!mesh.instanceColor) return;
         const tone = tinted && tintOf(data, body, frame, flat.full, paint);
-        // Over the color of the material, by which it is multiplied.
+        // The color replaces that of the material, by which it is multiplied.
         if (tone) base.setRGB(...tone.match(/[\d.]+/g).map((part) => part / 255), three.SRGBColorSpace);
         const own = mesh.material.color;
         mesh.setColorAt(k, tone ? base.setRGB(base.r / own.r, base.g / own.g, base.b / own.b) : base.setRGB(1, 1, 1));
@@ -401,20 +404,20 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     drawOver({ context, width, height, paint, frame, time, view });
   }
 
-  // The place of a body (px) and the radius of its picture.
+  // Returns the position (px) of a body and the radius of its picture.
   function circle(body, frame) {
     const [x, y, scale] = project(placeOf(body, frame));
     const reach = Math.max(0, ...corners[body].map((corner) => Math.hypot(...corner)));
     return [x, y, 0.72 * reach * scale];
   }
 
-  // The middle (m) of the equal of a body that is nearest to the eye.
+  // Returns the center (m) of the copy of a body that is nearest to the camera.
   function placeOf(body, frame) {
     const rows = depth.bodies[body].rows, at = poseOf(body, frame) ?? [NaN, NaN, NaN];
     return plus(at, rows.reduce((best, row) => (dot(row, back) > dot(best, back) ? row : best), rows[0]));
   }
 
-  // What is written and drawn over the picture.
+  // Draws labels, arrows and paths over the picture.
   function drawOver(pen) {
     const { context } = pen;
     if (flat.traces && depth.plane) drawPaths(pen);
@@ -435,7 +438,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     context.fillStyle = paint.soft;
     context.textAlign = "left";
     halo(pen, "grid of 1\u00a0m", 14, height - 14);
-    // Of barrels in a row a plane models one.
+    // A plane models one barrel of a row.
     if (depth.bodies.some(({ rows }) => rows.length > 1)) halo(pen, "rows move as one", 14, height - 31);
     if (!eye.turned && stages()[0] === stage) {
       context.textAlign = "right";
@@ -488,7 +491,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     return arrows;
   }
 
-  // The body at a place of the stage (px); null where there is none.
+  // Returns the body at a position of the stage (px); null if there is none.
   const rays = new three.Raycaster();
   function bodyAt([x, y]) {
     rays.setFromCamera({ x: (2 * x) / width - 1, y: 1 - (2 * y) / height }, camera);

@@ -1,7 +1,7 @@
-// Contact forces as arrows on a stage, and the value of the one under the pointer.
+// Contact forces as arrows on a stage, and the value of the arrow under the pointer.
 
-const FORCE_SHARE = 0.3; // length of a strong force over the height of the view
-const UNDER = 9; // distance (px) from an arrow at which the pointer asks for its value
+const FORCE_SHARE = 0.3; // length of a strong force as a share of the height of the view
+const UNDER = 9; // distance (px) from an arrow within which its value is shown
 
 function forcesAt(data, frame) {
   const list = [];
@@ -15,7 +15,8 @@ function forcesAt(data, frame) {
   return list;
 }
 
-// The value that a share of all stay below: what is rare may leave the scale, the rest is legible.
+// Returns a high quantile of the values: rare larger values exceed the scale, so that the others
+// are legible.
 function shareBelow(values, share) {
   values.sort((a, b) => a - b);
   return values.length > 0 ? values[Math.floor(share * (values.length - 1))] : 0;
@@ -32,7 +33,7 @@ function strongForce(data) {
 
 const inNewtons = (force) => (force >= 1000 ? withUnit(force / 1000, 2, "kN") : withUnit(force, 2, "N"));
 
-// Draws the arrows of a frame and their scale; gives where they are.
+// Draws the arrows of a frame and their scale; returns their positions.
 function drawForces(pen, data, strong) {
   const { context, width, height, paint } = pen;
   const perNewton = strong > 0 ? (FORCE_SHARE * height) / strong : 0;
@@ -84,7 +85,7 @@ function halo({ context, paint }, text, x, y) {
   context.fillText(text, x, y);
 }
 
-// Distance (px) of a point from an arrow.
+// Returns the distance (px) of a point from an arrow.
 function distanceTo({ x, y, tipX, tipY }, [px, py]) {
   const dx = tipX - x, dy = tipY - y, square = dx * dx + dy * dy;
   const share = square > 0 ? Math.min(Math.max(((px - x) * dx + (py - y) * dy) / square, 0), 1) : 0;
@@ -93,7 +94,8 @@ function distanceTo({ x, y, tipX, tipY }, [px, py]) {
 
 const overlaps = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 
-// Writes the value of the arrow under the pointer beside its tip, where no name stands; gives its place.
+// Writes the value of the arrow under the pointer beside its tip, clear of all names; returns its
+// position.
 function drawForceValue(pen, arrows, hover, names) {
   const near = arrows.filter((one) => distanceTo(one, hover) < UNDER);
   if (near.length === 0) return null;

@@ -1,9 +1,10 @@
-// Other runs over the one that is shown: where top barrels went, where all ended, or how another run stands.
+// Other runs drawn over the run that is shown: paths of the top barrels, final positions, or
+// another run at the same time.
 
-const MOST_INK = 0.85; // opacity where all runs have a body
-const AROUND = 60; // reach of the picture of ends beyond the stage, which moves with the ground (px)
+const MOST_INK = 0.85; // opacity where every run has a body
+const AROUND = 60; // margin (px) of the picture of final positions, because it moves with the ground
 
-// The lines of all runs, against the ground.
+// Draws the paths of all runs, relative to the ground.
 function drawPaths({ context, toX, toY, paint }, { paths: [xs, zs] }, [gx, gz]) {
   context.beginPath();
   let pen = false;
@@ -23,7 +24,8 @@ function drawPaths({ context, toX, toY, paint }, { paths: [xs, zs] }, [gx, gz]) 
   context.globalAlpha = 1;
 }
 
-// How dark a place is says in which share of the runs a body ends there. It is drawn once for a view.
+// Draws the final positions: the darker a place, the larger the share of runs with a body there.
+// The picture is drawn once per view.
 function drawEnds(pen, ghosts, shapes, at, cache) {
   const { context, width, height, view, paint } = pen;
   const key = [width, height, view.scale, view.x, view.z, paint.accent].join();
@@ -42,7 +44,7 @@ function sumOfEnds({ width, height, view, toX, toY, paint }, { count, bodies, en
   const dpr = Math.min(window.devicePixelRatio || 1, 3);
   [picture.width, picture.height] = [width, height].map((side) => Math.round((side + 2 * AROUND) * dpr));
   const context = picture.getContext("2d");
-  // Opacities add up to that of all runs.
+  // Opacities add up over all runs.
   context.globalCompositeOperation = "lighter";
   context.globalAlpha = 1 / Math.max(count, 1);
   bodies.forEach((body, k) => {
@@ -60,7 +62,7 @@ function sumOfEnds({ width, height, view, toX, toY, paint }, { count, bodies, en
   return picture;
 }
 
-// The outlines of the bodies of another run at the same time.
+// Draws the outlines of the bodies of another run at the same time.
 function drawOverlay({ context, time, view, toX, toY, paint }, other) {
   const frame = nearest(other.times, time);
   other.shapes ??= other.bodies.map(bodyShape);

@@ -1,6 +1,7 @@
-// What a page holds in gzip: a count of bytes, a space, and five letters of 85 for every four bytes.
+// Embedded data in base 85 of gzip: a number of bytes, a space, and five letters for every four
+// bytes.
 
-// The bytes of such a text, as a stream.
+// Returns the decompressed bytes of such a text, as a stream.
 function unpacked(text) {
   const from = text.indexOf(" ") + 1;
   const view = new DataView(new ArrayBuffer((4 * (text.length - from)) / 5));
@@ -16,7 +17,7 @@ function unpacked(text) {
   return new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
 }
 
-// The bytes that the element of an id holds.
+// Returns the bytes that the element with an id contains.
 function held(id) {
   return new Response(unpacked(document.getElementById(id).textContent)).arrayBuffer();
 }

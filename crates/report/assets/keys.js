@@ -1,41 +1,41 @@
 // Keys of a player, and the panel that lists them.
 
 const KEYS = [
-  ["Space", "plays and pauses"],
-  ["← →", "a frame back, a frame on; with Shift ten"],
-  ["Home End", "the first frame, the last"],
+  ["Space", "play and pause"],
+  ["← →", "one frame back or forward; with Shift, ten frames"],
+  ["Home End", "first frame, last frame"],
   ["< >", "slower, faster"],
-  ["M", "slow loop around the moment that matters"],
+  ["M", "slow loop around the decisive moment"],
   ["C", "next camera"],
   ["N P F", "names, paths, forces"],
-  ["T G", "tint by stress, other runs over this one"],
-  ["+ − 0", "closer, farther, the whole picture"],
-  ["W A S D", "moves the picture, or turns it in three dimensions; so does dragging it"],
-  ["V", "three dimensions or the flat picture, where there are both"],
-  ["1 2 3 4", "in three dimensions, from the corner, across the barrels, along them, from above"],
-  ["Shift W A S D", "in three dimensions, moves what the other keys turn"],
+  ["T G", "color by stress, other runs over this one"],
+  ["+ − 0", "zoom in, zoom out, whole picture"],
+  ["W A S D", "move the picture (in 3D, turn it); dragging does the same"],
+  ["V", "switch between 3D and the flat picture, if there are both"],
+  ["1 2 3 4", "in 3D, view from the corner, across the barrels, along them, from above"],
+  ["Shift W A S D", "in 3D, move the picture"],
   ["Shift F", "full screen and back"],
   ["?", "these keys"],
 ];
 
-// Fills the panel of keys and gives what opens it.
+// Fills the panel of keys and returns the function that opens it.
 function makePanel(dialog) {
   const list = make("dl");
   for (const [keys, words] of KEYS) {
     const caps = keys.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
     list.append(make("dt", {}, ...caps), make("dd", {}, words));
   }
-  const hint = make("p", {}, "Ctrl and the wheel, or two fingers, zoom; a double click shows the whole picture again. In three dimensions one finger turns, and a tap names a body. Over an arrow the pointer shows its force.");
+  const hint = make("p", {}, "Zoom with Ctrl and the wheel, or with two fingers; a double click shows the whole picture again. In 3D, one finger turns the picture and a tap names a body. Hold the pointer over an arrow to see its force.");
   dialog.querySelector("form").before(list, hint);
   return () => (dialog.open ? dialog.close() : dialog.showModal());
 }
 
-// `actions` hear whether shift is held, by key.
+// `actions` maps keys to functions, which receive whether Shift is held.
 function listen(screen, actions) {
   screen.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("dialog")) return;
     const tag = event.target.tagName;
-    // A focused control keeps the keys that work it.
+    // A focused control keeps the keys that operate it.
     if (tag === "SELECT" || (tag === "BUTTON" && event.key === " ")) return;
     if (tag === "INPUT" && event.target.type === "checkbox" && event.key === " ") return;
     const action = actions[event.key];
@@ -45,7 +45,8 @@ function listen(screen, actions) {
   });
 }
 
-// Space works the player in sight before anything has been focused; the other keys follow then.
+// Until an element has the focus, Space operates the visible player, which then receives the other
+// keys.
 function listenEverywhere(players) {
   document.addEventListener("keydown", (event) => {
     const free = document.activeElement === null || document.activeElement === document.body;

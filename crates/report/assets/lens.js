@@ -1,8 +1,9 @@
 // The lens: zoom and pan of all stages of a player, by wheel, pinch, drag and keys.
 
-const NEAREST = 20, FARTHEST = 0.4; // scales against that of the whole picture
+const NEAREST = 20, FARTHEST = 0.4; // limits of the scale relative to that of the whole picture
 
-// The pointers that are down on a canvas, where one is (px), and the distance and the middle of two (px).
+// Tracks the pointers that are down on a canvas: the position of one (px), and the distance and the
+// midpoint of two (px).
 function pointers(canvas) {
   const held = new Map();
   const place = (event) => {
@@ -16,13 +17,13 @@ function pointers(canvas) {
   return { held, place, spread };
 }
 
-// `screen` is the frame of the player; `changed` draws anew.
+// `screen` is the frame of the player; `changed` redraws it.
 function makeLens(screen, stages, changed) {
   const lens = { factor: 1, x: 0, z: 0 };
   for (const stage of stages) stage.lens = lens;
 
   function set(factor, x, z) {
-    // The picture cannot be lost: its middle stays within its own size.
+    // The picture cannot be lost: its center stays within its own size.
     const most = Math.max(0, ...stages.map((stage) => Math.max(...stage.size())));
     const within = (value) => Math.min(Math.max(value, -most), most);
     Object.assign(lens, { factor, x: within(x), z: within(z) });
@@ -34,7 +35,7 @@ function makeLens(screen, stages, changed) {
   const scale = (stage) => stage.viewAt(0).scale;
   const pan = (stage, dx, dy) => set(lens.factor, lens.x - dx / scale(stage), lens.z + dy / scale(stage));
 
-  // The point at (px, py) of a stage stays where it is.
+  // Zooms such that the point at (px, py) of a stage stays in place.
   function zoom(stage, by, px, py) {
     const factor = Math.min(Math.max(lens.factor * by, FARTHEST), NEAREST);
     const shift = (1 - lens.factor / factor) / scale(stage);
@@ -45,12 +46,12 @@ function makeLens(screen, stages, changed) {
   for (const stage of stages) {
     const { canvas } = stage;
     const { held, place, spread } = pointers(canvas);
-    // In three dimensions the canvas has an eye of its own.
+    // In three dimensions the camera handles the pointers.
     const on = (name, action) => canvas.addEventListener(name, (event) => {
       if (!screen.classList.contains("deep")) action(event);
     }, { passive: false });
     on("wheel", (event) => {
-      // Alone the wheel scrolls the page; with Ctrl, as pads send a pinch, it zooms.
+      // The wheel alone scrolls the page; with Ctrl, which touchpads send for a pinch, it zooms.
       if (!(event.ctrlKey || event.metaKey || document.fullscreenElement)) return;
       event.preventDefault();
       zoom(stage, Math.exp(-event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)), ...place(event));
@@ -72,7 +73,7 @@ function makeLens(screen, stages, changed) {
         zoom(stage, wide / before.wide, ...at);
         pan(stage, at[0] - before.at[0], at[1] - before.at[1]);
       } else if (event.pointerType !== "touch" || screen.classList.contains("zoomed")) {
-        // One finger scrolls the page until there is something to move.
+        // One finger scrolls the page unless the picture is zoomed.
         pan(stage, now[0] - was[0], now[1] - was[1]);
       }
     });
@@ -86,7 +87,7 @@ function makeLens(screen, stages, changed) {
 
   return {
     lens, reset,
-    // About the middle of the first stage.
+    // Zooms about the center of the first stage.
     zoom: (by) => stages[0] && zoom(stages[0], by, stages[0].origin()[0], 0.5 * stages[0].origin()[1]),
     pan: (dx, dy) => stages[0] && pan(stages[0], dx, dy),
   };

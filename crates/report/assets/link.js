@@ -1,12 +1,12 @@
-// Links to an instant: the address of the page ends in #t=6.5 where its player stands at 6.5 s.
+// Links to an instant: the address of the page ends in #t=6.5 if its player is at 6.5 s.
 
-// The time (s) in the address; none where it holds another place or no place.
+// Returns the time (s) in the address; none if the address has another fragment or none.
 function linkedTime() {
   const found = /^#t=(\d+(?:\.\d+)?)$/.exec(location.hash);
   return found ? Number(found[1]) : null;
 }
 
-// Gives a function that writes a time into the address, once the reader rests on it.
+// Returns a function that writes a time into the address once the reader pauses there.
 function makeLink(seek) {
   let waiting = 0;
   window.addEventListener("hashchange", () => {
@@ -19,7 +19,7 @@ function makeLink(seek) {
       try {
         history.replaceState(null, "", `#t=${time.toFixed(2)}`);
       } catch {
-        // A page inside another has no address of its own.
+        // An embedded page has no address of its own.
       }
     }, 250);
   };

@@ -1,10 +1,11 @@
-// The opening of a player: a slow loop around the moment that says most; a still where motion is unwanted.
+// The opening of a player: a slow loop around the decisive moment; a still picture for readers who
+// prefer reduced motion.
 
-const BEFORE = 0.5, AFTER = 1.0; // reach of the loop around the moment (s of the run)
+const BEFORE = 0.5, AFTER = 1.0; // extent of the loop before and after the moment (s of the run)
 const SLOW = 0.25; // speed of the loop
-const HOLD = 0.9; // how long it stands on its last picture (s)
+const HOLD = 0.9; // time for which the last picture is held (s)
 
-// `show` draws a time of the run; `marked` hears whether the loop runs.
+// `show` draws a time of the run; `marked` is told whether the loop runs.
 function makeLoop(screen, time, [start, end], show, marked) {
   const from = Math.max(time - BEFORE, start), to = Math.min(time + AFTER, end);
   const whole = (to - from) / SLOW + HOLD;
@@ -28,7 +29,8 @@ function makeLoop(screen, time, [start, end], show, marked) {
     request = 0;
     marked(false);
   }
-  // Out of sight it costs nothing; gone from the page it is watched no more, since a watch keeps all that it sees.
+  // The loop stops while it is out of sight. A player removed from the page is no longer observed,
+  // because an observer keeps its targets alive.
   const watch = new IntersectionObserver(([entry]) => {
     seen = entry.isIntersecting;
     if (!screen.isConnected) watch.disconnect();

@@ -1,14 +1,16 @@
-// The eye of all stages in three dimensions of a player: turned, moved and brought closer by pointer, fingers and keys.
+// The camera of all three-dimensional stages of a player: rotated, moved and zoomed by pointer,
+// fingers and keys.
 
 const LENS = 0.46; // angle of view from top to bottom (rad)
-const CLOSEST = 12, WIDEST = 0.3; // distances of the fitted picture over those of the eye
-const TURN = Math.PI / 24; // turn by a key
-const GLIDE = 450; // duration of a turn to a preset (ms)
+const CLOSEST = 12, WIDEST = 0.3; // limits of the zoom factor: fitted distance over camera distance
+const TURN = Math.PI / 24; // rotation per key press
+const GLIDE = 450; // duration of the transition to a preset (ms)
 
-// Angles of the eye: around the stack, from across the barrels, and above the floor (rad).
+// Angles of the camera (rad): around the stack, from the view across the barrels, and above the
+// floor.
 const PRESETS = { corner: [0.62, 0.3], across: [0, 0], along: [0.5 * Math.PI, 0], above: [0, 0.5 * Math.PI] };
 
-// `stages` gives those that are shown, `changed` draws anew.
+// `stages` returns the visible stages; `changed` redraws them.
 function makeEye(screen, canvases, stages, changed) {
   const eye = { around: 0, above: 0, factor: 1, aside: [0, 0, 0] };
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
@@ -20,7 +22,7 @@ function makeEye(screen, canvases, stages, changed) {
     return { right: [c, s, 0], up: [-s * up, c * up, flat], back: [s * flat, -c * flat, up] };
   }
 
-  // Whether the picture is as it opened.
+  // Updates whether the picture is as it opened.
   function settle() {
     const [around, above] = PRESETS.corner;
     const whole = eye.factor === 1 && eye.aside.every((v) => v === 0) && eye.around === around && eye.above === above;
@@ -36,7 +38,7 @@ function makeEye(screen, canvases, stages, changed) {
     settle();
   }
 
-  // By pixels of a stage.
+  // Pans by pixels of a stage.
   function pan(dx, dy) {
     const { right, up } = axes(), perPixel = stages()[0]?.perPixel() ?? 0;
     eye.aside = plus(plus(eye.aside, right, -dx * perPixel), up, dy * perPixel);
@@ -48,7 +50,7 @@ function makeEye(screen, canvases, stages, changed) {
     settle();
   }
 
-  // Goes to a preset, the short way around.
+  // Moves to a preset, the shorter way around.
   function go(name) {
     cancelAnimationFrame(gliding);
     const from = [eye.around, eye.above], [around, above] = PRESETS[name];
@@ -77,7 +79,7 @@ function makeEye(screen, canvases, stages, changed) {
     let moved = 0;
     const on = (name, action) => canvas.addEventListener(name, (event) => { if (isDeep()) action(event); }, { passive: false });
     on("wheel", (event) => {
-      // Alone the wheel scrolls the page; with Ctrl, as pads send a pinch, it zooms.
+      // The wheel alone scrolls the page; with Ctrl, which touchpads send for a pinch, it zooms.
       if (!(event.ctrlKey || event.metaKey || document.fullscreenElement)) return;
       event.preventDefault();
       zoom(Math.exp(-event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)));
@@ -108,7 +110,7 @@ function makeEye(screen, canvases, stages, changed) {
     for (const name of ["pointerup", "pointercancel"]) {
       on(name, (event) => {
         held.delete(event.pointerId);
-        // A tap names what it meets.
+        // A tap shows the name of the body that it hits.
         if (moved < 8) {
           stage.hover = place(event);
           changed();

@@ -16,7 +16,7 @@ const board = { player: players[0] || null, plots: [] };
 for (const figure of document.querySelectorAll("[data-plot]")) {
   board.plots.push(makePlot(page.plots[Number(figure.dataset.plot)], columns, figure, board));
 }
-// Plots are built when they come near the screen, so that the page opens at once.
+// Plots are built when they come near the screen, so that the page opens without delay.
 const nearby = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
     const plot = isIntersecting && board.plots.find((one) => one.figure === target);
@@ -44,14 +44,14 @@ function refresh() {
 }
 let width = window.innerWidth, waiting = 0;
 window.addEventListener("resize", () => {
-  // Phones fire this when the address bar hides; only the width matters.
+  // Phones fire this event when the address bar hides; only a change of the width matters.
   if (window.innerWidth === width) return;
   width = window.innerWidth;
   clearTimeout(waiting);
   waiting = setTimeout(refresh, 120);
 });
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", refresh);
-// What a word means goes away without a move of the pointer.
+// The explanation of a term can be closed without moving the pointer.
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape" && document.activeElement?.matches(".term")) document.activeElement.blur();
 });
@@ -111,15 +111,16 @@ for (const figure of document.querySelectorAll("figure.plot, figure.envelope")) 
   figure.querySelector("figcaption").append(" ", files);
 }
 
-// A table as a spreadsheet takes it: a line for each row, tabs between cells, plain minus signs.
+// Returns a table for a spreadsheet: one line per row, tabs between cells, plain minus signs.
 function tabbed(table) {
   const cell = (of) => of.textContent.trim().replace(/\s+/g, " ").replace(/^–$/, "").replace(/^−(?=\d)/, "-");
-  // What has one column is text, whose head is no part of it.
+  // A row with a single cell is text, and its heading is not part of the table.
   const rows = [...table.rows].filter((row) => row.cells.length > 1 || !row.parentElement.matches("thead"));
   return rows.map((row) => [...row.cells].map(cell).join("\t")).join("\n") + "\n";
 }
 
-// Browsers keep the clipboard to pages from a safe place; the old way works everywhere else.
+// Browsers offer the clipboard only to pages from a secure origin; the old method works everywhere
+// else.
 async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);

@@ -10,30 +10,30 @@ function readPane(raw, dashes) {
   return { ...raw, dashes, depth, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
-// `earlier` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`. Nothing is drawn
-// until the player is first refreshed.
+// `earlier` has the panes of an earlier run, to be drawn over these panes under the name
+// `raw.overlay`. Nothing is drawn until the player is first refreshed.
 function makePlayer(raw, figure, dashes, earlier) {
   const find = (selector) => figure.querySelector(selector);
   const act = (name) => find(`[data-act="${name}"]`);
   const ground = raw.ground.map((h) => ({ ...h, t: columnOf(h.t), v: columnOf(h.v) }));
   const boxes = [...figure.querySelectorAll(".screen .stage")];
   const panes = raw.panes.map((one, at) => makePane(readPane(one, dashes), boxes[at]));
-  // Arrows and tints of all panes have one scale each, which is looked for once they are shown.
+  // Arrows and colors have one scale each for all panes, computed when they are first shown.
   for (const [scale, most] of [["strong", strongForce], ["full", fullTint]]) {
     let common = null;
     const get = () => (common ??= Math.max(0, ...panes.map(({ data }) => most(data))));
     for (const { stage } of panes) Object.defineProperty(stage, scale, { get });
   }
-  // The bodies of the first pane, to be drawn over the others; or those of an earlier run.
+  // The bodies of the first pane, or those of an earlier run, are drawn over the panes.
   if (earlier) panes.forEach(({ data }, at) => { data.overlay = earlier[at].data; });
   else if (raw.overlay) for (const { data } of panes.slice(1)) data.overlay = panes[0].data;
   const any = (test) => panes.some(({ data }) => test(data));
-  // The pane that lasts longest beats time; the others show their frame nearest to it.
+  // The pane that lasts longest sets the time; the others show their frame nearest to it.
   const last = (pane) => (pane.data.count > 0 ? pane.data.times[pane.data.count - 1] : -Infinity);
   const lead = panes.reduce((a, b) => (last(b) > last(a) ? b : a), panes[0]);
   const { times, count } = lead ? lead.data : { times: [], count: 0 };
   const start = count > 0 ? times[0] : 0, end = count > 0 ? times[count - 1] : 0;
-  // Where play starts: not with the stillness before the ground moves.
+  // Playing starts shortly before the ground moves.
   const begins = Math.min(Math.max(raw.begins ?? start, start), end);
   const screen = find(".screen"), scrub = find("input.scrub");
   const timeline = makeTimeline(find("canvas.timeline"), panes.map((p) => p.data), ground, start, end);
@@ -51,7 +51,7 @@ function makePlayer(raw, figure, dashes, earlier) {
   act("ghosts").nextElementSibling.textContent = raw.overlay || (known ? known.data.ghosts.label : "");
   if (!any((data) => data.bodies.some((body) => body.role === "ground"))) act("camera").options[1].remove();
 
-  // `opens` while the player is as the page opened it, and nobody has taken over.
+  // `opens` while the player is as the page opened it and the reader has not used it.
   let opens = true;
   const moment = typeof raw.opens === "number" ? panes[raw.opens].data.moment : null;
   const loop = moment && makeLoop(screen, moment.t, [start, end], (time) => show(nearest(times, time)), (looping) => {
@@ -69,13 +69,13 @@ function makePlayer(raw, figure, dashes, earlier) {
     for (const listener of listeners) listener(time);
   }
 
-  // The reader takes over from the opening.
+  // Ends the opening when the reader uses the player.
   function take() {
     if (loop) loop.stop();
     opens = false;
   }
 
-  // Puts the player where it opens, without drawing.
+  // Sets the player to its opening state, without drawing.
   function ready() {
     opens = true;
     pause();
@@ -90,7 +90,7 @@ function makePlayer(raw, figure, dashes, earlier) {
 
   const settled = () => { if (!playing && !opens) for (const listener of rests) listener(times[frame] ?? 0); };
 
-  // Puts it at a time, without drawing.
+  // Sets the player to a time, without drawing.
   function stand(time) {
     take();
     head = Math.min(Math.max(Number(time) || 0, start), end);
@@ -106,7 +106,7 @@ function makePlayer(raw, figure, dashes, earlier) {
 
   function tick(now) {
     if (!playing) return;
-    // A tab in the background returns with a long pause, which is not play time.
+    // After a tab was in the background, the long pause does not count as play time.
     head += Math.min((now - before) / 1000, 0.25) * speed;
     before = now;
     rate.frames += 1;
@@ -172,7 +172,7 @@ function makePlayer(raw, figure, dashes, earlier) {
   const lens = makeLens(screen, panes.map(({ stage }) => stage), () => show(frame));
   const views = makeViews(screen, panes, act, () => show(frame), () => refresh());
   const step = 40; // px
-  // The keys that move the picture move the eye in three dimensions.
+  // In three dimensions, the keys that move the picture rotate the camera.
   const whole = () => (views.isDeep() ? views.eye.go("corner") : lens.reset());
   const zoom = (by) => (views.isDeep() ? views.eye.zoom(by) : lens.zoom(by));
   const pan = (dx, dy) => (shift) => {
@@ -253,7 +253,7 @@ function makePlayer(raw, figure, dashes, earlier) {
   function refresh() {
     fitStages(panes, figure);
     timeline.resize();
-    // The thumb, 16 px wide, stands under the cursor.
+    // The thumb, 16 px wide, is centered under the cursor.
     const [left, right] = timeline.ends();
     scrub.style.margin = `0 ${right - 8}px 0 ${left - 8}px`;
     show(frame);
@@ -279,7 +279,7 @@ function makePlayer(raw, figure, dashes, earlier) {
   };
 }
 
-// One scene: its stage, its clock and what it announces.
+// One scene: its stage, its clock and its announcements.
 function makePane(data, box) {
   const stage = makeStage(data, box.querySelector("canvas.scene"));
   if (data.moment) stage.canvas.setAttribute("aria-label", `The bodies at the time shown; ${data.moment.text}, at ${data.moment.t.toFixed(2)}\u00a0s`);
@@ -288,7 +288,7 @@ function makePane(data, box) {
   let shown = 0, said = null;
   return {
     data, stage, deep: null, section: box.closest(".pane") ?? box,
-    // While the player opens, the moment has its callout and nothing is announced.
+    // While the player opens, the moment has its callout and events are not announced.
     show(k, time, opens) {
       const drawn = stage.deep && this.deep ? this.deep : stage, told = drawn === stage ? data : data.depth;
       shown = Math.min(Math.max(k, 0), Math.max(0, data.count - 1));
@@ -296,7 +296,7 @@ function makePane(data, box) {
       const { moment } = told;
       stage.callout = moment && time >= moment.t - (opens ? BEFORE : 1e-6) && time < moment.t + 0.8;
       drawn.draw(shown, own);
-      // A run that ended holds its last frame and says so.
+      // A run that has ended holds its last frame, and its clock states this.
       const ended = time > end + 0.02;
       clock.textContent = ended ? `ended at ${end.toFixed(2)}\u00a0s` : `${own.toFixed(2)}\u00a0s`;
       clock.classList.toggle("ended", ended);
@@ -313,7 +313,7 @@ function makePane(data, box) {
   };
 }
 
-// Sizes all stages of a player alike.
+// Gives all stages of a player the same size.
 function fitStages(all, figure) {
   const screen = figure.querySelector(".screen");
   const panes = all.filter(({ section }) => !section.hidden);
@@ -323,16 +323,17 @@ function fitStages(all, figure) {
   }
   const [first] = panes;
   if (!first) return;
-  // A player that opens the page fills the first screen, controls included; others take less.
+  // A player that opens the page fills the first screen, controls included; others are smaller.
   const above = screen.getBoundingClientRect().top + window.scrollY;
   const used = figure.querySelector(".controls").getBoundingClientRect().bottom - screen.getBoundingClientRect().top;
-  // Slender stages have no room beside their bodies.
+  // Narrow stages have no room beside their bodies.
   for (const { stage } of panes) {
     const slender = stage.canvas.parentElement.clientWidth < 260 && panes.some(({ data }) => data.moment);
     stage.head = HEAD + (slender ? ABOVE : 0);
   }
   const canvases = panes.map(({ stage }) => stage.canvas);
-  // Panes of a row begin at one height; their canvases, which end at one, differ by rounding.
+  // The panes of a row begin at the same height; the lower edges of their canvases differ by
+  // rounding, so the upper ones are compared.
   const rows = new Set(canvases.map((canvas) => Math.round((canvas.closest(".pane") ?? canvas).getBoundingClientRect().top))).size || 1;
   const rest = used - rows * first.stage.canvas.offsetHeight;
   const opens = above < 0.5 * window.innerHeight;

@@ -1,11 +1,11 @@
-// Live plots: readout, linked cursor and zoom over uPlot.
+// Interactive plots: readout, linked cursor and zoom, built on uPlot.
 
 const STEPS = [];
 for (let n = -12; n <= 12; n++) for (const f of [1, 2, 5]) STEPS.push(Number(`${f}e${n}`));
 
 function makePlot(raw, columns, figure, page) {
   const live = figure.querySelector(".live");
-  // Numbers are read when the plot is first seen.
+  // Numbers are decoded when the plot is first visible.
   const series = raw.series.map((s) => ({
     ...s, shown: true,
     get xs() { return columns(s.x); },
@@ -126,7 +126,7 @@ function makePlot(raw, columns, figure, page) {
   }
 
   function zoom(min, max) {
-    // A plot that nobody has seen yet takes the range when it is built.
+    // A plot that is not built yet takes the range when it is built.
     wanted = [min, max];
     if (!plot) return;
     quiet = true;
@@ -183,7 +183,7 @@ function makePlot(raw, columns, figure, page) {
       ctx.restore();
       ctx.fillText(text, x, y);
     };
-    // A label that would cover the one before it goes a line lower.
+    // A label that would cover the previous one is moved down a line.
     const ends = [];
     for (const mark of [...raw.marks].sort((a, b) => a.at - b.at)) {
       const x = u.valToPos(mark.at, "x", true);
@@ -282,7 +282,8 @@ function makePlot(raw, columns, figure, page) {
   return api;
 }
 
-// A value of an axis as finely as the picture shows it: what is less than a pixel is nothing.
+// Formats a value of an axis with the precision of the picture; a value below one pixel is shown as
+// zero.
 function told(value, axis, scale, digits) {
   const span = scale ? scale.max - scale.min : 0;
   if (!isFinite(value) || axis.log || !(span > 0)) return withUnit(value, digits, axis.unit);

@@ -1,8 +1,8 @@
-// Solids in three dimensions: from the volumes of a body to triangles.
+// Solids in three dimensions: converts the volumes of a body to triangles.
 
-const AROUND_BARREL = 48, AROUND_TUBE = 14; // sides of a circle
+const AROUND_BARREL = 48, AROUND_TUBE = 14; // number of sides of a circle
 const CHIME = 0.022, CROZE = 0.032; // thickness of staves at the ends and depth of the heads of a barrel 0.95 m long (m)
-const HOOPS = [0.93, 0.62, 0.3]; // places of hoops on each side, over half of the length
+const HOOPS = [0.93, 0.62, 0.3]; // positions of the hoops on each side, as shares of half the length
 
 const plus = (a, b, by = 1) => [a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -13,15 +13,15 @@ function makeMesh() {
   return { places: [], normals: [], maps: [], faces: [] };
 }
 
-// Axes about which a profile turns: its second stands up where it can.
+// Returns axes about which a profile is revolved; the second axis points up where possible.
 function frameOf(at, axis) {
   const up = Math.abs(axis[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
   const v = unit(plus(up, axis, -dot(up, axis)));
   return { at, axis, u: cross(v, axis), v };
 }
 
-// Adds the surface that a profile of [place along the axis, radius] leaves; to its left is outside. A smooth one has
-// one normal for each of its points, others one for each of their parts.
+// Adds the surface of revolution of a profile of [position along the axis, radius]; the outside is
+// to the left of the profile. A smooth surface has one normal per point, others one per segment.
 function revolve(mesh, frame, profile, sides, smooth, map) {
   const pieces = smooth ? [profile] : profile.slice(1).map((point, k) => [profile[k], point]);
   for (const piece of pieces) {
@@ -50,7 +50,7 @@ function revolve(mesh, frame, profile, sides, smooth, map) {
 const flatMap = () => [0, 0];
 
 function addBlock(mesh, at, [a, b, c]) {
-  // Sides of a left-handed block face inward.
+  // The sides of a left-handed block would face inward.
   const sides = dot(cross(a, b), c) < 0 ? [a, c, b] : [a, b, c];
   for (let k = 0; k < 3; k++) {
     for (const sign of [-1, 1]) {
@@ -78,7 +78,7 @@ function addVolume(mesh, volume) {
   }
   if (volume.tube) {
     const [from, to] = threes(volume.tube), along = plus(to, from, -1), r = volume.radius;
-    // A tube without length is a knob as long as thick.
+    // A tube of zero length is drawn as a knob as long as it is thick.
     const length = Math.hypot(...along), [low, high] = length > 1e-3 ? [0, length] : [-r, r];
     const frame = frameOf(from, length > 1e-3 ? unit(along) : [0, 0, 1]);
     return revolve(mesh, frame, [[low, 0], [low, r], [high, r], [high, 0]], AROUND_TUBE, false, flatMap);
@@ -90,7 +90,8 @@ function addVolume(mesh, volume) {
   return revolve(mesh, frame, [profile.at(-1), [ends[1], 0]], AROUND_BARREL, false, flatMap);
 }
 
-// A barrel: staves, heads set back behind the chimes, hoops with the bung, and a place for its name on both heads.
+// Adds a barrel: staves, heads set back behind the chimes, hoops, the bung, and a place for the
+// name on both heads.
 function addBarrel({ wood, head, steel, label }, volume) {
   const profile = pairs(volume.turned), frame = frameOf(volume.at, volume.axis);
   const half = profile.at(-1)[0], size = half / 0.475, rim = profile.at(-1)[1] - CHIME * size, inner = half - CROZE * size;
@@ -126,7 +127,7 @@ function addBarrel({ wood, head, steel, label }, volume) {
   }
 }
 
-// The meshes of a list of volumes by their material.
+// Returns the meshes of a list of volumes, by material.
 function meshesOf(volumes, role) {
   const meshes = {};
   const mesh = (name) => (meshes[name] ??= makeMesh());
@@ -137,7 +138,8 @@ function meshesOf(volumes, role) {
   return meshes;
 }
 
-// Grain and seams of wood, around a barrel or across a head, to be multiplied with its color.
+// Draws the grain and the seams of wood, around a barrel or across a head; the picture is
+// multiplied with the color.
 function woodPicture(boards, across, wide, high) {
   const picture = make("canvas", { width: wide, height: high });
   const context = picture.getContext("2d");
@@ -156,7 +158,7 @@ function woodPicture(boards, across, wide, high) {
     context.fillRect(x, 0, Math.max(1.4, wide / 500), high);
   }
   if (across) return picture;
-  // Toasted toward the ends, where hands and hoops have been.
+  // Darker toward the ends, as from handling and hoops.
   const shade = context.createLinearGradient(0, 0, 0, high);
   for (const [at, dark] of [[0, 0.3], [0.1, 0.08], [0.5, 0], [0.9, 0.08], [1, 0.3]]) shade.addColorStop(at, `rgb(60 35 15 / ${dark})`);
   context.fillStyle = shade;

@@ -1,9 +1,9 @@
-// The stage: bodies, paths, forces and events of one frame drawn on a canvas.
+// The flat stage: bodies, paths, forces and events of one frame, drawn on a canvas.
 
-const FOOT = 36; // room below the lowest body for the hatch of the ground and the scales (px)
-const HATCH = 12; // distance of the strokes of the hatch (px)
-const HEAD = 34; // room above the highest body for the clock and the news (px)
-const ABOVE = 64; // and for a callout, where there is none beside the bodies
+const FOOT = 36; // space below the lowest body for the hatch of the ground and the scales (px)
+const HATCH = 12; // distance between the strokes of the hatch (px)
+const HEAD = 34; // space above the highest body for the clock and the announcements (px)
+const ABOVE = 64; // the same with a callout that has no space beside the bodies
 
 function bodyShape(body) {
   const trace = (line) => {
@@ -31,18 +31,18 @@ function makeStage(data, canvas) {
   const [left, bottom, right, top] = data.view;
   const stage = {
     camera: "fixed", names: true, forces: false, traces: true, tint: false, ghosts: false,
-    // Whether the sentence of the moment is shown, and where the pointer is (px).
+    // Whether the callout of the moment is shown, and the position of the pointer (px).
     callout: false, hover: null, valued: null,
     head: HEAD,
     lens: { factor: 1, x: 0, z: 0 },
-    // The largest scale (px/m) that may be drawn to: panes side by side are drawn to one.
+    // The largest scale (px/m) that may be used; panes side by side share one scale.
     most: Infinity,
     canvas, draw, resize, retheme, viewAt, scale,
     paint: () => paint,
     measures: () => ({ width, height, dpr }),
-    // Whether it is drawn in three dimensions, which need more room than a slender picture.
+    // Whether the stage is drawn in three dimensions, which need more space than a narrow picture.
     deep: false,
-    // The point of the canvas (px) about which the view is, and the size of the view (m).
+    // The point of the canvas (px) about which the view zooms, and the size of the view (m).
     origin: () => [0.5 * width, height - FOOT],
     size: () => [right - left, top - bottom],
   };
@@ -56,7 +56,7 @@ function makeStage(data, canvas) {
     paint = Object.fromEntries(names.map((name) => [name, color(name)]));
   }
 
-  // `most` is the height (px) that there is room for, all of which is taken on the `full` screen.
+  // `most` is the available height (px); a `full` screen uses all of it.
   function resize(most, full) {
     width = Math.max(120, Math.floor(canvas.parentElement.getBoundingClientRect().width));
     const own = (width * (top - bottom)) / (right - left) + FOOT + stage.head;
@@ -68,12 +68,13 @@ function makeStage(data, canvas) {
     canvas.style.height = height + "px";
   }
 
-  // The scale (px/m) of the whole picture.
+  // Returns the scale (px/m) of the whole picture.
   function scale() {
     return Math.min(width / (right - left), (height - FOOT - stage.head) / (top - bottom), stage.most);
   }
 
-  // Meters to pixels: scale and the world point at the middle of the foot of the canvas.
+  // Returns the view for a frame: the scale, and the world point at the middle of the lower edge of
+  // the canvas.
   function viewAt(frame) {
     let x = 0.5 * (left + right), z = bottom;
     const pose = (body, k) => [data.poses[3 * body][k], data.poses[3 * body + 1][k]];
@@ -88,7 +89,7 @@ function makeStage(data, canvas) {
       const shifts = moving.map((b) => pose(b, frame)[0] - pose(b, 0)[0]).filter(isFinite);
       shifts.sort((a, b) => a - b);
       if (shifts.length > 0) x += shifts[shifts.length >> 1];
-      // A lone body is followed down a slope, too; what falls off a stack is not.
+      // A single body is followed down a slope too; bodies that fall off a stack are not followed.
       const fall = moving.length === 1 ? pose(moving[0], frame)[1] - pose(moving[0], 0)[1] : 0;
       if (isFinite(fall)) z += fall;
     }
@@ -119,7 +120,7 @@ function makeStage(data, canvas) {
     if (stage.ghosts && data.ghosts) drawPaths(pen, data.ghosts, at);
     if (stage.ghosts && data.overlay) drawOverlay(pen, data.overlay);
     if (stage.traces) drawTraces(context, frame, toX, toY);
-    // Names stand over arrows, and values where no name is.
+    // Names are drawn over arrows, and values only where there is no name.
     const arrows = stage.forces ? drawForces(pen, data, stage.strong) : [];
     const names = stage.names ? drawNames(context, frame, view, toX, toY, tinted) : [];
     drawEvents(pen);
@@ -129,12 +130,12 @@ function makeStage(data, canvas) {
     stage.valued = stage.hover ? drawForceValue(pen, arrows, stage.hover, names) : null;
   }
 
-  // The place of the ground (m).
+  // Returns the position of the ground (m).
   function groundAt(frame) {
     return ground < 0 ? [0, 0] : [data.poses[3 * ground][frame], data.poses[3 * ground + 1][frame]];
   }
 
-  // The places of the bodies as [x, y, radius] (px).
+  // Returns a body as [x, y, radius] (px).
   function circle(pen, body, frame) {
     const [x, z] = [data.poses[3 * body][frame], data.poses[3 * body + 1][frame]];
     return [pen.toX(x), pen.toY(z), shapes[body].reach * pen.view.scale];
@@ -145,7 +146,7 @@ function makeStage(data, canvas) {
     const at = circle(pen, body, pen.frame);
     if (!isFinite(at[0] + at[1])) return;
     ring(pen, body);
-    // What moves does so for about a second; the place is free before and after.
+    // Bodies that move do so for about a second, so the place must be free before and after.
     const frames = [t - 0.5, t, t + 0.5, t + 1.1].map((time) => nearest(data.times, time));
     const circles = frames.flatMap((frame) => moving.map((one) => circle(pen, one, frame))).filter((one) => isFinite(one[0] + one[1]));
     drawCallout(pen, text, at, circles, place);
@@ -178,7 +179,7 @@ function makeStage(data, canvas) {
     context.restore();
   }
 
-  // Straps, until they tear.
+  // Draws straps until they tear.
   function drawTies(context, frame, time, toX, toY) {
     context.lineCap = "butt";
     for (const { bodies, points, torn } of data.ties) {
@@ -189,7 +190,7 @@ function makeStage(data, canvas) {
         return [toX(x + cos * px - sin * pz), toY(z + sin * px + cos * pz)];
       });
       if (!isFinite(a[0] + a[1] + b[0] + b[1])) continue;
-      // A dark line under a light one shows on wood, on steel and on paper.
+      // A dark line under a light one is visible on wood, on steel and on paper.
       const line = (from, to, style, wide) => {
         context.beginPath();
         context.moveTo(a[0] + from * (b[0] - a[0]), a[1] + from * (b[1] - a[1]));
@@ -200,13 +201,14 @@ function makeStage(data, canvas) {
       };
       line(0, 1, paint.line, 5);
       line(0, 1, paint.device, 3.2);
-      // The buckle, by which a band is told from a rod.
+      // The buckle distinguishes a band from a rod.
       const half = 4 / Math.max(8, Math.hypot(b[0] - a[0], b[1] - a[1]));
       line(0.5 - half, 0.5 + half, paint.line, 8);
     }
   }
 
-  // Strokes at even x of the ground's own frame, so that they move with it; only those in sight.
+  // The strokes are at even positions in the frame of the ground, so that they move with it; only
+  // visible ones are drawn.
   function drawHatch(context, points, s, middle) {
     const spacing = HATCH / s, reach = 0.5 * width / s + 2 * spacing;
     context.beginPath();
@@ -224,7 +226,7 @@ function makeStage(data, canvas) {
     context.stroke();
   }
 
-  // Gives the boxes of the names.
+  // Draws the names and returns their boxes.
   function drawNames(context, frame, view, toX, toY, tinted) {
     const boxes = [];
     context.textAlign = "center";
@@ -235,7 +237,7 @@ function makeStage(data, canvas) {
       const size = Math.min(13, 0.62 * shapes[body].reach * view.scale);
       if (!isFinite(x + z) || role === "rack" || size < 8) continue;
       context.font = `600 ${size}px system-ui, sans-serif`;
-      // Below the middle, where a path starts and runs.
+      // Below the center, where paths start and run.
       const y = toY(z) + (stage.traces && data.traces.length > 0 ? 1.15 * size : 0);
       context.lineWidth = 3;
       context.lineJoin = "round";
@@ -253,7 +255,7 @@ function makeStage(data, canvas) {
     data.traces.forEach((trace, at) => {
       const [xs, zs, angles] = [0, 1, 2].map((c) => data.poses[3 * trace.body + c]);
       const [px, pz] = trace.point;
-      // On the ground camera the path is that relative to the ground.
+      // If the camera follows the ground, the path is relative to the ground.
       const onGround = stage.camera === "ground" && ground >= 0;
       const gx = onGround ? data.poses[3 * ground] : null, gz = onGround ? data.poses[3 * ground + 1] : null;
       context.beginPath();
@@ -325,7 +327,7 @@ function makeStage(data, canvas) {
     halo(pen, bar >= 1 ? `${bar}\u00a0m` : `${readable(bar * 100, 1)}\u00a0cm`, 20 + length, y - 2);
   }
 
-  // Where everything leaves the picture, the camera goes with it.
+  // If everything leaves the picture, the camera follows.
   const end = data.count - 1;
   const inside = (b) => {
     const [x, z] = [data.poses[3 * b][end], data.poses[3 * b + 1][end]];
@@ -335,7 +337,7 @@ function makeStage(data, canvas) {
   return stage;
 }
 
-// Events within the last 0.8 s of the run.
+// Returns the events within the last 0.8 s of the run.
 function currentEvents(data, time) {
   return data.events.filter((event) => event.t <= time + 1e-6 && event.t > time - 0.8);
 }

@@ -1,16 +1,16 @@
-// The strip under the stages: events of every pane, histories of the ground, and the cursor.
+// The strip below the stages: events of every pane, ground motion histories, and the cursor.
 
 const LANE = 44, LABEL = 14, EVENT_LANE = 18, SIDE = 8;
 
-// `panes` have a mark and events; histories and marks are drawn once for each size, only the
-// cursor moves.
+// `panes` have a mark and events. Histories and marks are drawn once per size; only the cursor
+// moves.
 function makeTimeline(canvas, panes, ground, start, end) {
   const still = document.createElement("canvas");
   const several = panes.length > 1;
   const lanes = panes.filter((pane) => pane.events.length > 0);
   const head = lanes.length > 0 ? EVENT_LANE * lanes.length : 4;
   let width = 0, height = 0, dpr = 1, tint = "", drawn = "";
-  // Marks of panes stand left of their events.
+  // The marks of the panes are to the left of their events.
   let left = SIDE;
   const toX = (t) => left + ((t - start) / (end - start || 1)) * (width - left - SIDE);
 
@@ -62,7 +62,7 @@ function makeTimeline(canvas, panes, ground, start, end) {
     }
   }
 
-  // A line of words, then the curve.
+  // A line of text, then the curve.
   function laneAt(top) {
     const reach = 0.5 * (LANE - LABEL) - 2;
     return { middle: top + LABEL + reach, reach };
@@ -127,14 +127,14 @@ function makeTimeline(canvas, panes, ground, start, end) {
     });
   }
 
-  // The time under a pointer.
+  // Returns the time under a pointer.
   function timeAt(clientX) {
     const box = canvas.getBoundingClientRect();
     const share = (clientX - box.left - left) / (box.width - left - SIDE);
     return start + share * (end - start);
   }
 
-  // Distances (px) from the left edge and from the right one between which time runs.
+  // Distances (px) from the left and the right edge between which time runs.
   const ends = () => [left, SIDE];
 
   canvas.hidden = ground.length === 0 && lanes.length === 0;
@@ -142,7 +142,7 @@ function makeTimeline(canvas, panes, ground, start, end) {
   return { resize, cursor, timeAt, ends };
 }
 
-// One shape for each kind of event, the same in the strip and (by style) in the list.
+// One shape per kind of event, the same in the strip and (by style) in the list.
 function eventShape(context, kind, x, y) {
   const r = 4.5;
   const corners = {

@@ -1,13 +1,13 @@
-// Bodies tinted by a quantity: the share of its scale, the color, and the scale itself.
+// Coloring of bodies by a quantity: the share of its scale, the color, and the scale itself.
 
-// Parts of red, green and blue between two colors.
+// Returns a color between two colors.
 function between(from, to, share) {
   const part = (color, at) => parseInt(color.slice(1 + 2 * at, 3 + 2 * at), 16);
   const mixed = [0, 1, 2].map((at) => Math.round(part(from, at) + share * (part(to, at) - part(from, at))));
   return `rgb(${mixed.join(" ")})`;
 }
 
-// The end of the scale, at which the values are cut.
+// Returns the end of the scale, at which the values are cut off.
 function fullTint(data) {
   let most = 0;
   for (const channel of data.tint ? data.tint.values : []) {
@@ -16,7 +16,7 @@ function fullTint(data) {
   return most;
 }
 
-// The color of a body; none where the quantity does not hold for it.
+// Returns the color of a body; none if the quantity does not apply to it.
 function tintOf(data, body, frame, full, paint) {
   const value = data.tint.values[body][frame];
   return isFinite(value) && full > 0 ? between(paint.paper, paint.accent, Math.min(value / full, 1)) : null;

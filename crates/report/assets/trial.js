@@ -1,4 +1,5 @@
-// "Try a change": the page that this one holds, in a frame over it, with the scenario of this report.
+// "Try a change": opens the embedded page in a frame over the report, with the scenario of the
+// report.
 {
   const dialog = document.getElementById("trial");
   let opened = false;

@@ -1,6 +1,6 @@
-// The switch between the stage in three dimensions and the flat one.
+// The switch between the three-dimensional stage and the flat one.
 
-// What WebGL draws into, once for a page; null where the browser or the page has nothing for it.
+// The WebGL canvas, one per page; null if the browser or the page does not support WebGL.
 let surface;
 function findSurface() {
   if (surface === undefined) {
@@ -11,7 +11,7 @@ function findSurface() {
   return surface;
 }
 
-// What draws in three dimensions, unpacked when it is first needed; null where it does not start.
+// The three-dimensional renderer, unpacked when it is first needed; null if it does not start.
 let engine = null;
 function loadEngine() {
   engine ??= (async () => {
@@ -21,10 +21,10 @@ function loadEngine() {
   return engine;
 }
 
-// Whether the address asks for the flat stage: `?view=flat`.
+// Whether the address requests the flat stage: `?view=flat`.
 const asksFlat = () => new URLSearchParams(location.search).get("view") === "flat";
 
-// `changed` draws anew, `refit` measures first.
+// `changed` redraws; `refit` measures first.
 function makeViews(screen, panes, act, changed, refit) {
   const deep = panes.filter(({ data }) => data.depth);
   const shown = () => deep.map((pane) => pane.deep).filter(Boolean);
@@ -39,7 +39,8 @@ function makeViews(screen, panes, act, changed, refit) {
     act("deep").setAttribute("aria-pressed", on);
     act("flat").setAttribute("aria-pressed", !on);
     presets.hidden = !on;
-    // Views of one run from several sides are one that is turned.
+    // In three dimensions, the panes of one run from several sides become one, which can be
+    // rotated.
     for (const pane of panes) pane.section.hidden = on && !pane.data.depth;
     screen.classList.toggle("alone", on && deep.length === 1);
     for (const { stage } of panes) Object.assign(stage, { deep: on, hover: null });
@@ -62,7 +63,7 @@ function makeViews(screen, panes, act, changed, refit) {
     if (on !== isDeep) set(on);
   }
 
-  // Shows the switch and three dimensions where they work.
+  // Shows the switch, and the three-dimensional stage where it works.
   async function start() {
     if (deep.length === 0 || !findSurface()) return;
     group.hidden = false;

@@ -1,4 +1,5 @@
-// What the stage in three dimensions uses of three.js, and no more: everything else is left out of the bundle.
+// The parts of three.js that the three-dimensional stage uses; everything else is left out of the
+// bundle.
 
 export {
   BufferGeometry, CanvasTexture, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Group, HemisphereLight,

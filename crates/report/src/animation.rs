@@ -1,7 +1,7 @@
-//! A film as an animated image file: GIF, and APNG, which is smaller and keeps its colors.
+//! A film as an animated image file: GIF, or APNG, which is smaller and keeps its colors.
 //!
-//! Each picture stores only the pixels that differ from the one before, with a small palette; one
-//! palette index means "unchanged".
+//! Each picture stores only the pixels that differ from the previous one. The palette is small; one
+//! of its indices means "unchanged".
 
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
@@ -15,25 +15,27 @@ use crate::{
     raster::{rasterize, rgb},
 };
 
-/// Time for which the last picture is held before the film repeats (s).
+/// Time (s) for which the last picture is held before the film repeats.
 const REST: f64 = 1.5;
 
 /// Palette index of an unchanged pixel.
 const KEEP: u8 = 0;
 
-/// Number of pictures painted at a time, which bounds the memory.
+/// Number of pictures painted at a time, which bounds the memory use.
 const BLOCK: usize = 32;
 
-/// A film as a palette and the changes of each picture.
+/// A film as a palette and the changes from picture to picture.
 pub struct Animation {
     palette: Vec<u8>,
     pictures: Vec<Picture>,
 }
 
 impl Animation {
-    /// Paints a film with at most `largest` pixels on its longer side. `None` for a film without pictures.
+    /// Paints a film with at most `largest` pixels on its longer side; `None` for a film without
+    /// pictures.
     ///
-    /// Players hold pictures for whole hundredths of a second, and few show more than 50 in one.
+    /// Viewers hold a picture for whole hundredths of a second, and few show more than 50 pictures
+    /// per second.
     pub fn of(film: &Film, largest: u32) -> Option<Self> {
         let [width, height] = film.size();
         let scale = f64::from(largest.min(u32::from(u16::MAX))) / width.max(height);
@@ -62,7 +64,7 @@ impl Animation {
         Some(Self { palette: palette.bytes(), pictures })
     }
 
-    /// Encodes the film as a GIF that repeats at the speed of the run.
+    /// Encodes the film as a GIF that repeats, at the speed of the run.
     pub fn gif(&self) -> Vec<u8> {
         // Writing to memory cannot fail, and every picture has the size that it states.
         self.write_gif().expect("a film in memory")
@@ -70,7 +72,7 @@ impl Animation {
 
     fn write_gif(&self) -> Result<Vec<u8>, gif::EncodingError> {
         let mut file = Vec::new();
-        // No side exceeds `largest`, which is limited to a u16.
+        // Neither side exceeds `largest`, which is limited to a u16.
         let size = |sides: [usize; 2]| sides.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
         let [wide, high] = size(self.pictures.first().map_or([1, 1], |picture| picture.size));
         let mut encoder = gif::Encoder::new(&mut file, wide, high, &self.palette)?;
@@ -132,7 +134,7 @@ impl Animation {
     }
 }
 
-/// Paints the pictures of a range on all cores: width and RGB bytes of each.
+/// Paints a range of pictures on all cores; returns width and RGB bytes of each.
 fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8>)> {
     let numbers: Vec<usize> = numbers.collect();
     let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -156,12 +158,16 @@ fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8
 
 /// Converts a time (s) to hundredths of a second.
 fn hundredths(time: f64) -> u32 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some minutes")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a film lasts minutes"
+    )]
     let whole = (100.0 * time).round().max(0.0) as u32;
     whole
 }
 
-/// The rectangle that a picture changes, and the time for which it is shown.
+/// The rectangle that a picture changes, and the time for which the picture is shown.
 struct Picture {
     corner: [usize; 2],
     size: [usize; 2],
@@ -176,7 +182,8 @@ impl Picture {
     }
 }
 
-/// Returns the smallest rectangle that holds all changes; `None` without changes, or when the sizes differ.
+/// Returns the smallest rectangle that contains all changes; `None` without changes, or if the
+/// sizes differ.
 fn change(before: &[u8], now: &[u8], wide: usize) -> Option<Picture> {
     if before.len() != now.len() {
         return None;
@@ -210,9 +217,9 @@ struct Palette {
 impl Palette {
     /// Builds the palette from a sample of the pictures.
     ///
-    /// Drawings are flat: a few colors fill them and edges blend those. The most frequent colors are
-    /// kept exactly; of the rest only those that differ visibly from the ones kept, since fewer colors
-    /// make a smaller file.
+    /// The pictures have few flat colors, and blends of these at edges. The most frequent colors
+    /// are kept exactly; further ones only if they differ visibly from those kept, because fewer
+    /// colors make a smaller file.
     fn of(film: &Film, scale: f64) -> Self {
         const SAMPLES: usize = 8;
         const MOST: usize = 64;
@@ -237,7 +244,8 @@ impl Palette {
         Self { colors, known: HashMap::new() }
     }
 
-    /// Returns the palette index of each pixel, that of the nearest color where the exact one is absent.
+    /// Returns the palette index of each pixel; if its color is not in the palette, the index of
+    /// the nearest color.
     fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
         let mut last = None;
         let index = |color: &[u8; 3]| match last {

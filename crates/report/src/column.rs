@@ -1,4 +1,4 @@
-//! Columns of results with name, unit and values, from which tables for programs are made.
+//! Columns of results with name, unit and values, for machine-readable tables.
 
 use std::fmt::Write as _;
 
@@ -63,16 +63,16 @@ pub enum Value {
 }
 
 described! {
-    /// Description of a column.
+    /// Description of a column of a table.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct ColumnSpec {
-        /// Its name without the unit, unique in a table.
+        /// Name of the column without its unit, unique in a table.
         pub name: String,
-        /// SI unit; empty for pure numbers and for text.
+        /// SI unit; empty for dimensionless numbers and for text.
         pub unit: String,
-        /// Role of its values.
+        /// Role of the values.
         pub role: Role,
-        /// Kind of its values.
+        /// Type of the values.
         pub kind: ValueKind,
     }
 }
@@ -83,20 +83,22 @@ impl ColumnSpec {
         Self { name: name.to_owned(), unit: unit.to_owned(), role, kind }
     }
 
-    /// Returns the name with its unit, as in files: `pga (m/s2)`.
+    /// Returns the name with its unit, as in files, such as `pga (m/s2)`.
     pub fn heading(&self) -> String {
         with_unit(&self.name, &self.unit)
     }
 }
 
-/// Converts words to the name of a column, one for all formats: letters, digits, `.` and `-` stay, all else becomes `_`,
-/// so that `B4.1 displacement x` is `B4.1_displacement_x`.
+/// Converts words to the name of a column, which is the same in all formats.
+///
+/// Letters, digits, `.` and `-` are kept, and every other character becomes `_`. For example,
+/// `B4.1 displacement x` becomes `B4.1_displacement_x`.
 pub fn column_name(words: &str) -> String {
     let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
     words.chars().map(kept).collect()
 }
 
-/// The values of a column, one a row; `None` where it does not apply or did not happen.
+/// The values of a column, one per row; `None` for a value that does not apply or does not exist.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Values {
@@ -109,7 +111,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// Creates an empty column of a kind.
+    /// Creates a column without rows, of the given type.
     pub fn empty(kind: ValueKind) -> Self {
         match kind {
             ValueKind::Integer => Self::Integer(Vec::new()),
@@ -127,12 +129,12 @@ impl Values {
         }
     }
 
-    /// `true` without rows.
+    /// `true` if the column has no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the value in a row; `None` where there is none.
+    /// Returns the value in a row; `None` if it is missing.
     pub fn get(&self, row: usize) -> Option<Value> {
         match self {
             Self::Integer(values) => values.get(row).copied().flatten().map(Value::Integer),
@@ -154,23 +156,24 @@ impl Values {
     /// Appends values of the same kind.
     ///
     /// # Errors
-    /// If they are of another kind.
+    /// If the values have a different type.
     pub fn append(&mut self, more: Self) -> Result<(), String> {
         match (self, more) {
             (Self::Integer(values), Self::Integer(more)) => values.extend(more),
             (Self::Number(values), Self::Number(more)) => values.extend(more),
             (Self::Text(values), Self::Text(more)) => values.extend(more),
             _ => {
-                return Err("values of another kind than their column".to_owned());
+                return Err("the values have a different type than their column".to_owned());
             }
         }
         Ok(())
     }
 
-    /// Appends a value of the column's kind; a whole number may stand for a number.
+    /// Appends a value of the type of the column; a whole number is also accepted in a column of
+    /// numbers.
     ///
     /// # Errors
-    /// If it is of another kind.
+    /// If the value has a different type.
     pub fn push(&mut self, value: Option<Value>) -> Result<(), String> {
         match (self, value) {
             (Self::Integer(values), None) => values.push(None),
@@ -196,7 +199,7 @@ impl Values {
 /// A column with its values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
-    /// Name, unit, role and kind.
+    /// Name, unit, role and type.
     #[serde(flatten)]
     pub spec: ColumnSpec,
     /// The values, one per row.
@@ -210,9 +213,10 @@ impl Column {
     }
 }
 
-/// Writes columns of equal length as CSV: a heading line with units, then one line per row; missing values are empty.
+/// Writes columns of equal length as CSV: a heading line with units, then one line per row; missing
+/// values are empty.
 ///
-/// Numbers have the fewest digits that read back to the same bits.
+/// Numbers have the fewest digits from which the same bits can be read back.
 pub fn to_csv(columns: &[Column]) -> String {
     csv_heading(columns) + &csv_rows(columns)
 }

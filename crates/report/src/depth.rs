@@ -1,4 +1,4 @@
-//! A scene in three dimensions, which a reader turns on a page.
+//! A scene in three dimensions, which a reader can rotate on a page.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,8 @@ use crate::{
 /// A point or vector `[x, y, z]` (m): x across the barrels, y along them, z up; right-handed.
 pub type Point3 = [f64; 3];
 
-/// A pose `[x, y, z, w, a, b, c]` (m and a unit quaternion with the scalar `w` first) of a body's frame in the world.
+/// A pose `[x, y, z, w, a, b, c]` of a body in the world frame: position (m), and a unit quaternion
+/// with its scalar `w` first.
 pub type Pose3 = [f64; 7];
 
 /// A solid in the frame of its body.
@@ -28,21 +29,21 @@ pub enum Volume {
     },
     /// A round tube.
     Tube {
-        /// The ends of its axis (m).
+        /// Ends of the axis (m).
         ends: [Point3; 2],
         /// Radius (m).
         radius: f64,
     },
     /// A cuboid.
     Block {
-        /// Its middle (m).
+        /// Center (m).
         at: Point3,
-        /// Half of each side, as a vector (m).
+        /// Half of each side, as vectors (m).
         sides: [Point3; 3],
     },
     /// A ball.
     Ball {
-        /// Its middle (m).
+        /// Center (m).
         at: Point3,
         /// Radius (m).
         radius: f64,
@@ -50,7 +51,8 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// Returns a cuboid with sides along the axes of its body, from its middle and half of its sides (m).
+    /// Returns a cuboid with sides along the axes of its body, from its center and its half sides
+    /// (m).
     pub fn upright(at: Point3, [x, y, z]: Point3) -> Self {
         Self::Block { at, sides: [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]] }
     }
@@ -72,7 +74,7 @@ impl Volume {
     }
 }
 
-/// Rounds a length (m) to a tenth of a millimeter, as outlines are.
+/// Rounds a length (m) to a tenth of a millimeter, as for outlines.
 fn tenths(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
@@ -84,51 +86,53 @@ pub struct DepthBody {
     pub name: String,
     /// Role.
     pub role: Role,
-    /// Its solids; none for a body that is not drawn.
+    /// Solids of the body; empty for a body that is not drawn.
     pub volumes: Vec<Volume>,
-    /// Places (m) of its equals, which move as it does: the barrels one behind the other of which a plane models one.
+    /// Positions (m) at which the body is drawn: a plane models one of several barrels that lie one
+    /// behind the other and move alike.
     pub rows: Vec<Point3>,
 }
 
 /// Poses of the bodies of a scene in three dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DepthPoses {
-    /// Poses of the plane scene, whose bodies have the same indices, in the plane of x and z.
+    /// Poses of the planar scene, whose bodies have the same indices, in the plane of x and z.
     Across,
-    /// Poses of the plane scene, in the plane of y and z.
+    /// Poses of the planar scene, in the plane of y and z.
     Along,
-    /// For each frame of the plane scene, the pose of each body.
+    /// For each frame of the planar scene, the pose of each body.
     Free(Vec<Vec<Pose3>>),
 }
 
 /// A band between points of two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthTie {
-    /// The bodies, by their indices in [`Depth::bodies`].
+    /// Indices of the bodies in [`Depth::bodies`].
     pub bodies: [usize; 2],
-    /// The points, each in the frame of its body (m).
+    /// End points of the band, each in the frame of its body (m).
     pub points: [Point3; 2],
-    /// Time at which it tears (s); it is not drawn after that.
+    /// Time (s) at which the band tears; it is not drawn after that.
     pub torn_at: Option<f64>,
 }
 
-/// Bodies in three dimensions, for the times of the frames of a plane scene.
+/// Bodies in three dimensions, at the times of the frames of a planar scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Depth {
     /// The bodies.
     pub bodies: Vec<DepthBody>,
-    /// Their poses.
+    /// Poses of the bodies.
     pub poses: DepthPoses,
-    /// Bands between them.
+    /// Bands between bodies.
     pub ties: Vec<DepthTie>,
     /// Events, in order of time.
     pub events: Vec<Event>,
-    /// The instant on which the player opens.
+    /// The instant at which the player opens.
     pub moment: Option<Moment>,
 }
 
 impl Depth {
-    /// Returns the data for the page; `count` is the number of frames. Equal lists of solids are written once.
+    /// Returns the data for the page; `count` is the number of frames. A list of solids that
+    /// several bodies share is written once.
     pub(crate) fn value(&self, count: usize) -> Value {
         let mut shapes: Vec<Value> = Vec::new();
         let mut shape = |body: &DepthBody| {
@@ -172,7 +176,8 @@ impl Depth {
         })
     }
 
-    /// Packs poses as seven channels for each body, with quaternions whose sign does not jump.
+    /// Packs poses as seven channels per body; the signs of the quaternions are chosen so that they
+    /// do not jump.
     fn packed(&self, frames: &[Vec<Pose3>], count: usize) -> Value {
         let mut channels = vec![Vec::with_capacity(count); 7 * self.bodies.len()];
         for (body, own) in channels.chunks_mut(7).enumerate() {

@@ -1,5 +1,6 @@
-//! Documents for programs: every field is declared once, with its unit and meaning; the JSON Schema and the
-//! data dictionary are generated from the declaration.
+//! Machine-readable documents: each field is declared once with its unit and meaning.
+//!
+//! The JSON Schema and the data dictionary are generated from the declaration.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +9,13 @@ use serde_json::{Map, Value, json};
 
 use crate::escape::one_line;
 
-/// The schemas of a document's objects, by name. An object may contain itself.
+/// The schemas of the objects of a document, by name; an object may contain itself.
 pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.
 pub trait Described {
-    /// Returns the schema of the type and adds the objects that it refers to; the unit of a number stands under
-    /// `unit`.
+    /// Returns the schema of the type, and adds the objects to which it refers. The unit of a
+    /// number is under `unit`.
     fn schema(objects: &mut Objects) -> Value;
 }
 
@@ -69,20 +70,21 @@ impl<T: Described, const N: usize> Described for [T; N] {
     }
 }
 
-/// Values by a name that is not known in advance.
+/// A map whose keys are not known in advance.
 impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
     fn schema(objects: &mut Objects) -> Value {
         json!({ "type": "object", "additionalProperties": T::schema(objects) })
     }
 }
 
-/// Returns a document as indented JSON text, in which no zero has a sign: the sum of no numbers is a negative one.
+/// Returns a document as indented JSON text without negative zeros, such as Rust's sum of no
+/// numbers.
 ///
 /// # Errors
-/// For maps whose keys are no texts.
+/// For maps with keys other than text.
 pub fn to_json(document: &impl Serialize) -> serde_json::Result<String> {
     let text = serde_json::to_string_pretty(document)?;
-    // A number ends its line, a text ends with its quote.
+    // A number is at the end of its line, whereas a text ends with a quote.
     let plain = |line: &str| match line.strip_suffix("-0.0").or_else(|| line.strip_suffix("-0.0,"))
     {
         Some(before) if before.is_empty() || before.ends_with(' ') => {
@@ -96,27 +98,29 @@ pub fn to_json(document: &impl Serialize) -> serde_json::Result<String> {
 /// A field of an object, as declared with [`described!`](crate::described!).
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// Its key.
+    /// Key of the field.
     pub key: &'static str,
-    /// Meaning, as written in its doc comment.
+    /// Meaning, as written in the doc comment of the field.
     pub meaning: &'static str,
-    /// Unit; `None` without one.
+    /// Unit; `None` for a field without a unit.
     pub unit: Option<&'static str>,
-    /// The values that a text may have, where they are fixed.
+    /// Permitted values of a text; empty if the text is free.
     pub words: &'static [&'static str],
-    /// Serialization: `flatten` puts its fields in its place, `skip` omits it.
+    /// Serialization attribute: `flatten` merges the fields of the value into the object, `skip`
+    /// omits the field.
     pub how: Option<&'static str>,
-    /// The schema of its type.
+    /// Function that returns the schema of the type of the field.
     pub schema: fn(&mut Objects) -> Value,
 }
 
-/// Adds the schema of an object under its name, once, and returns a reference to it.
+/// Adds the schema of an object under its name, unless it is there already, and returns a reference
+/// to it.
 pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
     let reference = json!({ "$ref": format!("#/$defs/{name}") });
     if objects.contains_key(name) {
         return reference;
     }
-    // Reserves the name first, so that an object that contains itself refers to it.
+    // The name is reserved first, so that an object that contains itself refers to it.
     objects.insert(name.to_owned(), Value::Null);
     let (mut properties, mut required) = (Map::new(), Vec::new());
     for field in fields.iter().filter(|field| field.how != Some("skip")) {
@@ -170,8 +174,10 @@ pub fn document<T: Described>(title: &str) -> Value {
     schema
 }
 
-/// Lists every field of a document as key, unit and meaning, by key; fields of list items have `[]` after the key of
-/// the list, those under a free name `.*`. An object that contains itself is listed once.
+/// Lists every field of a document with key, unit and meaning.
+///
+/// Fields of list items have `[]` after the key of the list; fields under free keys have `.*`. An
+/// object that contains itself is listed once.
 pub fn dictionary(document: &Value) -> Vec<[String; 3]> {
     let none = Objects::new();
     let mut walk = Walk {
@@ -224,9 +230,9 @@ impl<'a> Walk<'a> {
 
 /// Declares an object of a document: a struct that is serialized as JSON and has a JSON Schema.
 ///
-/// The doc comment of a field is its meaning. After the type follow, where they apply, the unit (`as "m/s"`,
-/// `as "1"` for a ratio), the permitted values (`["a", "b"]`) and, in a struct built `of` one or more arguments,
-/// the expression of its value.
+/// The doc comment of a field is its meaning. After the type there may follow the unit (`as "m/s"`,
+/// or `as "1"` for a ratio) and the permitted values (`["a", "b"]`). In a struct built `of` one or
+/// more arguments, the expression of the value follows last.
 ///
 /// ```
 /// barrelstack_report::described! {

@@ -1,4 +1,4 @@
-//! A diagram: a scene at one instant with named bodies and arrows over it.
+//! A diagram: a scene at one instant with labels and arrows.
 
 use std::{fmt::Write as _, sync::Arc};
 
@@ -14,7 +14,7 @@ use crate::{
 pub struct Diagram {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// The instant (s); the frame nearest to it is shown.
+    /// The instant (s); the nearest frame is shown.
     pub time: f64,
     /// Texts and their positions (m).
     pub labels: Vec<(Point, String)>,
@@ -33,7 +33,7 @@ pub struct Arrow {
     pub meaning: String,
 }
 
-/// Largest width and height (px), and the width on a phone.
+/// Largest width and height (px), and the width (px) on a phone.
 const MOST: [f64; 2] = [620.0, 520.0];
 const PHONE: f64 = 358.0;
 /// Length and half width of an arrow's head (px).

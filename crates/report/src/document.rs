@@ -4,8 +4,8 @@ use crate::{Figure, Player, Players, Table};
 
 /// The content of a page, independent of the output format.
 ///
-/// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so a number
-/// shown in one is the number shown in the other.
+/// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so both show the
+/// same numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// Name of the run or study; the page title.
@@ -16,18 +16,20 @@ pub struct Document {
     pub blocks: Vec<Block>,
     /// Provenance: pairs of name and value, shown at the end.
     pub provenance: Vec<(String, String)>,
-    /// Technical terms with their meanings: explained where they occur, and those that occur are listed at the end.
+    /// Technical terms with their meanings; those that occur are explained in place and listed at
+    /// the end.
     pub words: Vec<Word>,
-    /// Limits that the reader must know before trusting the result; shown right after the first player.
+    /// Warnings that the reader must know before trusting the result; shown right after the first
+    /// player.
     pub warnings: Vec<String>,
 }
 
 /// A technical term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// The term as it stands within a sentence.
+    /// The term as it occurs in a sentence.
     pub word: &'static str,
-    /// Its meaning in everyday words.
+    /// Meaning of the term in everyday words.
     pub meaning: &'static str,
 }
 
@@ -36,28 +38,28 @@ pub struct Word {
 pub struct Verdict {
     /// One short sentence, the largest text of the page.
     pub headline: String,
-    /// Recommended action, as a sentence of its own; may be empty.
+    /// Recommended action, as one sentence; may be empty.
     pub advice: String,
     /// A command that shows the effect of the advice; may be empty.
     pub command: String,
-    /// Sentences that back the headline, in order.
+    /// Sentences that support the headline, in order.
     pub sentences: Vec<String>,
-    /// Sentences with the numbers behind it, folded away on screen.
+    /// Sentences with the numbers behind the headline, folded away on screen.
     pub fine: Vec<String>,
-    /// Sets the sign and the color beside the headline.
+    /// Determines the sign and the color beside the headline.
     pub tone: Tone,
 }
 
-/// The kind of answer; always shown as a sign and a word, never by color alone.
+/// The kind of verdict; always shown as a sign and a word, never by color alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// Everything that should stay up stayed up.
+    /// The stack stands.
     Stands,
-    /// Something came down.
+    /// The stack falls.
     Falls,
     /// The result is not valid.
     Invalid,
-    /// No verdict: a study, a comparison, a record.
+    /// No verdict, as for a study, a comparison or a record.
     #[default]
     Neutral,
 }
@@ -96,19 +98,19 @@ impl Block {
     }
 }
 
-/// The summary of the fold that holds [`Verdict::fine`].
+/// Summary line of the fold that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
 
 /// One piece of content. All text is plain: it is escaped, never interpreted.
 #[expect(
     clippy::large_enum_variant,
-    reason = "a document holds tens of blocks; a box in every literal costs more than it saves"
+    reason = "a document has tens of blocks, so boxing them saves little"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {
-    /// A heading. Levels outside 2 to 4 are brought into that range; level 1 is the verdict's.
+    /// A heading; levels outside 2 to 4 are clamped to that range, because level 1 is the verdict.
     Heading {
-        /// 2 opens a section and is listed in the page's contents.
+        /// Level; 2 opens a section and is listed in the contents of the page.
         level: u8,
         /// The text.
         text: String,

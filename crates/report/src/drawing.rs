@@ -1,4 +1,4 @@
-//! A drawing: lines, shapes and texts of named styles, independent of the output format.
+//! A drawing: lines, shapes and texts with named styles, independent of the output format.
 
 /// A drawing of a known size; y grows downward (px).
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub(crate) enum Item {
         runs: Runs,
         closed: bool,
     },
-    /// Polylines in a body's own units (m), with the pen width in the same units.
+    /// Polylines in the units of a body (m), with the pen width in the same units.
     Outline {
         class: String,
         pen: f64,
@@ -49,7 +49,7 @@ pub(crate) enum Item {
         class: &'static str,
         at: [f64; 2],
         anchor: Anchor,
-        /// Turned clockwise about `at`.
+        /// Clockwise rotation about `at`.
         degrees: f64,
         text: String,
     },
@@ -66,9 +66,9 @@ pub(crate) enum Item {
         scale: f64,
         drawing: Drawing,
     },
-    /// Bodies in their own units (m), drawn by [`Item::Scene`].
+    /// Bodies in their own units (m), for use by [`Item::Scene`].
     Defined(Vec<Body>),
-    /// Bodies placed in a world with z up: `scale` (px/m) and the pixel of the origin.
+    /// Bodies placed in a world with z up: `scale` (px/m) and the position of the origin (px).
     Scene {
         scale: f64,
         origin: [f64; 2],
@@ -91,7 +91,7 @@ pub(crate) struct Placed {
     pub(crate) pose: [f64; 3],
 }
 
-/// The part of a text that is aligned with its position.
+/// The point of a text that is placed at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -143,7 +143,7 @@ impl Drawing {
     }
 }
 
-/// The available width; the font size is the same in both.
+/// The available width; font sizes do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Room {
     /// A page on a desk, or on paper.
@@ -153,7 +153,7 @@ pub(crate) enum Room {
 }
 
 impl Room {
-    /// Returns the length for this width.
+    /// Returns the length that applies to this width.
     pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
         match self {
             Self::Page => page,
@@ -162,13 +162,13 @@ impl Room {
     }
 }
 
-/// Estimates the width of a line of text at `size` px, on the generous side.
+/// Estimates the width (px) of a line of text at `size` px, usually slightly too large.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Breaks a text at `size` px into lines no wider than `width` where possible: after spaces
-/// and after characters that join words.
+/// Breaks a text at `size` px into lines that are no wider than `width` where possible; lines break
+/// after spaces and after characters that join words.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

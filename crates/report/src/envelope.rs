@@ -1,4 +1,4 @@
-//! Stress around a body: static, in front of the largest dynamic.
+//! Normal stress along the boundary of a body: at rest, in front of the largest during the run.
 
 use crate::{
     Polyline,
@@ -11,21 +11,21 @@ use crate::{
 /// Stress along a boundary, drawn outward along the normals.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Envelope {
-    /// The body's drawing (m).
+    /// Outline of the body (m).
     pub outline: Vec<Polyline>,
     /// Sample points in order along the boundary.
     pub samples: Vec<BoundarySample>,
     /// `true` if the boundary is closed.
     pub closed: bool,
-    /// Stress from self-weight at each sample, never negative; NaN makes a gap.
+    /// Stress at rest at each sample, never negative; NaN makes a gap.
     pub static_stress: Vec<f64>,
     /// Largest stress during the run at each sample.
     pub dynamic_stress: Vec<f64>,
-    /// Unit of both, such as `kPa` or `kN/m`.
+    /// Unit of both stresses, such as `kPa` or `kN/m`.
     pub unit: String,
-    /// Ratio of dynamic to static stress as the caller defines it; shown if given.
+    /// Ratio of dynamic to static stress, as defined by the caller; shown if given.
     pub amplification: Option<f64>,
-    /// Name and unit of the coordinate of the samples, such as `angle`, for the CSV.
+    /// Name and unit of the sample coordinate, such as `angle`, for the CSV.
     pub coordinate: (String, String),
 }
 
@@ -48,7 +48,7 @@ pub struct BoundarySample {
 const WIDTH: [f64; 2] = [520.0, 358.0];
 const SIDE: f64 = 24.0;
 const LEGEND: f64 = 62.0;
-/// Length of the largest stress over the larger side of the body.
+/// Drawn length of the largest stress, as a share of the larger side of the body.
 const REACH: f64 = 0.38;
 
 impl Envelope {
@@ -71,7 +71,7 @@ impl Envelope {
         }
         let size = extent.width().max(extent.height()).max(1e-6);
         let peak = self.peak();
-        // Length (m) per unit of stress.
+        // Drawn length (m) per unit of stress.
         let per_stress = if peak > 0.0 { REACH * size / peak } else { 0.0 };
         for at in 0..self.count() {
             for stress in [self.static_stress[at], self.dynamic_stress[at]] {
@@ -120,8 +120,8 @@ impl Envelope {
         [sample.x + sample.nx * length, sample.z + sample.nz * length]
     }
 
-    /// Returns runs of loaded samples, each with the adjacent unloaded samples, so that its outline closes
-    /// on the boundary. On a closed boundary a run may pass the start.
+    /// Returns runs of loaded samples, each with the adjacent unloaded samples, so that its shape
+    /// closes on the boundary. On a closed boundary a run may extend across the first sample.
     fn runs(&self, stresses: &[f64]) -> Vec<Vec<usize>> {
         let count = self.count();
         let loaded = |at: usize| stresses[at] > 0.0;
@@ -152,7 +152,8 @@ impl Envelope {
         runs
     }
 
-    /// Draws the key of the shapes and the scale of stress: side by side on a page, one below the other on a phone.
+    /// Draws the legend and the stress scale: side by side on a page, one below the other on a
+    /// phone.
     fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
         drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
         drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest until a seat is lost");

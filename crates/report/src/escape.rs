@@ -42,7 +42,7 @@ pub fn listed(words: impl IntoIterator<Item = impl Into<String>>) -> String {
     }
 }
 
-/// Appends the unit to a name, if any: `pga (m/s2)`.
+/// Appends the unit to a name, if there is one, such as `pga (m/s2)`.
 pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }
@@ -54,7 +54,7 @@ pub(crate) fn json_in_script(json: &str) -> String {
     json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
-/// Escapes text for Markdown, on one line, with numbers joined to their units.
+/// Escapes text for Markdown on one line, with no-break spaces between numbers and units.
 pub(crate) fn markdown(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let line = number::tied(&one_line(text));
@@ -77,8 +77,8 @@ pub(crate) fn markdown(text: &str) -> String {
 
 /// Escapes a CSV field, quoting it where necessary.
 ///
-/// Spreadsheets evaluate fields that begin with `=`, `+`, `-` or `@`, whatever their source. Such a field gets
-/// a leading apostrophe, which marks it as text, unless it is a number.
+/// Spreadsheets evaluate fields that begin with `=`, `+`, `-` or `@`. Such a field gets a leading
+/// apostrophe, which marks it as text, unless it is a number.
 ///
 /// ```
 /// use barrelstack_report::csv_field;
@@ -99,7 +99,8 @@ pub fn csv(text: &str) -> String {
     }
 }
 
-/// Converts a text to a name for files and anchors: lower-case letters, digits and single hyphens.
+/// Converts a text to a name for files and anchors, with lower-case letters, digits and single
+/// hyphens.
 ///
 /// Letters outside ASCII are dropped; an empty result becomes `item`.
 pub(crate) fn slug(text: &str) -> String {

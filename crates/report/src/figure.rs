@@ -11,9 +11,9 @@ use crate::{
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Short name, made safe for files and anchors; a repeated one gets a number appended.
+    /// Short name, made safe for files and anchors; a number is appended to a repeated name.
     pub id: String,
-    /// Caption: content of the picture and how to read it.
+    /// Caption: what the picture shows and how to read it.
     pub caption: String,
     /// The picture.
     pub kind: FigureKind,
@@ -22,11 +22,11 @@ pub struct Figure {
 /// The kinds of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureKind {
-    /// Lines over a pair of axes.
+    /// Series over a pair of axes.
     Plot(Plot),
     /// Several plots in rows.
     Panels(Panels),
-    /// A scene at chosen instants, side by side.
+    /// A scene at selected instants, side by side.
     Strip(Strip),
     /// Stress drawn around a body's outline.
     Envelope(Envelope),
@@ -56,7 +56,8 @@ impl Figure {
         Self { id: id.into(), caption: caption.into(), kind: picture.into() }
     }
 
-    /// Returns the picture as a standalone SVG document: white ground, text as text, f64 coordinates.
+    /// Returns the picture as a standalone SVG document with a white background, text as text, and
+    /// f64 coordinates.
     pub fn to_svg(&self) -> String {
         self.draw(&escape::slug(&self.id)).standalone()
     }
@@ -70,22 +71,26 @@ impl Figure {
         }
     }
 
-    /// Returns the picture as a PNG of `dpi` dots per inch on white; its 12 px letters are 9 points high.
-    /// Text is drawn with the bundled font, so the same figure gives the same file on every machine.
+    /// Returns the picture as a PNG on white, with a resolution of `dpi` dots per inch; its 12 px
+    /// letters are 9 points high.
+    ///
+    /// Text is drawn with the bundled font, so the same figure gives the same file on every
+    /// machine.
     pub fn to_png(&self, dpi: f64) -> Vec<u8> {
         raster::png(&self.draw(&escape::slug(&self.id)), dpi)
     }
 
-    /// Returns the picture as a PDF page of its size: vector lines, and text in the bundled font.
+    /// Returns the picture as a PDF page of its own size, with vector lines and with text in the
+    /// bundled font.
     pub fn to_pdf(&self) -> Vec<u8> {
         pages::figure_pdf(self)
     }
 
     /// Returns the picture's data as CSV at full precision.
     ///
-    /// A plot gives one pair of `x` and `y` columns per series; panels their plots one below the other, separated
-    /// by an empty line; a strip one row per instant and body; an envelope one row per sample; a diagram one row
-    /// per arrow.
+    /// A plot gives one pair of `x` and `y` columns per series. Panels give their plots one below
+    /// the other, separated by an empty line. A strip gives one row per instant and body, an
+    /// envelope one row per sample, and a diagram one row per arrow.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
@@ -100,7 +105,7 @@ impl Figure {
         self.draw_in(id, Room::Page)
     }
 
-    /// Draws the picture for a width; a strip is the same for both, since its panels wrap.
+    /// Draws the picture for a width; a strip is the same for all widths, because its panels wrap.
     pub(crate) fn draw_in(&self, id: &str, room: Room) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),
@@ -146,8 +151,8 @@ impl Format {
     }
 }
 
-/// Returns every figure of a document with the name of its files, in reading order; players as their
-/// printed picture.
+/// Returns every figure of a document with the name of its files, in reading order; a player is
+/// represented by its printed picture.
 pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     let mut found = Vec::new();
     let mut names = Names::default();
@@ -169,8 +174,10 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     found
 }
 
-/// Returns every figure of a document as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
-/// printed picture, then every table as `table-<n>.csv`, in reading order.
+/// Returns the files of a document in reading order.
+///
+/// Every figure is written as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
+/// printed picture, and then every table as `table-<n>.csv`.
 pub fn attachments(document: &Document) -> Vec<Attachment> {
     let mut files = Vec::new();
     for (id, figure) in figures(document) {
@@ -203,7 +210,7 @@ impl Attachment {
     }
 }
 
-/// Assigns unique names, the same for one document in every format.
+/// Assigns unique names, which are the same for one document in every format.
 #[derive(Default)]
 pub(crate) struct Names {
     taken: HashSet<String>,

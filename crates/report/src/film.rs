@@ -1,4 +1,4 @@
-//! A film: a scene as numbered pictures of equal size, window and scale.
+//! A film: a scene as numbered pictures of equal size and scale.
 
 use std::sync::Arc;
 
@@ -21,8 +21,10 @@ const MOST: [f64; 2] = [900.0, 560.0];
 const HEADING: f64 = 26.0;
 
 impl Film {
-    /// Creates a film with pictures `1/rate` (s) apart from the first frame to the last; each shows the frame
-    /// nearest to its time. A rate above that of the frames, or one that is not positive, shows every frame once.
+    /// Creates a film with pictures `1/rate` (s) apart, from the first frame to the last.
+    ///
+    /// Each picture shows the frame nearest to its time. If the rate exceeds that of the frames, or
+    /// is not positive, every frame is shown once.
     pub fn of_run(scene: Arc<Scene>, rate: f64) -> Self {
         let frames = sampled(&scene, rate);
         let view = View::of(&scene, &frames, MOST, true);
@@ -34,12 +36,12 @@ impl Film {
         self.frames.len()
     }
 
-    /// `true` without pictures.
+    /// `true` if the film has no pictures.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 
-    /// Returns the time (s) of picture `at`; `None` beyond the last.
+    /// Returns the time (s) of picture `at`; `None` after the last picture.
     pub fn time(&self, at: usize) -> Option<f64> {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
     }
@@ -49,13 +51,15 @@ impl Film {
         [self.view.width, self.view.height + HEADING].map(|side| 2.0 * (0.5 * side).ceil())
     }
 
-    /// Returns picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last. At multiples of 96 dpi both
-    /// sides are even numbers of pixels, as video encoders require.
+    /// Returns picture `at` as a PNG with a resolution of `dpi` dots per inch; `None` after the
+    /// last picture.
+    ///
+    /// At multiples of 96 dpi both sides are even numbers of pixels, as video encoders require.
     pub fn png(&self, at: usize, dpi: f64) -> Option<Vec<u8>> {
         self.drawing(at).map(|drawing| raster::png(&drawing, dpi))
     }
 
-    /// Returns picture `at` as a standalone SVG document; `None` beyond the last.
+    /// Returns picture `at` as a standalone SVG document; `None` after the last picture.
     pub fn svg(&self, at: usize) -> Option<String> {
         self.drawing(at).map(|drawing| drawing.standalone())
     }
@@ -72,7 +76,7 @@ impl Film {
 }
 
 impl Scene {
-    /// Returns the scene from one time to another (s): the frames in between, and all events.
+    /// Returns the part of the scene between two times (s): the frames in between, and all events.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let frames = &self.frames;
@@ -95,7 +99,7 @@ impl Scene {
     }
 }
 
-/// Returns the indices of the frames nearest to equal time steps, each once.
+/// Returns the indices of the frames nearest to equal time steps, each at most once.
 pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
     sampled_times(&scene.frames.times[..scene.frames.len()], rate)
 }
@@ -105,7 +109,7 @@ pub(crate) fn sampled_times(times: &[f64], rate: f64) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut due = f64::NEG_INFINITY;
     for (frame, &time) in times.iter().enumerate() {
-        // The later of two frames is nearer once the midpoint between them is passed.
+        // The later of two frames is nearer after the midpoint between them.
         let next = times.get(frame + 1).copied().unwrap_or(f64::INFINITY);
         if due == f64::NEG_INFINITY || 0.5 * (time + next) > due {
             frames.push(frame);

@@ -1,7 +1,7 @@
-//! The bundled font: glyphs of characters, their widths and outlines.
+//! The bundled font: glyphs, their widths and their outlines.
 //!
-//! Pictures and PDF look alike on every machine because their text is drawn with this font alone;
-//! SVG refers to the fonts of the reader's system.
+//! Pixel pictures and PDF files look alike on every machine, because their text is drawn with this
+//! font only. SVG refers to the fonts of the reader's system.
 
 use std::sync::LazyLock;
 
@@ -29,8 +29,10 @@ impl Font {
         if strong { &STRONG } else { &REGULAR }
     }
 
-    /// Returns the glyphs of a text in order, each with its character and its width over the font size.
-    /// Control characters have none; a character that the font lacks is a box.
+    /// Returns the glyphs of a text in order, each with its character and its width as a share of
+    /// the font size.
+    ///
+    /// Control characters have no glyph; a character that the font lacks is shown as a box.
     pub(crate) fn glyphs(&self, text: &str) -> impl Iterator<Item = (u16, char, f64)> {
         text.chars().filter(|c| !is_invisible(*c)).map(|c| {
             let glyph = self.face.glyph_index(c).unwrap_or(GlyphId(0));
@@ -38,7 +40,7 @@ impl Font {
         })
     }
 
-    /// Returns the width of a glyph over the font size.
+    /// Returns the width of a glyph as a share of the font size.
     pub(crate) fn advance(&self, glyph: u16) -> f64 {
         let advance = self.face.glyph_hor_advance(GlyphId(glyph)).unwrap_or(0);
         f64::from(advance) / self.units()
@@ -54,12 +56,12 @@ impl Font {
         f64::from(self.face.units_per_em())
     }
 
-    /// Draws the outline of a glyph, in the font's units, y upward.
+    /// Draws the outline of a glyph, in font units with y upward.
     pub(crate) fn outline(&self, glyph: u16, pen: &mut dyn OutlineBuilder) {
         self.face.outline_glyph(GlyphId(glyph), pen);
     }
 
-    /// Converts a length in font units to a fraction of the font size.
+    /// Converts a length in font units to a share of the font size.
     pub(crate) fn share(&self, length: i16) -> f64 {
         f64::from(length) / self.units()
     }

@@ -1,14 +1,15 @@
-//! Technical terms: marked at their first occurrence in a section, listed at the end.
+//! Technical terms: marked where they first occur in a section, and listed at the end.
 
 use crate::{Word, escape};
 
-/// The heading of the list.
+/// Heading of the list.
 pub(crate) const TITLE: &str = "Words";
 
-/// The terms of a page, and which of them occur in it.
+/// The terms of a page, with a record of which occur in it.
 pub(crate) struct Glossary {
     words: Vec<Word>,
-    /// For each term: marked since the last heading, marked anywhere.
+    /// For each term: whether it was marked since the last heading, and whether it was marked
+    /// anywhere.
     marked: Vec<[bool; 2]>,
 }
 
@@ -24,9 +25,9 @@ impl Glossary {
         }
     }
 
-    /// Returns text as markup, marking the terms that have not occurred in this section.
+    /// Returns text as markup, with the terms marked that have not yet occurred in this section.
     ///
-    /// A mark works with pointer, touch and keyboard, and states the meaning without scripts.
+    /// A mark works with pointer, touch and keyboard, and shows the meaning without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;
@@ -80,7 +81,7 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Finds the first occurrence of a word in a text, whole or in its plural.
+/// Finds the first occurrence of a word in a text, as a whole word or in its plural.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
     let letter = |c: char| c.is_alphanumeric() || c == '-';

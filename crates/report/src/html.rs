@@ -18,14 +18,15 @@ use crate::{
 
 /// Writes the document as one HTML file that makes no network requests.
 ///
-/// Order: verdict, then the blocks; warnings and a list of sections follow the first player (or
-/// open the content when there is none); provenance closes the page. Players and interactive
-/// plots run in the page; without scripts, and on paper, they are SVG.
+/// Order: the verdict, then the blocks, then the provenance. Warnings and a list of sections follow
+/// the first player, or precede all blocks if there is no player. Players and interactive plots run
+/// in the page; without scripts, and in print, they are SVG pictures.
 pub fn html(document: &Document) -> String {
     written(document, None)
 }
 
-/// Writes the document like [`html`], with an embedded program that starts from the page's content.
+/// Writes the document like [`html`], with an embedded program that starts from the content of the
+/// page.
 pub fn html_with(document: &Document, trial: &Trial<'_>) -> String {
     written(document, Some(trial))
 }
@@ -60,7 +61,7 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Writes blocks as part of a page, such as a [`Shell`](crate::Shell), that is only shown with its scripts.
+/// Writes blocks as part of a page that needs scripts, such as a [`Shell`](crate::Shell).
 pub fn fragment(blocks: &[Block]) -> Fragment {
     let document = Document { blocks: blocks.to_vec(), ..Document::default() };
     let mut writer = Writer { prints: false, ..Writer::of(&document) };
@@ -68,7 +69,7 @@ pub fn fragment(blocks: &[Block]) -> Fragment {
     Fragment { markup: writer.out, data: writer.payload.into_json() }
 }
 
-/// Returns the headings of level 2 outside details, with their anchors.
+/// Returns the headings of level 2 that are not folded away, with their anchors.
 fn sections(blocks: &[Block]) -> Vec<(String, String)> {
     let mut names = Names::default();
     let mut list = Vec::new();
@@ -84,7 +85,7 @@ fn anchor(names: &mut Names, text: &str) -> String {
     names.take(&format!("section {text}"))
 }
 
-/// Length (bytes) above which a cell gets a minimum width.
+/// Length (bytes) above which a table cell gets a minimum width.
 const LONG: usize = 60;
 
 pub(crate) struct Writer<'a> {
@@ -117,7 +118,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Appends `markup`, which holds only escaped text.
+    /// Appends `markup`, which must contain only escaped text.
     pub(crate) fn put(&mut self, markup: &str) {
         self.out.push_str(markup);
     }
@@ -128,7 +129,7 @@ impl<'a> Writer<'a> {
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
 
-    /// Like [`Writer::element`], with technical terms marked.
+    /// Writes an element like [`Writer::element`], with technical terms marked.
     fn explained(&mut self, open: &str, text: &str, close: &str) {
         let text = self.glossary.marked(&number::tied(text));
         let _ = writeln!(self.out, "{open}{text}{close}");
@@ -155,10 +156,10 @@ impl<'a> Writer<'a> {
             self.explained("<p class=\"lead\">", &verdict.sentences.join(" "), "</p>");
         }
         if !verdict.command.is_empty() {
-            // Without non-breaking spaces, since it is to be copied.
+            // Without non-breaking spaces, because the command is meant to be copied.
             let command = escape::html(&verdict.command);
             self.put(&format!(
-                "<p class=\"command\">To see it side by side: <code>{command}</code></p>\n"
+                "<p class=\"command\">To compare them side by side: <code>{command}</code></p>\n"
             ));
         }
         if !verdict.fine.is_empty() {
@@ -268,7 +269,7 @@ impl<'a> Writer<'a> {
             } else {
                 format!(" <span class=\"unit\">({})</span>", escape::html(&column.unit))
             };
-            // An empty heading is no heading cell.
+            // An empty heading is written as an ordinary cell.
             if column.name.is_empty() && unit.is_empty() {
                 self.put("<td></td>");
             } else {
@@ -319,7 +320,7 @@ impl<'a> Writer<'a> {
         } else {
             let drawing = figure.draw(&id).inline();
             self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
-            // Live plots adapt to any width.
+            // Interactive plots adapt to any width.
             if live.is_none() {
                 let drawing = figure.draw_in(&format!("{id}-phone"), Room::Phone).inline();
                 self.put(&format!("<div class=\"drawing phone\">{drawing}</div>\n"));
@@ -352,7 +353,8 @@ pub fn badge(tone: Tone) -> String {
     format!("<p class=\"tone\">{}<span>{}</span></p>\n", sign(tone), escape::html(tone.word()))
 }
 
-/// Returns a shape for each tone, so that no meaning rests on color alone.
+/// Returns the sign of a tone; each tone has its own shape, so that no meaning rests on color
+/// alone.
 pub(crate) fn sign(tone: Tone) -> &'static str {
     match tone {
         Tone::Stands => {

@@ -30,10 +30,10 @@
 //!
 //! # Conventions
 //!
-//! Scenes use meters, radians and seconds, x to the right, z up, angles counterclockwise.
-//! Plots, tables and histories take numbers in the unit their label states.
-//! A number that is not finite is a gap in a line and a dash in a table. No input panics: lists
-//! of unequal length are read to the end of the shorter, empty figures draw empty axes.
+//! Scenes use meters, radians and seconds, with x to the right, z up and angles counterclockwise.
+//! Plots, tables and histories take numbers in the unit that their label states.
+//! A number that is not finite is a gap in a line and a dash in a table. No input panics: lists of
+//! unequal length are read to the end of the shorter one, and empty figures draw empty axes.
 
 mod animation;
 pub mod column;

@@ -1,4 +1,4 @@
-//! A document as Markdown with its figures in separate files.
+//! A document as Markdown, with its figures in separate files.
 
 use crate::{
     Attachment, Block, Document, Event, Player, Players, Table, Word, attachments, document::FINE,
@@ -10,14 +10,16 @@ use crate::{
 pub struct MarkdownBundle {
     /// The text.
     pub text: String,
-    /// Figures as SVG and CSV and tables as CSV, for the folder that the text refers to.
+    /// Figures as SVG and CSV, and tables as CSV; the text refers to them in the figure folder.
     pub files: Vec<Attachment>,
 }
 
-/// Writes the document as GitHub-flavored Markdown, one sentence per line as given.
+/// Writes the document as GitHub-flavored Markdown, with one sentence per line where sentences are
+/// given separately.
 ///
-/// `figure_dir` is the folder of the figures relative to the text, with `/` between its parts;
-/// empty means beside the text. A player becomes a strip of frames and a table of events.
+/// `figure_dir` is the folder of the figures relative to the text, with `/` as separator; if it is
+/// empty, the figures are beside the text. A player becomes a strip of frames and a table of
+/// events.
 pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     let mut writer = Writer {
         out: String::new(),
@@ -38,7 +40,7 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     }
     writer.line("");
     if !verdict.command.is_empty() {
-        writer.line(&format!("To see it side by side:\n\n    {}\n", verdict.command));
+        writer.line(&format!("To compare them side by side:\n\n    {}\n", verdict.command));
     }
     if !document.warnings.is_empty() {
         writer.line("## Warnings\n");
@@ -147,7 +149,7 @@ impl Writer {
         self.events(events);
     }
 
-    /// Writes events with the mark of their pane, which is empty where there is only one.
+    /// Writes events with the mark of their pane, which is empty if there is only one pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {

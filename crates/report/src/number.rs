@@ -1,12 +1,12 @@
 //! Numbers as text: significant digits for readers, full precision for programs.
 
-/// Shown in place of a number that is missing, NaN or infinite.
+/// Text shown in place of a number that is missing, NaN or infinite.
 pub(crate) const MISSING: &str = "–";
 
 /// Formats `value` with `digits` significant digits (at least one, at most 15).
 ///
-/// Numbers from 10⁻⁴ to below 10⁶ are written out, others as a mantissa and a power of ten.
-/// The minus sign is U+2212. A number that is not finite gives "–".
+/// Numbers from 10⁻⁴ to below 10⁶ are written out, others as a mantissa and a power of ten. The
+/// minus sign is U+2212. A number that is not finite gives "–".
 ///
 /// ```
 /// use barrelstack_report::significant;
@@ -23,7 +23,7 @@ pub fn significant(value: f64, digits: usize) -> String {
         return "0".into();
     }
     let digits = digits.clamp(1, 15);
-    // Rust's exponent format does the rounding, so 9.996 becomes 1.00e1 and not 10.00.
+    // Rust's exponent format rounds correctly: 9.996 becomes 1.00e1 and not 10.00.
     let scientific = format!("{:.*e}", digits - 1, value.abs());
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i64 = exponent.parse().unwrap_or(0);
@@ -40,8 +40,10 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// Formats `value` with three significant digits and at most `decimals` decimals, so that no meaningless digit
-/// is shown; a value that rounds to zero is shown as less than the last place.
+/// Formats `value` with three significant digits and at most `decimals` decimals, so that no
+/// meaningless digit is shown.
+///
+/// A value that rounds to zero is shown as less than one unit of the last place.
 ///
 /// ```
 /// use barrelstack_report::measured;
@@ -65,7 +67,7 @@ pub fn measured(value: f64, decimals: usize) -> String {
     if fine.chars().count() < coarse.chars().count() { fine } else { coarse }
 }
 
-/// Formats `value` with a fixed number of decimals and a real minus sign; "–" when not finite.
+/// Formats `value` with a fixed number of decimals and a true minus sign; "–" if it is not finite.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.into();
@@ -78,7 +80,8 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Formats a number for a CSV cell: shortest text that reads back to the same bits; empty when not finite.
+/// Formats a number for a CSV cell, as the shortest text that reads back to the same bits; empty if
+/// it is not finite.
 pub(crate) fn csv_number(value: f64) -> String {
     if value.is_finite() { shortest(value) } else { String::new() }
 }
@@ -86,7 +89,7 @@ pub(crate) fn csv_number(value: f64) -> String {
 /// Returns the shortest decimal text that reads back to the same bits.
 pub fn shortest(value: f64) -> String {
     let plain = format!("{value}");
-    // Within these bounds an exponent never saves a character.
+    // Within these bounds the exponent form is never shorter.
     if (1e-2..1e3).contains(&value.abs()) || value == 0.0 {
         return plain;
     }
@@ -94,13 +97,14 @@ pub fn shortest(value: f64) -> String {
     if exponent.len() < plain.len() { exponent } else { plain }
 }
 
-/// Units that follow a number, or begin a compound unit such as `cm/s`.
+/// Units that may follow a number, or begin a compound unit such as `cm/s`.
 const UNITS: [&str; 30] = [
     "%", "m", "cm", "mm", "µm", "nm", "km", "in", "ft", "s", "ms", "µs", "min", "h", "g", "kg",
     "t", "N", "kN", "MN", "Pa", "kPa", "MPa", "J", "kJ", "Hz", "deg", "rad", "L", "1",
 ];
 
-/// Returns `text` with no-break spaces between numbers and their units, so that no line break splits a quantity.
+/// Returns `text` with no-break spaces between numbers and their units, so that no line break
+/// separates them.
 pub(crate) fn tied(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 8);
     let mut before = ' ';
@@ -117,7 +121,7 @@ fn begins_with_unit(text: &str) -> bool {
     let word = &text[..end];
     match word.split_once('/') {
         Some((first, _)) => UNITS.contains(&first),
-        // A lone 1 is no unit; it only begins one, as in `1/s`.
+        // A lone 1 is not a unit; it only begins one, as in `1/s`.
         None => word != "1" && UNITS.contains(&word),
     }
 }

@@ -1,9 +1,10 @@
-//! Numbers packed for the page: quantized, differenced, written as variable-length bytes in base64.
+//! Packed numbers for the page: quantized, differenced, and written as variable-length integers in
+//! base64.
 //!
-//! A value becomes the nearest whole multiple of a quantum, a power of two, so that the
-//! decoder's product is exact and page and program agree to the bit.
-//! The stream holds, for each value, a LEB128 integer: 0 for a missing value, otherwise one
-//! plus the zigzag code of the difference (first or second order) to the values before it.
+//! A value is rounded to a whole multiple of a quantum. The quantum is a power of two, so the
+//! product that the decoder computes is exact, and page and program agree to the bit.
+//! The stream contains one LEB128 integer per value: 0 for a missing value, otherwise 1 plus the
+//! zigzag code of the first or second difference from the previous values.
 
 use std::io::Write as _;
 
@@ -18,11 +19,11 @@ pub const POSE_QUANTUM: f64 = 1.0 / 16384.0;
 /// Quantum of times (s): 2⁻²⁰, about 1 µs.
 pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
 
-/// Largest multiple of the quantum that is stored; a larger one counts as missing.
-/// Second differences of such numbers stay exact in the decoder's doubles.
+/// Largest multiple of the quantum that is stored; a larger one counts as missing. Second
+/// differences of such numbers are exact in double precision.
 const LIMIT: f64 = (1_u64 << 48) as f64;
 
-/// Columns up to this length are written as plain numbers, exact to the last digit.
+/// Columns up to this length are written as plain numbers with all digits.
 const PLAIN: usize = 512;
 
 fn quantize(value: f64, quantum: f64) -> Option<i64> {
@@ -56,7 +57,8 @@ fn pack_channel(values: impl Iterator<Item = Option<i64>>, order: u8, out: &mut 
     }
 }
 
-/// Packs channels one after the other, with the order (1 or 2) that gives fewer bytes.
+/// Packs channels one after the other, with the order of differences (1 or 2) that gives fewer
+/// bytes.
 fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
     let with = |order: u8| {
         let mut bytes = Vec::new();
@@ -69,7 +71,7 @@ fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
     if second.len() < first.len() { (2, second) } else { (1, first) }
 }
 
-/// Packs channels of equal length `count` with one quantum.
+/// Packs channels of equal length `count` with a common quantum.
 pub(crate) fn channels(channels: &[Vec<f64>], count: usize, quantum: f64) -> Value {
     let whole: Vec<Vec<Option<i64>>> = channels
         .iter()
@@ -79,9 +81,10 @@ pub(crate) fn channels(channels: &[Vec<f64>], count: usize, quantum: f64) -> Val
     json!({ "q": quantum, "n": count, "c": channels.len(), "o": order, "d": BASE64.encode(&bytes) })
 }
 
-/// Writes one column: plain numbers when short or `exact`, packed otherwise.
+/// Writes a column: plain numbers if it is short or must be `exact`, otherwise packed.
 ///
-/// The quantum of a packed column is at most 2⁻¹⁶ of its range, finer than any screen shows.
+/// The quantum of a packed column is at most 2⁻¹⁶ of its range, which is finer than any screen
+/// resolution.
 pub(crate) fn column(values: &[f64], exact: bool) -> Value {
     if exact || values.len() <= PLAIN {
         return Value::Array(
@@ -91,13 +94,13 @@ pub(crate) fn column(values: &[f64], exact: bool) -> Value {
     channels(&[values.to_vec()], values.len(), quantum_for(values))
 }
 
-/// Returns a power of two at most 2⁻¹⁶ of the range of the finite values.
+/// Returns a power of two that is at most 2⁻¹⁶ of the range of the finite values.
 pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let low = finite().fold(f64::INFINITY, f64::min);
     let high = finite().fold(f64::NEG_INFINITY, f64::max);
     let size = if high > low { high - low } else { high.abs() };
-    // The bounds keep the quantum a normal number and the multiples below LIMIT.
+    // The bounds keep the quantum a normal number, and the multiples below LIMIT.
     if size.is_finite() && size > 1e-250 {
         let floor = high.abs().max(low.abs()) / LIMIT * 2.0;
         (size.log2().floor() - 16.0).exp2().max(floor.max(1e-300).log2().ceil().exp2())
@@ -118,9 +121,11 @@ pub(crate) fn gzip_letters(bytes: &[u8]) -> String {
     letters(&packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default())
 }
 
-/// Encodes bytes in base 85: their number, a space, and five letters for every four bytes, most significant first.
+/// Encodes bytes in base 85: the number of bytes, a space, and five letters for every four bytes,
+/// most significant first.
 ///
-/// A sixteenth shorter than base64. The alphabet starts at `!` and omits `<`, so that it cannot end a script element.
+/// The text is a sixteenth shorter than base64. The alphabet starts at `!` and omits `<`, so the
+/// text cannot end a script element.
 pub(crate) fn letters(packed: &[u8]) -> String {
     let mut text = format!("{} ", packed.len());
     for four in packed.chunks(4) {

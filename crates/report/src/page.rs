@@ -1,4 +1,4 @@
-//! The page around a document's blocks: style, scripts and their data.
+//! The page around the blocks of a document: style sheet, scripts and their data.
 
 use std::{collections::HashMap, fmt::Write as _};
 
@@ -17,11 +17,11 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
-/// three.js, of which `cargo xtask bundle` packs what the stage in three dimensions uses.
+/// three.js, reduced by `cargo xtask bundle` to the parts that the three-dimensional stage uses.
 const THREE_JS: &str = include_str!("../assets/vendor/three.iife.min.js");
 const THREE_LICENSE: &str = include_str!("../assets/vendor/three-LICENSE");
 
-/// The player's scripts, in order of dependency.
+/// Scripts of the player, in the order of their dependencies.
 const PLAYER: [&str; 14] = [
     include_str!("../assets/held.js"),
     include_str!("../assets/decode.js"),
@@ -39,22 +39,22 @@ const PLAYER: [&str; 14] = [
     include_str!("../assets/player.js"),
 ];
 
-/// Scripts of a stage in three dimensions, for pages with a player.
+/// Scripts of the three-dimensional stage, for pages with a player.
 const DEPTH: [&str; 3] = [
     include_str!("../assets/solids.js"),
     include_str!("../assets/orbit.js"),
     include_str!("../assets/deep.js"),
 ];
 
-/// Further scripts of a report.
+/// Scripts of a report that are not part of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
-/// The icon is an empty data address and the policy forbids every other address, so a browser makes
-/// no further request.
+/// The content security policy forbids every address except embedded data, and the icon is an empty
+/// data address, so a browser makes no further request.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
 
-/// The policy of a page with an embedded program: it may run it, also in workers.
+/// The policy of a page with an embedded program, which allows the program to run, also in workers.
 const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                               script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
                               img-src data: blob:; base-uri 'none'; form-action 'none'";
@@ -77,7 +77,7 @@ impl Payload {
             .enumerate()
             .map(|(at, s)| {
                 let count = s.x.len().min(s.y.len());
-                // A log axis shows small values as large as great ones, so values stay exact.
+                // On a log axis small values are as visible as large ones, so values stay exact.
                 let exact = plot.x.scale == Scale::Log || plot.y.scale == Scale::Log;
                 let shown = |axis: &Axis, values: &[f64]| -> Vec<f64> {
                     values.iter().map(|v| if axis.shows(*v) { *v } else { f64::NAN }).collect()
@@ -115,7 +115,7 @@ impl Payload {
         self.plots.len() - 1
     }
 
-    /// Returns the index of a column; equal columns are stored once.
+    /// Returns the index of a data column; equal columns are stored once.
     fn column(&mut self, column: Value) -> usize {
         let key = column.to_string();
         if let Some(&place) = self.known.get(&key) {
@@ -126,7 +126,7 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    /// Returns `true` if a pane of a player is known in three dimensions.
+    /// `true` if the scene of any player is known in three dimensions.
     fn has_depth(&self) -> bool {
         let mut panes =
             self.players.iter().filter_map(|player| player["panes"].as_array()).flatten();
@@ -168,7 +168,7 @@ pub(crate) fn assemble(
     let live = !payload.plots.is_empty();
     let deep = payload.has_depth();
     let played = trial.is_some() || !payload.players.is_empty();
-    // Static tables and figures need the scripts, too, which save and copy them.
+    // Static tables and figures also need the scripts, which save and copy them.
     let scripted =
         live || played || ["<table", "<figure"].iter().any(|element| body.contains(element));
     let (policy, style) =
@@ -184,7 +184,7 @@ pub(crate) fn assemble(
         );
     }
     if live {
-        // The license requires its text in every copy.
+        // The license requires its text to be included in every copy.
         let license = UPLOT_LICENSE.replace("*/", "* /");
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
@@ -206,7 +206,8 @@ pub(crate) fn assemble(
     out
 }
 
-/// Returns the file up to its body, with its policy and with style sheets before and after the common one.
+/// Returns the file up to its body, with its policy, and with style sheets before and after the
+/// common one.
 fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     let title = escape::html(title);
     let palette = palette_css();
@@ -220,26 +221,26 @@ fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     )
 }
 
-/// A page with an embedded program, in the style and with the player of all pages.
+/// A page with an embedded program, with the style and the player of all pages.
 ///
-/// Its policy lets it run the embedded program, also in workers, and forbids every request.
-/// Large data stand at the end, after the scripts, so that the page is visible and usable before the file is
-/// fully loaded.
+/// The policy of the page allows the embedded program to run, also in workers, and forbids every
+/// request. Large data are at the end, after the scripts, so that the page is usable before the
+/// file is fully loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
     /// Title of the file.
     pub title: &'a str,
-    /// Style sheet of its own.
+    /// Style sheet of the page.
     pub style: &'a str,
-    /// Its body, as markup.
+    /// Body of the page, as markup.
     pub body: &'a str,
-    /// Bytes available to its scripts at start, each under the id of an element.
+    /// Data available to the scripts at the start, each under the id of an element.
     pub at_hand: &'a [(&'a str, &'a [u8])],
-    /// The script of its workers, in the element `worker`.
+    /// Script of the workers, in the element `worker`.
     pub worker: &'a str,
-    /// Its scripts, which can access those of the player.
+    /// Scripts of the page, which can access those of the player.
     pub scripts: &'a [&'a str],
-    /// Bytes in gzip that are loaded last, each under the id of an element.
+    /// Data compressed with gzip that are loaded last, each under the id of an element.
     pub held: &'a [(&'a str, &'a [u8])],
 }
 
@@ -254,7 +255,8 @@ impl Shell<'_> {
         hold(&mut out, "text/plain", "worker", &format!("\n{}", lean(self.worker)));
         let player: String = PLAYER.into_iter().chain(DEPTH).map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
-        // In a block of its own, so that constants may have the names of the player's.
+        // In a block of its own, so that its constants may have the same names as those of the
+        // player.
         out += &strict(&format!("{player}{{\n{own}}}\n"));
         for (id, packed) in self.held {
             hold(&mut out, "text/plain", id, &pack::letters(packed));
@@ -264,26 +266,26 @@ impl Shell<'_> {
     }
 }
 
-/// Wraps scripts in an element with a scope of their own.
+/// Wraps scripts in an element with their own scope.
 fn strict(scripts: &str) -> String {
     format!("<script>\n(() => {{\n\"use strict\";\n{scripts}}})();\n</script>\n")
 }
 
-/// Writes data for scripts into an element of its own.
+/// Writes data for scripts into an element.
 fn hold(out: &mut String, kind: &str, id: &str, text: &str) {
     // Writing to a String cannot fail.
     let _ = writeln!(out, "<script type=\"{kind}\" id=\"{id}\">{text}</script>");
 }
 
-/// Removes indents and comment lines from a script, which makes it a fifth shorter. The scripts must not contain
-/// multi-line strings.
+/// Removes indents and comment lines from a script, which makes it a fifth shorter. The script must
+/// not contain multi-line strings.
 fn lean(script: &str) -> String {
     let lines = script.lines().map(str::trim);
     let kept = lines.filter(|line| !line.is_empty() && !line.starts_with("//"));
     kept.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// The palette as CSS custom properties: light; dark on screen if the reader prefers it.
+/// Returns the palette as CSS custom properties: light, or dark on screen if the reader prefers it.
 fn palette_css() -> String {
     let list = |pick: fn(&(&str, &str, &str)) -> String| -> String {
         PALETTE.iter().map(pick).collect::<Vec<_>>().join(";")

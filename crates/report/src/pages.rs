@@ -16,7 +16,7 @@ use crate::{
     tags::Tags,
 };
 
-/// The paper of a printed document.
+/// The paper size of a printed document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Paper {
     /// 210 by 297 mm.
@@ -36,11 +36,12 @@ impl Paper {
     }
 }
 
-/// Writes the document as a PDF: the same text and numbers as [`html`](crate::html), vector figures, selectable
-/// text, an outline of sections, the title and page number in every footer, and tags for screen readers.
+/// Writes the document as a PDF, with the same text and numbers as [`html`](crate::html).
 ///
-/// A player that opens the document is shown during its falls, on the first page; content that the page folds
-/// away is in an appendix.
+/// Figures are vector graphics and text is selectable. The PDF has an outline of sections, the
+/// title and page number in every footer, and tags for screen readers. A player that opens the
+/// document is shown during its falls, on the first page. Content that the HTML page folds away is
+/// in an appendix.
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
@@ -58,7 +59,7 @@ pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     pdf(&document.title, &pages, tags, 1.0)
 }
 
-/// Writes a figure alone on a page of its size; one px is three quarters of a point.
+/// Writes a single figure on a page of its size; one px is three quarters of a point.
 pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
     let drawing = figure.draw(&escape::slug(&figure.id));
     let mut structure = Tags::new();
@@ -68,9 +69,9 @@ pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
 }
 
 const POINTS_PER_PX: f64 = 0.75;
-/// Margins left and right, top, and bottom (points); the bottom one contains the footer.
+/// Margins left and right, top, and bottom (points); the footer is within the bottom margin.
 const MARGIN: [f64; 3] = [54.0, 52.0, 60.0];
-/// Distance between baselines over the font size.
+/// Distance between baselines, as a multiple of the font size.
 const LEADING: f64 = 1.4;
 /// Distance between blocks (points).
 const GAP: f64 = 8.0;
@@ -79,7 +80,7 @@ struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Top of the next block on the last page, from the top of the page.
+    /// Top of the next block on the last page (points), from the top of the page.
     y: f64,
     names: Names,
     tables: usize,
@@ -87,7 +88,7 @@ struct Flow<'a> {
     /// Folded content, for the appendix.
     folded: Vec<(&'a str, &'a [Block])>,
     tags: Tags,
-    /// The current element.
+    /// Index of the current structure element.
     current: usize,
 }
 
@@ -113,12 +114,13 @@ impl<'a> Flow<'a> {
         self.size[0] - 2.0 * MARGIN[0]
     }
 
-    /// Lowest position of a line on a page.
+    /// Returns the lowest position of a line on a page.
     fn floor(&self) -> f64 {
         self.size[1] - MARGIN[2]
     }
 
-    /// Writes an element, to which all items belong that are drawn meanwhile outside of nested elements.
+    /// Writes a structure element; all items drawn meanwhile belong to it, except those in nested
+    /// elements.
     fn tagged(&mut self, role: StructRole, words: Option<&str>, write: impl FnOnce(&mut Self)) {
         self.settle(Some(self.current));
         let before = self.current;
@@ -143,7 +145,7 @@ impl<'a> Flow<'a> {
         self.y = MARGIN[1];
     }
 
-    /// Starts a new page unless `height` is left on this one, or this one is empty.
+    /// Starts a new page unless this page has `height` left or is empty.
     fn need(&mut self, height: f64) {
         if self.y + height > self.floor() && self.y > MARGIN[1] {
             self.turn();
@@ -180,7 +182,7 @@ impl<'a> Flow<'a> {
         const INDENT: f64 = 11.0;
         self.tagged(StructRole::L, None, |flow| {
             for item in items {
-                // The bullet stays with the first two lines.
+                // The bullet stays together with the first two lines.
                 flow.need(LEADING * 9.5 * 2.0);
                 let dot = [MARGIN[0] + 2.0, flow.y + 9.5];
                 flow.tagged(StructRole::LI, None, |flow| {
@@ -196,7 +198,7 @@ impl<'a> Flow<'a> {
         self.y += GAP - 1.5;
     }
 
-    /// Writes a heading, kept together with `follows` points of the content after it.
+    /// Writes a heading, kept together with the first `follows` points of the following content.
     fn heading(&mut self, class: &'static str, text: &str, follows: f64) {
         let above = if self.y > MARGIN[1] { 6.0 } else { 0.0 };
         let height = LEADING * Style::of(Tag::Text, class).font_size;
@@ -234,7 +236,10 @@ impl<'a> Flow<'a> {
             self.paragraph("page-text", &verdict.sentences.join(" "));
         }
         if !verdict.command.is_empty() {
-            self.paragraph("page-text", &format!("To see it side by side: {}", verdict.command));
+            self.paragraph(
+                "page-text",
+                &format!("To compare them side by side: {}", verdict.command),
+            );
         }
         if !verdict.fine.is_empty() {
             self.heading("page-part", FINE, 28.0);
@@ -264,7 +269,7 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(Vec::new(), rows, vec![false; 2], self.width()));
     }
 
-    /// Writes the folded content, including what is folded in it.
+    /// Writes the folded content, including content folded within it.
     fn appendix(&mut self) {
         if self.folded.is_empty() {
             return;
@@ -304,7 +309,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the height (points) of the following content that must be on the page of its heading.
+    /// Returns the height (points) of the following content that must be on the same page as its
+    /// heading.
     fn least(&self, blocks: &[Block]) -> f64 {
         let Some((first, rest)) = blocks.split_first() else { return 0.0 };
         let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;
@@ -315,7 +321,7 @@ impl<'a> Flow<'a> {
             Block::Table(_) => 66.0,
             Block::Heading { .. } => 24.0 + self.least(rest),
             Block::Details { .. } => 24.0,
-            // A paragraph before a figure introduces it.
+            // A paragraph before a figure introduces it, so they stay together.
             Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
                 40.0 + self.least(rest)
             }
@@ -324,8 +330,8 @@ impl<'a> Flow<'a> {
         least.min(0.8 * (self.floor() - MARGIN[1]))
     }
 
-    /// Returns the drawing of a figure, its height on the page and its scale: as large as the page allows,
-    /// and never enlarged.
+    /// Returns the drawing of a figure, its height on the page and its scale, which is as large as
+    /// the page allows but never enlarges.
     fn picture(&self, figure: &Figure, id: &str) -> (Drawing, f64, f64) {
         let drawing = figure.draw(id);
         let most = self.floor() - MARGIN[1] - 60.0;
@@ -353,10 +359,11 @@ impl<'a> Flow<'a> {
         self.y += GAP;
     }
 
-    /// Returns a player as a picture: during its falls if it opens the document and anything falls.
+    /// Returns the picture of a player; if the player opens the document and anything falls, the
+    /// picture shows an instant during its falls.
     fn still(&self, player: &Player) -> Figure {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
-        // At the second fall the first is visible, too.
+        // At the second fall the first one is visible too.
         let first = falls.next();
         let Some(fall) = falls.next().or(first).filter(|_| self.figures == 0) else {
             return player.paper_figure(&self.document.blocks);
@@ -392,7 +399,7 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));
     }
 
-    /// Writes the rows of a table, repeating its head on every page.
+    /// Writes the rows of a table, repeating the head on every page.
     fn rows(&mut self, sheet: &Sheet) {
         self.tagged(StructRole::Table, None, |flow| flow.tagged_rows(sheet));
         self.y += GAP + 2.0;
@@ -411,7 +418,7 @@ impl<'a> Flow<'a> {
                 open = false;
             }
             if let (false, Some(head)) = (open, &head) {
-                // A repeated head is no content.
+                // A repeated head is decoration, not content.
                 self.row(sheet, head, "page-small-bold", (at == 0).then_some(StructRole::TH));
                 self.rule("page-line");
             }
@@ -421,7 +428,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Writes a row of cells of a role; without a role it is decoration.
+    /// Writes a row of cells with a role; without a role the row is decoration.
     fn row(
         &mut self,
         sheet: &Sheet,
@@ -459,7 +466,7 @@ impl<'a> Flow<'a> {
         self.settle(None);
     }
 
-    /// Returns the pages with their footers, and the structure.
+    /// Returns the pages with their footers, and the structure tags.
     fn finish(mut self) -> (Vec<Page>, Tags) {
         self.settle(Some(self.current));
         let (right, y) = (MARGIN[0] + self.width(), self.size[1] - 34.0);

@@ -1,4 +1,5 @@
-//! Converts a drawing to strokes, fills and text in absolute positions, for formats without style sheets.
+//! Converts a drawing to strokes, fills and text at absolute positions, for formats without style
+//! sheets.
 
 use std::collections::HashMap;
 
@@ -8,7 +9,8 @@ use crate::{
     style::{Ink, Style, Tag, dashes},
 };
 
-/// A drawing target: pixels, or the content of a page. Lengths in px from the upper left corner, y down.
+/// A drawing target, such as pixels or the content of a page. Lengths are in px from the upper left
+/// corner, with y down.
 pub(crate) trait Painter {
     /// Draws polylines; the lengths of the style are already scaled.
     fn lines(&mut self, runs: &[Vec<[f64; 2]>], closed: bool, style: &Style);
@@ -16,16 +18,16 @@ pub(crate) trait Painter {
     fn circle(&mut self, center: [f64; 2], radius: f64, style: &Style);
     /// Draws a text whose baseline starts at a point.
     fn word(&mut self, word: &Word<'_>);
-    /// Clips further items to this rectangle, in addition to those in force.
+    /// Clips the following items to this rectangle, in addition to the clip rectangles in force.
     fn clip(&mut self, lower: [f64; 2], size: [f64; 2]);
     /// Removes the last clip rectangle.
     fn unclip(&mut self);
 }
 
-/// A line of text in its position.
+/// A line of text at its position.
 pub(crate) struct Word<'a> {
     pub(crate) text: &'a str,
-    /// Start of its baseline.
+    /// Start of the baseline.
     pub(crate) at: [f64; 2],
     /// Clockwise rotation about `at`.
     pub(crate) degrees: f64,
@@ -34,7 +36,7 @@ pub(crate) struct Word<'a> {
     pub(crate) ink: Ink,
 }
 
-/// Paints the items of a drawing, scaled by `scale`, with its upper left corner at the origin.
+/// Paints the items of a drawing, scaled by `scale`, with the upper left corner at the origin.
 pub(crate) fn paint(items: &[Item], scale: f64, painter: &mut dyn Painter) {
     let mut walk = Walk { painter, bodies: HashMap::new(), styles: HashMap::new() };
     walk.items(items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
@@ -153,7 +155,7 @@ impl<'d> Walk<'d, '_> {
         let [x, z, angle] = placed.pose;
         let (sin, cos) = angle.sin_cos();
         let origin = Place { up: true, ..*world }.at([x, z]);
-        // A counterclockwise rotation with z up is a negative clockwise one.
+        // A counterclockwise rotation with z up is a negative clockwise rotation on the page.
         self.items(&body.items, &Place { origin, turn: [cos, -sin], up: true, ..*world });
     }
 

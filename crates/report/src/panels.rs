@@ -10,7 +10,7 @@ const TITLE: f64 = 26.0;
 /// Gap (px) between plots.
 const GAP: f64 = 10.0;
 
-/// Plots in rows under a title; the axes of a row are aligned at the bottom.
+/// Plots in rows under a title; the plots of a row are aligned at the bottom.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Panels {
     /// Title.
@@ -22,7 +22,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Draws the plots in their rows; on a phone all one below the other.
+    /// Draws the plots in their rows; on a phone, all plots one below the other.
     pub(crate) fn draw(&self, id: &str, caption: &str, room: Room) -> Drawing {
         let drawn: Vec<Vec<Drawing>> = self
             .rows
@@ -64,7 +64,8 @@ impl Panels {
             let height = tall(&row);
             let mut left = 0.0;
             for plot in row {
-                // Aligned at the bottom, so that higher plots keep their axes level with the others.
+                // Aligned at the bottom, so that taller plots keep their axes level with the
+                // others.
                 let at = [left, top + height - plot.height];
                 left += plot.width + GAP;
                 drawing.nest(at, plot);

@@ -18,17 +18,17 @@ use crate::{
     tags::Tags,
 };
 
-/// A page: a drawing, and the headings for the outline of the document.
+/// A page: a drawing, its headings for the outline of the document, and its structure tags.
 pub(crate) struct Page {
     pub(crate) drawing: Drawing,
-    /// Text and position (in the drawing, from its top) of each.
+    /// Text of each heading, and its distance from the top of the drawing.
     pub(crate) sections: Vec<(String, f64)>,
     /// The structure element of each item of the drawing; `None` for decoration.
     pub(crate) tags: Vec<Option<usize>>,
 }
 
-/// Writes pages as a PDF with a title and the structure `tags`; `scale` is the number of points per unit of
-/// the drawings.
+/// Writes pages as a PDF with a title and the structure `tags`; `scale` is the number of points per
+/// unit of the drawings.
 pub(crate) fn pdf(title: &str, pages: &[Page], mut tags: Tags, scale: f64) -> Vec<u8> {
     let mut file = File { pdf: Pdf::new(), last: 0, ink: Used::default() };
     let (catalog, tree, info) = (file.next(), file.next(), file.next());
@@ -60,23 +60,23 @@ pub(crate) fn pdf(title: &str, pages: &[Page], mut tags: Tags, scale: f64) -> Ve
     file.pdf.finish()
 }
 
-/// A PDF under construction.
+/// A PDF file under construction.
 struct File {
     pdf: Pdf,
     last: i32,
     ink: Used,
 }
 
-/// Fonts and opacities that pages use.
+/// Fonts and opacities that the pages use.
 #[derive(Default)]
 struct Used {
-    /// By weight: `true` for bold.
+    /// Glyphs in use by font weight: `true` is bold.
     fonts: BTreeMap<bool, Glyphs>,
-    /// In percent.
+    /// Opacities in use, in percent.
     opacities: BTreeSet<u8>,
 }
 
-/// Glyphs of a font by their number in the file, with their characters.
+/// Glyphs of a font by glyph number, with their characters.
 #[derive(Default)]
 struct Glyphs {
     numbers: GlyphRemapper,
@@ -89,7 +89,8 @@ impl File {
         Ref::new(self.last)
     }
 
-    /// Writes a page and returns the elements painted on it, by their numbers.
+    /// Writes a page and returns the structure elements painted on it, by their marked-content
+    /// identifiers.
     fn page(
         &mut self,
         (at, page, id): (usize, &Page, Ref),
@@ -162,7 +163,7 @@ impl File {
     fn font(&mut self, strong: bool, glyphs: &Glyphs) -> Ref {
         let font = Font::of(strong);
         let [id, descendant, descriptor, program, unicode] = std::array::from_fn(|_| self.next());
-        // If the font cannot be reduced, embed all of it.
+        // If the font cannot be reduced, the whole font is embedded.
         let bytes = subsetter::subset(font.bytes, 0, &glyphs.numbers)
             .unwrap_or_else(|_| font.bytes.to_vec());
         let name = format!("BRLSTK+{}", font.name);
@@ -186,7 +187,7 @@ impl File {
         let bounds = font.face.global_bounding_box();
         let [left, foot, right, top] =
             [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(thousandths);
-        // Without a stated height, assume capitals of seven tenths, as in most fonts.
+        // Without a stated height, capitals are assumed to be 0.7 em high, as in most fonts.
         let cap_height = font.face.capital_height().map_or(700.0, thousandths);
         self.pdf
             .font_descriptor(descriptor)
@@ -218,7 +219,7 @@ impl File {
         id
     }
 
-    /// Writes the outline of sections; `None` without sections.
+    /// Writes the outline of the sections; `None` without sections.
     fn sections(&mut self, pages: &[Page], ids: &[Ref], scale: f64) -> Option<Ref> {
         let found: Vec<(&str, Ref, f64)> = pages
             .iter()
@@ -264,8 +265,8 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory")
 }
 
-/// Rounds to hundredths of a point: enough everywhere, and fewer digits make a smaller file.
-#[expect(clippy::cast_possible_truncation, reason = "a page is some thousand points high")]
+/// Rounds to hundredths of a point, which is precise enough and keeps the file small.
+#[expect(clippy::cast_possible_truncation, reason = "a page is a few thousand points high")]
 fn short(value: f64) -> f32 {
     ((100.0 * value).round() / 100.0) as f32
 }
@@ -273,7 +274,7 @@ fn short(value: f64) -> f32 {
 /// Writes the content of one page.
 struct Writer<'a> {
     content: Content,
-    /// Height of the page (points): in PDF, y starts at the bottom.
+    /// Height of the page (points); in PDF, y starts at the bottom.
     height: f64,
     used: &'a mut Used,
 }
@@ -346,14 +347,15 @@ impl Painter for Writer<'_> {
     }
 
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &Style) {
-        /// Distance of the control points of a cubic that approximates a quarter circle, over the radius.
+        /// Distance of the control points of the cubic that approximates a quarter circle, as a
+        /// share of the radius.
         const HANDLE: f64 = 0.552_284_75;
         self.draw(style, &|writer| {
             let spot = |u: f64, v: f64| writer.at([x + radius * u, y + radius * v]);
             let start = spot(1.0, 0.0);
             let mut quarters = Vec::new();
             for [u, v] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
-                // From (u, v) a quarter onward, to (−v, u).
+                // A quarter circle from (u, v) to (−v, u).
                 let first = spot(u - HANDLE * v, v + HANDLE * u);
                 let second = spot(-v + HANDLE * u, u + HANDLE * v);
                 quarters.push([first, second, spot(-v, u)]);

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::{Block, Figure, FigureKind, History, Panel, Scene, Strip, Tone, Trace, figure::walk};
 
-/// Moving bodies with controls.
+/// An animated scene with controls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Player {
     /// Short name, made safe for anchors and file names.
     pub id: String,
-    /// Caption: content of the scene and how to read it.
+    /// Caption: what the scene shows and how to read it.
     pub caption: String,
     /// The scene.
     pub scene: Arc<Scene>,
@@ -18,8 +18,8 @@ pub struct Player {
 }
 
 impl Player {
-    /// Returns the static picture of the player in a document of these blocks: a strip of six frames,
-    /// or the first frame with names if the document contains a strip of this scene anyway.
+    /// Returns the printed picture of the player in a document with these blocks: a strip of six
+    /// frames, or the first frame with names if the document contains a strip of this scene anyway.
     pub fn paper_figure(&self, blocks: &[Block]) -> Figure {
         let scene = Arc::clone(&self.scene);
         let strip =
@@ -33,26 +33,27 @@ impl Player {
 pub struct Players {
     /// Short name, made safe for anchors and file names.
     pub id: String,
-    /// Caption: content of the scenes and how to read them.
+    /// Caption: what the scenes show and how to read them.
     pub caption: String,
     /// The scenes, in reading order.
     pub panes: Vec<Pane>,
-    /// Histories shown in the strip under the stages, in place of those of the scenes.
+    /// Histories shown in the strip below the stages, in place of the histories of the scenes.
     pub ground: Vec<History>,
-    /// Label of a switch that draws the bodies of the first scene over all others; `None` without it.
+    /// Label of a switch that draws the bodies of the first scene over all others; `None` without a
+    /// switch.
     pub overlay: Option<String>,
 }
 
 /// One of several scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pane {
-    /// A short mark, such as a letter, by which lists refer to it.
+    /// A short mark, such as a letter, by which lists refer to the pane.
     pub mark: String,
-    /// Its name, short enough for a heading above a third of the page.
+    /// Name of the pane, short enough for a heading above a third of the page.
     pub name: String,
-    /// Its verdict in one sentence.
+    /// Verdict of the pane in one sentence.
     pub verdict: String,
-    /// The kind of its verdict.
+    /// Tone of the verdict.
     pub tone: Tone,
     /// The scene.
     pub scene: Arc<Scene>,
@@ -60,11 +61,11 @@ pub struct Pane {
     pub traces: Vec<Trace>,
 }
 
-/// Pictures of each scene in print.
+/// Number of printed pictures per scene.
 const ON_PAPER: usize = 4;
 
 impl Players {
-    /// Returns the static pictures of the scenes: a strip for each, all at the same times.
+    /// Returns the printed pictures of the scenes: one strip per scene, all at the same times.
     pub fn paper_figures(&self) -> Vec<Figure> {
         let times = self.paper_times();
         self.panes

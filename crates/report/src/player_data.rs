@@ -1,4 +1,5 @@
-//! Data of a player for the page: panes with bodies, packed frames and events, and what the panes share.
+//! Data of a player for the page: panes with bodies, packed frames and events, and data that the
+//! panes share.
 
 use std::cmp::Ordering;
 
@@ -14,15 +15,15 @@ use crate::{
 
 /// Returns the data of a single player.
 ///
-/// Poses are multiples of 2⁻¹⁴ (m and rad), times of 2⁻²⁰ s, places of forces of 2⁻¹⁰ m and
-/// forces of a power of two at most 2⁻¹² of the largest component.
+/// Poses are multiples of 2⁻¹⁴ (m and rad), times of 2⁻²⁰ s, and points of action of 2⁻¹⁰ m. Forces
+/// are multiples of a power of two that is at most 2⁻¹² of the largest component.
 pub(crate) fn of_player(player: &Player, id: &str) -> Value {
     let scene = &player.scene;
     let alone = pane("", scene, &player.traces, &whole_window(scene));
     together(id, &[alone], &scene.ground, [&**scene])
 }
 
-/// Returns the data that panes share.
+/// Returns the data that the panes of a player share.
 fn together<'a>(
     id: &str,
     panes: &[Value],
@@ -38,7 +39,8 @@ fn together<'a>(
     })
 }
 
-/// Index of the pane on which a player opens: the first to fall, or else the first that has a moment.
+/// Returns the index of the pane in which a player opens: the first to fall, or else the first with
+/// a moment.
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
     let known = moments
@@ -50,10 +52,10 @@ fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
         .map(|(at, _)| at)
 }
 
-/// Time (s) before strong ground motion at which the player starts.
+/// Lead time (s) before strong ground motion at which the player starts.
 const LEAD_IN: f64 = 1.0;
 
-/// Fraction of the peak of a history from which ground motion counts as strong.
+/// Share of the peak of a history above which the ground motion counts as strong.
 const STRONG: f64 = 0.1;
 
 /// Returns the time (s) at which a player starts: shortly before the earliest strong ground motion.
@@ -66,7 +68,8 @@ fn begins(ground: &[History]) -> Option<f64> {
     strong.reduce(f64::min).map(|time| time - LEAD_IN)
 }
 
-/// Returns the data of several panes at one scale: all windows have the largest size, their bottoms aligned.
+/// Returns the data of several panes at one scale; all windows have the size of the largest, and
+/// their bottoms are aligned.
 pub(crate) fn of_players(players: &Players, id: &str) -> Value {
     let windows: Vec<Extent> = players.panes.iter().map(|p| whole_window(&p.scene)).collect();
     let most = |size: fn(&Extent) -> f64| windows.iter().map(size).fold(0.0, f64::max);
@@ -152,7 +155,7 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
     })
 }
 
-/// Returns events for the page, of a number of bodies.
+/// Returns events for the page; `bodies` is the number of bodies.
 pub(crate) fn events(events: &[Event], bodies: usize) -> Vec<Value> {
     let event = |event: &Event| {
         json!({
@@ -166,7 +169,7 @@ pub(crate) fn events(events: &[Event], bodies: usize) -> Vec<Value> {
 }
 
 fn polyline(line: &Polyline) -> Value {
-    // A tenth of a millimeter, finer than the poses need; it keeps the numbers short.
+    // Rounded to a tenth of a millimeter, finer than the poses need, to keep the numbers short.
     let short = |v: f64| (v * 1e4).round() / 1e4;
     let finite = line.points.iter().filter(|p| p.iter().all(|v| v.is_finite()));
     let points: Vec<f64> = finite.flatten().map(|v| short(*v)).collect();
@@ -183,17 +186,18 @@ fn history(history: &History) -> Value {
     })
 }
 
-/// Quantum of ghosts (m, rad): four millimeters, too little to be visible.
+/// Quantum of ghosts (m, rad): four millimeters, which is too little to be visible.
 const GHOST_QUANTUM: f64 = 1.0 / 256.0;
 
-/// Largest distance (m) of a drawn line of a ghost from its path.
+/// Largest distance (m) between the drawn line of a ghost and its path.
 const GHOST_TOLERANCE: f64 = 0.01;
 
-/// Packs paths as two channels separated by gaps; final poses as three channels and a list of bodies.
+/// Packs paths as two channels separated by gaps, and final poses as three channels and a list of
+/// bodies.
 fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     let mut line: Vec<Point> = Vec::new();
     for path in &ghosts.paths {
-        // `simplify` works on a grid of pixels: here one tolerance stands for one pixel.
+        // `simplify` works in pixels, so lengths are expressed in multiples of the tolerance.
         let steps: Vec<Point> = path.iter().map(|p| p.map(|v| v / GHOST_TOLERANCE)).collect();
         line.extend(simplify(&steps, 1.0).into_iter().map(|p| p.map(|v| v * GHOST_TOLERANCE)));
         line.push([f64::NAN; 2]);
@@ -211,10 +215,11 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     })
 }
 
-/// Quantile of the positive values at which the scale of a tint ends: impacts far exceed everything else.
+/// Quantile of the positive values at which the color scale ends, because impacts far exceed all
+/// other values.
 const TINT_ENDS: f64 = 0.99;
 
-/// Packs a tint, capped at the end of its scale, in steps of a 64th of that, or finer.
+/// Packs a tint, capped at the end of its color scale, in steps of at most 1/64 of that scale.
 fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     let value = |frame: usize, body: usize| {
         tint.values.get(frame).and_then(|list| list.get(body)).map_or(f64::NAN, |v| v.max(0.0))
@@ -237,7 +242,8 @@ fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
-/// Packs forces as four channels with a slot for each position in the longest list; absent forces are gaps.
+/// Packs forces as four channels with a slot for each position in the longest list; missing forces
+/// are gaps.
 fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
     let frames = &frames[..frames.len().min(count)];
     let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

@@ -6,13 +6,13 @@ use crate::{
     number, player_data,
 };
 
-/// Number of events shown without unfolding.
+/// Number of events that are shown without unfolding the list.
 const OPEN_EVENTS: usize = 4;
 
-/// Controls, with a placeholder for the stages.
+/// Markup of the controls, with a placeholder for the stages.
 const CONTROLS: &str = include_str!("../assets/player.html");
 
-/// Container for the drawing of one scene.
+/// Markup of the container for the drawing of one scene.
 const STAGE: &str = include_str!("../assets/stage.html");
 
 impl Writer<'_> {
@@ -71,13 +71,13 @@ impl Writer<'_> {
         self.put("</figure>\n");
     }
 
-    /// Writes events with the mark of their pane, which is empty where there is only one.
+    /// Writes events with the mark of their pane, which is empty if there is only one pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {
             return;
         }
-        // Folding a single line would save nothing.
+        // Folding a single line would save no space.
         let open = if events.len() > OPEN_EVENTS + 1 { OPEN_EVENTS } else { events.len() };
         let (first, rest) = events.split_at(open);
         self.event_list(first);

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::{escape, number, style::DASHES};
 
-/// Lines over a pair of axes.
+/// A plot of series over a pair of axes.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Plot {
     /// The horizontal axis.
@@ -13,17 +13,18 @@ pub struct Plot {
     pub y: Axis,
     /// The lines.
     pub series: Vec<Series>,
-    /// Vertical lines at given x.
+    /// Vertical lines at given values of x.
     pub marks: Vec<Mark>,
-    /// Horizontal lines at given y.
+    /// Horizontal lines at given values of y.
     pub levels: Vec<Mark>,
     /// Shaded intervals of x.
     pub bands: Vec<Band>,
-    /// Drawn live in the page, with readout and zoom. Requires x that never decreases in every
-    /// series; otherwise (a hysteresis loop) the plot is drawn as SVG.
+    /// `true` if the page draws the plot interactively, with readout and zoom. This requires that x
+    /// never decreases in any series; otherwise, as for a hysteresis loop, the plot is drawn as
+    /// SVG.
     pub interactive: bool,
-    /// x is the time of the run (s): cursor and zoom are shared with the player and with every
-    /// other such plot. Only for interactive plots.
+    /// `true` if x is the time of the run (s), so that cursor and zoom are shared with the player
+    /// and with all other such plots. Applies to interactive plots only.
     pub timeline: bool,
 }
 
@@ -32,14 +33,15 @@ pub struct Plot {
 pub struct Axis {
     /// Name of the quantity.
     pub label: String,
-    /// Unit, shown in parentheses; empty for a pure number.
+    /// Unit, shown in parentheses; empty for a dimensionless number.
     pub unit: String,
     /// Scale of the axis.
     pub scale: Scale,
-    /// Shown range; from the data when `None`, or when it is empty, reversed or not finite.
+    /// Range shown; the range of the data if `None`, or if the range is empty, reversed or not
+    /// finite.
     pub range: Option<[f64; 2]>,
-    /// Category names of a vertical axis, from top to bottom: the first stands for 1, the next for 2.
-    /// They replace the ticks.
+    /// Category names of a vertical axis, from top to bottom, which replace the ticks. The first
+    /// name stands for the value 1, the next for 2.
     pub names: Vec<String>,
 }
 
@@ -56,18 +58,18 @@ impl Axis {
         self
     }
 
-    /// Creates an axis of category names from top to bottom; data of the name at `place` (from 0) have the ordinate
-    /// [`Axis::row`].
+    /// Creates an axis of category names, from top to bottom; [`Axis::row`] gives the ordinate of a
+    /// name.
     pub fn named(names: Vec<String>) -> Self {
         Self { range: Some([-(names.len() as f64) - 0.5, -0.5]), names, ..Self::default() }
     }
 
-    /// Returns the ordinate of the name at an index (from 0).
+    /// Returns the ordinate of the name at an index, counted from 0.
     pub fn row(place: usize) -> f64 {
         -(place as f64) - 1.0
     }
 
-    /// Formats an ordinate for CSV: the nearest name, on an axis with names.
+    /// Formats an ordinate for CSV; on an axis with names, as the nearest name.
     fn csv_ordinate(&self, value: f64) -> String {
         let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
         match rows.map(|place| escape::csv(&self.names[place])).next() {
@@ -76,7 +78,7 @@ impl Axis {
         }
     }
 
-    /// Returns name and unit as printed.
+    /// Returns name and unit as printed beside the axis.
     pub(crate) fn title(&self) -> String {
         if self.label.is_empty() {
             return self.unit.clone();
@@ -93,10 +95,10 @@ impl Axis {
 /// Mapping of values to lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Scale {
-    /// Equal differences, equal lengths.
+    /// Linear: equal differences have equal lengths.
     #[default]
     Linear,
-    /// Equal ratios, equal lengths.
+    /// Logarithmic: equal ratios have equal lengths.
     Log,
 }
 
@@ -109,8 +111,8 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates; a value that is not finite makes a gap.
     pub y: Vec<f64>,
-    /// Lower and upper bound of each ordinate: a filled band about a line, a bar through each
-    /// of [`SeriesStyle::points`]. Empty if not known.
+    /// Lower and upper bound of each ordinate, drawn as a filled band about a line, or as a bar
+    /// through each of [`SeriesStyle::points`]. Empty if unknown.
     pub range: Vec<[f64; 2]>,
     /// Drawing style.
     pub style: SeriesStyle,
@@ -128,28 +130,28 @@ impl Series {
 }
 
 /// Drawing style of a series.
-#[expect(clippy::struct_excessive_bools, reason = "each is a trait that goes with most others")]
+#[expect(clippy::struct_excessive_bools, reason = "the options are independent")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
-    /// Index of color and dash pattern, from 0; the position in the plot when `None`. Colors repeat after
-    /// six, each time with other dashes.
+    /// Index of color and dash pattern, from 0; the position in the plot if `None`. Colors repeat
+    /// after six, each time with a different dash pattern.
     pub index: Option<usize>,
-    /// Shade between the line and zero (or the bottom of the plot).
+    /// `true` to shade the area between the line and zero (or the bottom of the plot).
     pub area: bool,
-    /// Draw a dot at every point, for measured or sparse data.
+    /// `true` to draw a dot at every point, for measured or sparse data.
     pub dots: bool,
-    /// Dots without a line: single measurements, raw fractions.
+    /// `true` to draw dots without a line, for single measurements or raw fractions.
     pub points: bool,
-    /// A line as thick as a bar, for intervals on an axis with names.
+    /// `true` to draw a line as thick as a bar, for intervals on an axis with names.
     pub bar: bool,
-    /// Thin and gray: context, such as single motions behind their mean.
+    /// `true` for a thin gray line, for context such as single motions behind their mean.
     pub muted: bool,
 }
 
 /// A labeled position on an axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// Position, in the axis's unit.
+    /// Position, in the unit of the axis.
     pub at: f64,
     /// Label.
     pub label: String,
@@ -158,22 +160,23 @@ pub struct Mark {
 /// A shaded interval of the horizontal axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Band {
-    /// Start, in the axis's unit.
+    /// Start, in the unit of the axis.
     pub from: f64,
-    /// End.
+    /// End, in the unit of the axis.
     pub to: f64,
     /// Label.
     pub label: String,
 }
 
 impl Plot {
-    /// Creates a plot of lines over time (s) with marks, drawn live in the page.
+    /// Creates an interactive plot of lines over time (s), with marks.
     pub fn over_time(y: Axis, series: Vec<Series>, marks: Vec<Mark>) -> Self {
         let x = Axis::new("time", "s");
         Self { x, y, series, marks, interactive: true, ..Self::default() }
     }
 
-    /// `true` if the page can draw it live: requested, x never decreases, and no names or ranges.
+    /// `true` if the page can draw the plot interactively: this was requested, x never decreases,
+    /// and there are no names or ranges.
     pub(crate) fn is_live(&self) -> bool {
         self.interactive
             && self.y.names.is_empty()
@@ -189,12 +192,12 @@ impl Plot {
         self.series[at].style.index.unwrap_or(at)
     }
 
-    /// Returns the index of a series' color, from 0 to 5.
+    /// Returns the index of the color of a series, from 0 to 5.
     pub(crate) fn look(&self, at: usize) -> usize {
         self.index(at) % 6
     }
 
-    /// Returns the dash pattern of a series, which differs where a color repeats.
+    /// Returns the dash pattern of a series, which differs when a color repeats.
     pub(crate) fn dash(&self, at: usize) -> &'static str {
         let round = self.index(at) / 6;
         let style = &self.series[at].style;

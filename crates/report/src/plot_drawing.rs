@@ -1,4 +1,4 @@
-//! A plot as a drawing: axes, grid, bands, lines, marks, legend.
+//! A plot as a drawing: axes, grid, bands, lines, marks and legend.
 
 use crate::{
     Axis, Mark, Plot, Scale,
@@ -10,20 +10,21 @@ use crate::{
 /// Width (px) on a page and on a phone.
 const WIDTH: [f64; 2] = [680.0, 358.0];
 const PLOT_HEIGHT: f64 = 230.0;
-/// Height (px) of a row of an axis with names, and the largest share of the width that the names take.
+/// Height (px) of a row of an axis with names, and the largest share of the width for the names.
 const ROW: f64 = 36.0;
 const NAMES: f64 = 0.4;
 /// Height (px) of a line of text.
 const LINE: f64 = 15.0;
 const FONT: f64 = 12.0;
-/// Height of a row of notes above the plot: marks lowest, bands above them.
+/// Height (px) of a row of notes above the plot; the rows of marks are lowest, with the bands above
+/// them.
 const NOTE: f64 = 16.0;
-/// Width of the sample of a series beside its name.
+/// Width (px) of the line sample of a series, beside its name.
 const SAMPLE: f64 = 26.0;
-/// Largest number of rows of mark labels; labels that do not fit are omitted.
+/// Maximum number of rows of mark labels; labels that do not fit are omitted.
 const MARK_ROWS: usize = 3;
 
-/// A range of data and the pixels it maps to.
+/// A range of data, and the range of pixels to which it is mapped.
 struct Map {
     range: [f64; 2],
     pixels: [f64; 2],
@@ -51,11 +52,11 @@ struct PlacedMark<'a> {
     at: f64,
     label: &'a str,
     center: f64,
-    /// Counted from the plot upward; `None` if no row has room.
+    /// Row of the label, counted from the plot upward; `None` if no row has room.
     row: Option<usize>,
 }
 
-/// A series in the legend: the position of its text, and the lines of the text.
+/// A series in the legend: position and lines of its text.
 struct Entry {
     series: usize,
     corner: [f64; 2],
@@ -66,7 +67,7 @@ impl Plot {
     pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
         let width = room.of(WIDTH[0], WIDTH[1]);
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
-        // A dot on the frame would be clipped.
+        // Without a margin, a dot on the frame would be clipped.
         let spare = self.series.iter().any(|s| s.style.points || s.style.bar);
         let x_range = if spare { self.x.with_air(x_range) } else { x_range };
         let areas = self.series.iter().any(|s| s.style.area);
@@ -105,7 +106,7 @@ impl Plot {
         self.draw_axes(&mut drawing, &x, &y, &y_ticks);
         draw_names(&mut drawing, &names, &x, &y);
         for (line, text) in x_title.iter().enumerate() {
-            // Centered below the plot, as far as the text stays in the picture.
+            // Centered below the plot, unless the text would leave the picture.
             let half = 0.5 * text_width(text, FONT);
             let middle = (0.5 * (left + right)).min(width - half).max(half);
             let at = [middle, bottom + 37.0 + LINE * line as f64];
@@ -128,7 +129,7 @@ impl Plot {
         drawing
     }
 
-    /// Draws the sample of a series for the legend, with its left end at the given position.
+    /// Draws the line sample of a series for the legend, with its left end at the given position.
     fn draw_sample(&self, drawing: &mut Drawing, at: usize, [x, y]: [f64; 2]) {
         let series = &self.series[at];
         let (style, look) = (series.style, self.look(at));
@@ -164,8 +165,8 @@ impl Plot {
         Item::Circle { class: format!("dot s{}", self.look(at)), center, radius }
     }
 
-    /// Lays out the legend: position and lines of each entry, and the total height; if an entry does not fit
-    /// beside the axis, all start at `edge`.
+    /// Lays out the legend: position and lines of each entry, and the total height. If an entry
+    /// does not fit beside the axis, all entries start at `edge`.
     fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<Entry>, f64) {
         let named = || self.series.iter().filter(|series| !series.label.is_empty());
         let wide = |label: &str| SAMPLE + 6.0 + text_width(label, FONT);
@@ -199,7 +200,7 @@ impl Plot {
             drawing.line("grid", [left, at], [right, at]);
             drawing.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
         }
-        // A label with its gap takes some fifty pixels.
+        // A label with its gap takes about fifty pixels.
         let most = if right - left < 400.0 { 5 } else { 8 };
         let x_ticks = self.x.ticks(x.range, most);
         for (value, label) in x_ticks.values.iter().zip(&x_ticks.labels) {
@@ -216,7 +217,7 @@ impl Plot {
         drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
 
-    /// Draws bands from top to bottom, with their labels in the row at `row`.
+    /// Draws bands from top to bottom of the plot, with their labels in the row at `row`.
     fn draw_bands(&self, drawing: &mut Drawing, x: &Map, [top, bottom]: [f64; 2], row: f64) {
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {
@@ -233,7 +234,7 @@ impl Plot {
 
     fn draw_series(&self, x: &Map, y: &Map) -> Vec<Item> {
         let mut items = Vec::new();
-        // Muted series first, so that they lie below the others.
+        // Muted series are drawn first, below the others.
         let mut order: Vec<usize> = (0..self.series.len()).collect();
         order.sort_by_key(|&at| !self.series[at].style.muted);
         for at in order {
@@ -272,7 +273,7 @@ impl Plot {
         items
     }
 
-    /// Draws the band about a line, or the bars through points.
+    /// Draws the ranges of a series: a band about its line, or bars through its points.
     fn draw_range(&self, at: usize, x: &Map, y: &Map) -> Option<Item> {
         let series = &self.series[at];
         let count = series.len().min(series.range.len());
@@ -302,11 +303,11 @@ impl Plot {
         Some(Item::Path { class, dash: "", runs: bands.collect(), closed: true })
     }
 
-    /// Returns runs of points between gaps, in pixels.
+    /// Returns the points of a series as runs between gaps, in pixels.
     fn runs(&self, at: usize, x: &Map, y: &Map) -> Runs {
         let series = &self.series[at];
         let shown = |k: &usize| self.x.shows(series.x[*k]) && self.y.shows(series.y[*k]);
-        // Far outside the window, positions may be clamped, which keeps the numbers short.
+        // Positions far outside the window are clamped, which keeps the numbers short.
         let spot = |k: &usize| -> [f64; 2] {
             [x.at(series.x[*k]), y.at(series.y[*k])].map(|v| v.clamp(-9999.0, 9999.0))
         };
@@ -321,12 +322,12 @@ impl Plot {
         let mut marks: Vec<_> =
             self.marks.iter().filter(|m| self.x.shows(m.at) && x.holds(m.at)).collect();
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
-        // Right end of every row so far.
+        // Right end of each row so far.
         let mut ends: Vec<f64> = Vec::new();
         let place = |mark: &'a Mark| {
             let half = 0.5 * text_width(&mark.label, 11.0);
             let at = x.at(mark.at);
-            // A label wider than the plot extends to its left, never to its right.
+            // A label that is wider than the plot extends to the left, never to the right.
             let center = at.clamp((left + half).min(right - half), right - half);
             let free = ends.iter().position(|end| center - half > *end);
             let row = free.or(Some(ends.len()).filter(|row| *row < MARK_ROWS));
@@ -373,9 +374,10 @@ fn draw_names(drawing: &mut Drawing, names: &[Vec<String>], x: &Map, y: &Map) {
 }
 
 impl Axis {
-    /// Returns the range to show: the given one when usable, otherwise that of the data.
+    /// Returns the range to show: the given range if it is usable, otherwise that of the data.
     ///
-    /// Constant data get a range around them; without data it is 0 to 1 (1 to 10 for logs).
+    /// Constant data get a range around their value. Without data the range is 0 to 1, or 1 to 10
+    /// on a logarithmic axis.
     pub(crate) fn data_range<'a>(
         &self,
         columns: impl Iterator<Item = &'a [f64]>,
@@ -414,7 +416,7 @@ impl Axis {
         }
     }
 
-    /// Widens a linear range of data so that no line runs along the frame.
+    /// Widens a linear range of data so that no line coincides with the frame.
     fn with_air(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         if self.scale == Scale::Log || self.range == Some([low, high]) {
             return [low, high];

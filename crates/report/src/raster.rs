@@ -16,13 +16,13 @@ use crate::{
     style::{Ink, Style},
 };
 
-/// CSS pixels per inch.
+/// Number of CSS pixels per inch.
 const PX_PER_INCH: f64 = 96.0;
 
-/// Longest side of a picture (pixels); a larger request is scaled down.
+/// Longest side (pixels) of a picture; larger requests are scaled down.
 const LARGEST: f64 = 16_000.0;
 
-/// Returns a drawing as a PNG of `dpi` dots per inch, on white.
+/// Returns a drawing as a PNG on white, with a resolution of `dpi` dots per inch.
 pub(crate) fn png(drawing: &Drawing, dpi: f64) -> Vec<u8> {
     let pixels = rasterize(drawing, dpi / PX_PER_INCH);
     let mut file = Vec::new();
@@ -41,17 +41,17 @@ pub(crate) fn png(drawing: &Drawing, dpi: f64) -> Vec<u8> {
     file
 }
 
-/// Returns red, green and blue of every pixel, which are opaque on white.
+/// Returns red, green and blue of every pixel; all pixels are opaque.
 pub(crate) fn rgb(pixels: &Pixmap) -> Vec<u8> {
     pixels.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect()
 }
 
-/// Paints a drawing on white at `scale` pixels per px.
+/// Paints a drawing on white, with `scale` pixels per px.
 pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
     let scale = scale.min(LARGEST / drawing.width.max(drawing.height).max(1.0));
     let side = |length: f64| whole((length * scale).ceil().max(1.0));
     let (width, height) = (side(drawing.width), side(drawing.height));
-    // Both sides are between 1 and LARGEST, so a picture of that size exists.
+    // Both sides are between 1 and LARGEST, so a picture of that size can be created.
     let mut pixels = Pixmap::new(width, height).expect("a picture of this size");
     pixels.fill(Color::WHITE);
     let mut painter =
@@ -63,13 +63,13 @@ pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "sides of pictures, which are bounded"
+    reason = "sides of pictures are bounded"
 )]
 fn whole(value: f64) -> u32 {
     value as u32
 }
 
-/// Converts a coordinate for the rasterizer.
+/// Converts a coordinate to single precision for the rasterizer.
 #[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more digits")]
 fn short(value: f64) -> f32 {
     value as f32
@@ -77,9 +77,9 @@ fn short(value: f64) -> f32 {
 
 struct Pixels {
     canvas: Pixmap,
-    /// Area that may be painted; `None` for all.
+    /// Area that may be painted; `None` for the whole picture.
     mask: Option<Mask>,
-    /// Lower and upper corners of the clip rectangles in force, each within the one before.
+    /// Lower and upper corners of the clip rectangles in force, each within the previous one.
     clips: Vec<[f64; 4]>,
     glyphs: HashMap<(bool, u16), Option<Path>>,
 }
@@ -117,7 +117,7 @@ impl Pixels {
             }
             let mut mask = Mask::new(width, height)?;
             let edges = [left, top, right, bottom].map(|v| short(v.round()));
-            // An empty rectangle hides everything, as does an empty mask.
+            // An empty rectangle hides everything, and so does an empty mask.
             if let Some(rect) = Rect::from_ltrb(edges[0], edges[1], edges[2], edges[3]) {
                 let path = PathBuilder::from_rect(rect);
                 mask.fill_path(&path, FillRule::Winding, false, Transform::identity());

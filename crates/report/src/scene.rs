@@ -7,7 +7,7 @@ use crate::Depth;
 /// A point or vector `[x, z]` (m): x to the right, z up.
 pub type Point = [f64; 2];
 
-/// A pose `[x, z, angle]` (m, m, rad), angle counterclockwise, of a body's frame in the world.
+/// A pose `[x, z, angle]` (m, m, rad) of a body in the world frame; the angle is counterclockwise.
 pub type Pose2 = [f64; 3];
 
 /// A polyline.
@@ -15,7 +15,7 @@ pub type Pose2 = [f64; 3];
 pub struct Polyline {
     /// Vertices (m).
     pub points: Vec<Point>,
-    /// `true` if the last point joins the first.
+    /// `true` if the last point is joined to the first.
     pub closed: bool,
 }
 
@@ -46,14 +46,15 @@ impl Polyline {
     }
 }
 
-/// The role of a body, for its color and its line; files for ParaView number the roles in this order, from 0.
+/// The role of a body, which determines its color and line style; files for ParaView number the
+/// roles in this order, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Moves with the ground; drawn without a name and ignored by "follow the stack".
+    /// The ground; drawn without a name, and ignored when the view follows the stack.
     Ground,
-    /// Wood.
+    /// A barrel, drawn as wood.
     Barrel,
-    /// Steel.
+    /// A rack, drawn as steel.
     Rack,
     /// Any other body.
     Block,
@@ -73,16 +74,16 @@ impl Role {
     }
 }
 
-/// The drawing of a body, in its own frame.
+/// A body and its drawing, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneBody {
-    /// Name shown at the body's origin.
+    /// Name shown at the origin of the body.
     pub name: String,
     /// Role.
     pub role: Role,
-    /// Its outlines; closed ones are filled.
+    /// Outlines; closed ones are filled.
     pub outlines: Vec<Polyline>,
-    /// Lines that make rotation visible. The first is drawn strong (a bung), others thin.
+    /// Lines that make rotation visible; the first line (the bung) is strong, the others are thin.
     pub marks: Vec<Polyline>,
 }
 
@@ -127,31 +128,31 @@ pub struct ContactForce {
 
 /// Poses over time.
 ///
-/// Mismatched lengths are no error: frames without a time are not shown, a body without a pose (or with one
-/// that is not finite) is not drawn in that frame.
+/// Mismatched lengths are allowed: frames without a time are not shown, and a body without a finite
+/// pose is not drawn in that frame.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Frames {
     /// Times of the frames (s), not decreasing.
     pub times: Vec<f64>,
     /// For each frame, the pose of each body in the order of [`Scene::bodies`].
     pub poses: Vec<Vec<Pose2>>,
-    /// For each frame, contact forces; empty without forces.
-    /// They pack best if a contact has the same position in the list of every frame.
+    /// For each frame, contact forces; empty without forces. They pack best if a contact has the
+    /// same position in the list of every frame.
     pub forces: Vec<Vec<ContactForce>>,
 }
 
 impl Frames {
-    /// Returns the number of frames that have a time and poses.
+    /// Returns the number of frames that have both a time and poses.
     pub fn len(&self) -> usize {
         self.times.len().min(self.poses.len())
     }
 
-    /// `true` without frames.
+    /// `true` if there are no frames.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the frame nearest in time to `time`; the earlier of two equally near.
+    /// Returns the frame nearest to `time` (s); of two equally near frames, the earlier one.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let count = self.len();
         let times = self.times.get(..count)?;
@@ -174,11 +175,11 @@ pub enum EventKind {
     Uplift,
     /// A contact slid.
     Slip,
-    /// A body left the place that held it.
+    /// A body left its seat.
     LossOfSeat,
     /// A body reached the ground or left the scene.
     Fall,
-    /// Anything else worth a mark.
+    /// Any other event worth marking.
     Note,
 }
 
@@ -204,7 +205,7 @@ impl EventKind {
 pub struct Event {
     /// Time (s).
     pub time: f64,
-    /// The body concerned, by its index in [`Scene::bodies`].
+    /// Index in [`Scene::bodies`] of the body concerned.
     pub body: Option<usize>,
     /// Kind.
     pub kind: EventKind,
@@ -228,31 +229,32 @@ pub struct History {
 /// A line between a point of one body and a point of another, such as a strap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tie {
-    /// The bodies, by their indices in [`Scene::bodies`].
+    /// Indices of the bodies in [`Scene::bodies`].
     pub bodies: [usize; 2],
-    /// The points, each in the frame of its body (m).
+    /// End points of the line, each in the frame of its body (m).
     pub points: [Point; 2],
-    /// Time at which it tears (s); it is not drawn after that.
+    /// Time (s) at which the line tears; it is not drawn after that.
     pub torn_at: Option<f64>,
 }
 
-/// The most informative instant of a scene, on which its player opens.
+/// The most informative instant of a scene, at which its player opens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Time (s).
     pub time: f64,
-    /// The body concerned, by its index in [`Scene::bodies`].
+    /// Index in [`Scene::bodies`] of the body concerned.
     pub body: usize,
     /// Description, such as "here rack R3 leaves its seat".
     pub text: String,
-    /// `true` if something falls then; of several scenes, one that falls opens the player.
+    /// `true` if something falls at that instant; of several scenes, the player opens with one that
+    /// falls.
     pub falls: bool,
 }
 
-/// A quantity of every body over the frames, by which bodies are tinted on request.
+/// A quantity of every body over the frames, by which bodies are colored on request.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Tint {
-    /// Name.
+    /// Name of the quantity.
     pub label: String,
     /// Unit of the values as displayed.
     pub unit: String,
@@ -263,41 +265,42 @@ pub struct Tint {
 /// Other runs of the same scene as an overlay: paths of points and final poses of bodies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Ghosts {
-    /// Label of the switch that shows them.
+    /// Label of the switch that shows the other runs.
     pub label: String,
     /// Number of runs.
     pub count: usize,
-    /// Paths (m) relative to the body of the role [`Role::Ground`].
+    /// Paths (m) relative to the body with the role [`Role::Ground`].
     pub paths: Vec<Vec<Point>>,
-    /// Bodies by their indices in [`Scene::bodies`], with their final poses relative to the same body.
+    /// Indices of bodies in [`Scene::bodies`], with their final poses relative to the same body.
     pub ends: Vec<(usize, Pose2)>,
 }
 
-/// Bodies, their motion, events and the ground motion under them.
+/// Bodies, their motion, events, and the ground motion.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
     /// The bodies, drawn in this order.
     pub bodies: Vec<SceneBody>,
     /// Lines between bodies, drawn over them.
     pub ties: Vec<Tie>,
-    /// Their poses.
+    /// Poses of the bodies over time.
     pub frames: Frames,
     /// Events, in order of time.
     pub events: Vec<Event>,
-    /// Histories shown in the strip under the player.
+    /// Histories shown in the strip below the player.
     pub ground: Vec<History>,
-    /// The instant on which its player opens; the first frame if `None`.
+    /// The instant at which the player opens; the first frame if `None`.
     pub moment: Option<Moment>,
-    /// Quantity by which bodies are tinted on request.
+    /// Quantity by which bodies are colored on request.
     pub tint: Option<Tint>,
     /// Other runs, shown on request.
     pub ghosts: Option<Ghosts>,
-    /// The scene in three dimensions; `None` where only its plane is known.
+    /// The scene in three dimensions; `None` if only its plane is known.
     pub depth: Option<Depth>,
 }
 
 impl Scene {
-    /// Returns the ends of a tie at a frame; `None` where it is torn or a body is not drawn.
+    /// Returns the ends of a tie at a frame; `None` if the tie is torn or one of its bodies is not
+    /// drawn.
     pub(crate) fn ends(&self, tie: &Tie, frame: usize) -> Option<[Point; 2]> {
         let time = *self.frames.times.get(frame)?;
         let end = |at: usize| Some(place(self.frames.pose(frame, tie.bodies[at])?, tie.points[at]));
@@ -305,7 +308,7 @@ impl Scene {
         if whole { Some([end(0)?, end(1)?]) } else { None }
     }
 
-    /// Returns the name of body `body`; "body 3" when it has no entry.
+    /// Returns the name of a body; a generic name such as "body 3" if it has no entry.
     pub fn name(&self, body: usize) -> String {
         self.bodies.get(body).map_or_else(|| format!("body {}", body + 1), |b| b.name.clone())
     }
@@ -314,11 +317,11 @@ impl Scene {
 /// A point of a body whose path is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// The body, by its index in [`Scene::bodies`].
+    /// Index in [`Scene::bodies`] of the body.
     pub body: usize,
-    /// The point in the body's frame (m).
+    /// Position of the point in the frame of the body (m).
     pub point: Point,
-    /// Its name.
+    /// Name of the point.
     pub label: String,
 }
 
@@ -355,7 +358,7 @@ impl Extent {
         (0..2).all(|axis| (self.lower[axis]..=self.upper[axis]).contains(&point[axis]))
     }
 
-    /// Not finite when the extent is empty.
+    /// Returns the center; not finite if the extent is empty.
     fn center(&self) -> Point {
         [0.5 * (self.lower[0] + self.upper[0]), 0.5 * (self.lower[1] + self.upper[1])]
     }
@@ -374,7 +377,7 @@ pub(crate) fn place(pose: Pose2, point: Point) -> Point {
     [pose[0] + cos * point[0] - sin * point[1], pose[1] + sin * point[0] + cos * point[1]]
 }
 
-/// Returns the extent of body `body` at frame `frame`; empty if it is not drawn there.
+/// Returns the extent of a body at a frame; empty if the body is not drawn there.
 fn body_extent(scene: &Scene, frame: usize, body: usize) -> Extent {
     let mut extent = Extent::EMPTY;
     if let (Some(drawn), Some(pose)) = (scene.bodies.get(body), scene.frames.pose(frame, body)) {
@@ -389,13 +392,15 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
     (0..scene.bodies.len()).filter(|&at| scene.bodies[at].role != Role::Ground)
 }
 
-/// Largest growth of a window to the left and the right, and upward, over the larger side of the first
-/// frame: a body that falls over lies within the height, and rolls on from there.
+/// Largest growth of a window to the left and the right, and upward, as shares of the larger side
+/// of the first frame. A body that topples lies within the height of the stack, and may roll on
+/// from there.
 const REACH: [f64; 2] = [1.75, 0.15];
 
-/// Returns the window that shows `frames`: the first frame, and bodies that stay or land near it.
+/// Returns the window that shows the given frames: the extent of the first frame, and bodies that
+/// stay or land near it.
 ///
-/// A body that goes far leaves the picture, so that the rest is not reduced.
+/// A body that moves far away leaves the picture, so that the others are not drawn small.
 pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
     let mut all = Extent::EMPTY;
     for body in moving(scene) {
@@ -432,12 +437,12 @@ pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
     }
 }
 
-/// Returns short strokes below the line of the ground, `spacing` (m) apart and as long, between `from` and
-/// `to` (m) along x, in the frame of the line.
+/// Returns hatch strokes below a line of the ground, between `from` and `to` (m) along x, in the
+/// frame of the line; `spacing` (m) is both their distance and their size.
 pub(crate) fn hatch(line: &Polyline, spacing: f64, [from, to]: [f64; 2]) -> Vec<[Point; 2]> {
     let mut strokes = Vec::new();
     let finite = [spacing, from, to].iter().all(|v| v.is_finite());
-    // Limits the number of strokes if the window is wrong.
+    // Limits the number of strokes in case the window is wrong.
     if !(finite && spacing > 0.0 && (to - from) / spacing < 5000.0) {
         return strokes;
     }

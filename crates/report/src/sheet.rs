@@ -8,11 +8,11 @@ use crate::{
 
 /// Distance between columns (points).
 const GUTTER: f64 = 10.0;
-/// Distance between baselines, and the padding above and below the lines of a row together (points).
+/// Distance between baselines, and the total padding above and below the lines of a row (points).
 const LEADING: f64 = 11.0;
 const AIR: f64 = 4.5;
 
-/// Cells of a table, laid out to a width.
+/// The cells of a table, laid out to a width.
 pub(crate) struct Sheet {
     head: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -21,7 +21,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Lays out rows as long as `numeric` in at most `width` points; `head` may be empty.
+    /// Lays out rows, each as long as `numeric`, in at most `width` points; `head` may be empty.
     pub(crate) fn new(
         head: Vec<String>,
         rows: Vec<Vec<String>>,
@@ -48,7 +48,7 @@ impl Sheet {
         self.rows.len()
     }
 
-    /// Returns the lines of every cell of the head; `None` without a head.
+    /// Returns the lines of every cell of the heading row; `None` without a heading.
     pub(crate) fn head(&self) -> Option<Vec<Vec<String>>> {
         (!self.head.is_empty()).then(|| self.broken(true, &self.head))
     }
@@ -61,11 +61,12 @@ impl Sheet {
     fn broken(&self, bold: bool, cells: &[String]) -> Vec<Vec<String>> {
         let size = size(bold);
         let cells = cells.iter().zip(&self.widths);
-        // The margin keeps rounding from breaking what fits exactly.
+        // The margin keeps rounding errors from breaking a text that fits exactly.
         cells.map(|(cell, width)| wrap(Font::of(bold), size, cell, width + 1e-6)).collect()
     }
 
-    /// Returns the position of a column's lines from the left edge (points), and their alignment.
+    /// Returns the position of the lines of a column from the left edge (points), and their
+    /// alignment.
     pub(crate) fn place(&self, column: usize) -> (f64, Anchor) {
         let left = self.widths[..column].iter().map(|width| width + GUTTER).sum::<f64>();
         if self.numeric[column] {
@@ -76,7 +77,7 @@ impl Sheet {
     }
 }
 
-/// Returns the baseline of a line of a row, from the row's top (points).
+/// Returns the baseline of a line of a row, from the top of the row (points).
 pub(crate) fn baseline(line: usize) -> f64 {
     0.5 * AIR + 8.5 + LEADING * line as f64
 }
@@ -94,8 +95,11 @@ fn measure(bold: bool, text: &str) -> f64 {
     Font::of(bold).width(text, size(bold))
 }
 
-/// Distributes `room` over columns: their preferred widths if they fit, else their minimum widths and shares
-/// of the rest in proportion to what is missing; below the minimum, all shrink in proportion.
+/// Distributes `room` over columns.
+///
+/// Columns get their preferred widths if these fit. Otherwise they get their minimum widths and a
+/// share of the rest, in proportion to what is missing. If even the minimum widths do not fit, all
+/// shrink in proportion.
 fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     let sum = |widths: &[f64]| widths.iter().sum::<f64>();
     if sum(wish) <= room {
@@ -110,7 +114,7 @@ fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     wish.iter().zip(least).map(|(wish, least)| least + (wish - least) * spare).collect()
 }
 
-/// Breaks a text into lines no wider than `width`; a single word that is wider is split.
+/// Breaks a text into lines that are no wider than `width`; a single word that is wider is split.
 pub(crate) fn wrap(font: &Font, size: f64, text: &str, width: f64) -> Vec<String> {
     let fits = |line: &str| font.width(line, size) <= width;
     let mut lines: Vec<String> = Vec::new();

@@ -1,10 +1,10 @@
-//! Simplification of polylines: points that make no visible difference are omitted.
+//! Simplification of polylines by omitting points that make no visible difference.
 
-/// Drops points of `run` so that the line moves by no more than about `tolerance` (px).
+/// Drops points of `run` such that the line moves by at most about `tolerance` (px).
 ///
-/// Long runs that advance along x are first thinned to the first, lowest, highest and last
-/// point of every half pixel, which is visually the same; then the Ramer–Douglas–Peucker
-/// algorithm removes points on straight stretches.
+/// Long runs that advance along x are first thinned to the first, lowest, highest and last point of
+/// every half pixel, which looks the same. The Ramer–Douglas–Peucker algorithm then removes points
+/// on straight stretches.
 pub(crate) fn simplify(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     if run.len() < 3 {
         return run.to_vec();

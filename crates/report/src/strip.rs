@@ -1,4 +1,4 @@
-//! A strip: a scene at selected instants side by side, with equal windows and scales.
+//! A strip: pictures of a scene at selected instants, with equal windows and scales.
 
 use std::{fmt::Write as _, sync::Arc};
 
@@ -14,7 +14,7 @@ use crate::{
 pub struct Strip {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// The instants, in reading order. Each shows the frame nearest to its time.
+    /// The instants, in reading order; each panel shows the frame nearest to its time.
     pub panels: Vec<Panel>,
 }
 
@@ -27,22 +27,23 @@ pub struct Panel {
     pub note: String,
 }
 
-/// Largest width and height of a panel's picture (px); of a single picture; width of a row; gap.
+/// Largest width and height (px) of a panel and of a single picture; width (px) of a row, and the
+/// gap between panels.
 const PANEL: [f64; 2] = [165.0, 235.0];
 const STILL: [f64; 2] = [480.0, 380.0];
 const ROW: f64 = 760.0;
 const GAP: f64 = 12.0;
-/// Space below the lowest body for the hatch of the ground, and for the caption (px).
+/// Space (px) below the lowest body for the hatch of the ground, and for the caption.
 const FOOT: f64 = 13.0;
 const CAPTION: f64 = 38.0;
-/// Distance of the strokes of the ground's hatch (px).
+/// Distance (px) between the hatch strokes of the ground.
 const HATCH: f64 = 10.0;
 
 /// Common window and scale of all pictures of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct View {
     extent: Extent,
-    /// Pixels per meter.
+    /// Scale (px/m).
     scale: f64,
     pub(crate) width: f64,
     pub(crate) height: f64,
@@ -51,7 +52,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// Fits these frames of a scene into at most `most` (px) across and up.
+    /// Fits frames of a scene into at most `most` (px), horizontally and vertically.
     pub(crate) fn of(scene: &Scene, shown: &[usize], most: [f64; 2], names: bool) -> Self {
         let extent = window(scene, shown);
         let (wide, high) = (extent.width().max(1e-6), extent.height().max(1e-6));
@@ -60,7 +61,8 @@ impl View {
         Self { extent, scale, width, height, names }
     }
 
-    /// Returns the position of the scene's origin (px): centered across if the window is narrower than the panel.
+    /// Returns the position (px) of the origin of the scene; a window narrower than the panel is
+    /// centered.
     fn origin(&self) -> [f64; 2] {
         let (extent, scale) = (&self.extent, self.scale);
         [
@@ -77,9 +79,11 @@ impl View {
 }
 
 impl Strip {
-    /// Creates a strip of `count` panels that summarize the run: the first and the last frame, the most
-    /// important events (falls before losses of seat before others, earlier before later), and the middle of
-    /// the longest gaps where events are too few.
+    /// Creates a strip of `count` panels that summarize the run.
+    ///
+    /// The panels are the first and the last frame and the most important events: falls before
+    /// losses of seat, these before other events, and earlier events before later ones. If there
+    /// are too few events, the middles of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
@@ -105,7 +109,7 @@ impl Strip {
             }
         }
         panels.sort_by(|a, b| a.time.total_cmp(&b.time));
-        // Little is visible before the first event.
+        // Little changes before the first event, so that gap is not filled.
         let quiet = usize::from(panels.len() > 2);
         while panels.len() < count && span > 0.0 {
             let gap = |k: usize| panels[k + 1].time - panels[k].time;
@@ -124,8 +128,8 @@ impl Strip {
         Self { scene, panels: panels.into_iter().collect() }
     }
 
-    /// Draws the panels at equal size. Bodies are defined in the first drawing, with ids that start with `id`,
-    /// and used by all.
+    /// Draws the panels at equal size. Bodies are defined in the first drawing, with ids that start
+    /// with `id`, and reused by all.
     pub(crate) fn drawings(&self, id: &str) -> Vec<Drawing> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
@@ -158,7 +162,7 @@ impl Strip {
         let drawings = self.drawings(id);
         let (wide, high) = drawings.first().map_or((PANEL[0], 0.0), |d| (d.width, d.height));
         let most = (1..drawings.len()).take_while(|n| *n as f64 * (wide + GAP) + wide <= ROW);
-        // As many as fit a row, balanced so that the last row is not left with a single one.
+        // As many panels as fit into a row, balanced so that the last row has more than one panel.
         let rows = drawings.len().div_ceil(most.count() + 1).max(1);
         let per_row = drawings.len().div_ceil(rows).max(1);
         let mut whole = Drawing::new(
@@ -208,12 +212,12 @@ pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize
     Item::Defined(scene.bodies.iter().enumerate().map(define).collect())
 }
 
-/// Returns the id of a body within a page.
+/// Returns the id of a body, which is unique within a page.
 fn name(id: &str, body: usize) -> String {
     format!("{id}-b{body}")
 }
 
-/// Returns the hatch below the part of the ground that any frame shows.
+/// Returns the hatch below the part of the ground that is visible in any frame.
 fn ground_hatch(scene: &Scene, body: usize, view: &View, shown: &[usize]) -> Item {
     let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
     let spare = view.width / view.scale;

@@ -1,12 +1,13 @@
-//! Appearance of drawings: the palette and the style sheet, common to every format of a figure.
+//! Appearance of drawings: the palette and the style sheet, shared by all output formats of a
+//! figure.
 
 use std::sync::LazyLock;
 
 use simplecss::{AttributeOperator, Element, PseudoClass, StyleSheet};
 
-/// Colors by name: on white (and paper), and on the dark page.
+/// Colors by name: first on white (and on paper), then on the dark page.
 ///
-/// `s0` to `s5` are the series: the Okabe–Ito set, with the text color in place of its black.
+/// `s0` to `s5` are the colors of series: the Okabe–Ito set, with the text color in place of black.
 pub(crate) const PALETTE: &[(&str, &str, &str)] = &[
     ("paper", "#ffffff", "#14171b"),
     ("panel", "#f6f7f8", "#1b1f24"),
@@ -54,7 +55,7 @@ fn on_white(style: &str) -> String {
     style
 }
 
-/// The style sheet, parsed for formats that no browser renders.
+/// The parsed style sheet, for formats that are not rendered by a browser.
 static SHEET: LazyLock<StyleSheet<'static>> = LazyLock::new(|| {
     static TEXT: LazyLock<String> = LazyLock::new(|| on_white(&[STYLE, PAPER].concat()));
     StyleSheet::parse(&TEXT)
@@ -79,7 +80,7 @@ pub(crate) struct Style {
     pub(crate) strong: bool,
 }
 
-/// Element types that rules distinguish.
+/// Element types that style rules distinguish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Tag {
     Shape,
@@ -87,7 +88,8 @@ pub(crate) enum Tag {
 }
 
 impl Style {
-    /// Computes the style of an element of these classes; SVG's defaults where no rule applies.
+    /// Computes the style of an element with these classes; SVG defaults apply without a matching
+    /// rule.
     pub(crate) fn of(tag: Tag, classes: &str) -> Self {
         let mut style = Self {
             fill: Some(Ink { rgb: [0; 3], opacity: 1.0 }),
@@ -100,7 +102,7 @@ impl Style {
         };
         let (mut whole, mut fill) = (1.0, 1.0);
         let node = Node { tag: Some(tag), classes };
-        // Rules come in the order in which they override each other.
+        // Rules are in the order in which they override each other.
         for rule in SHEET.rules.iter().filter(|rule| rule.selector.matches(&node)) {
             for declaration in &rule.declarations {
                 let value = declaration.value;
@@ -115,7 +117,7 @@ impl Style {
                     "stroke-linecap" => style.round &= value == "round",
                     "font-size" => style.font_size = length(value),
                     "font-weight" => style.strong = length(value) >= 600.0,
-                    // The bundled font and the joins determine families, caps and digits.
+                    // Font families, line caps and digit styles are fixed in these formats.
                     _ => {}
                 }
             }
@@ -145,9 +147,9 @@ fn ink(value: &str) -> Option<Ink> {
     Some(Ink { rgb: [part(0)?, part(2)?, part(4)?], opacity: 1.0 })
 }
 
-/// An element for selector matching: in a drawing, which is of the class `bs`.
+/// An element for selector matching; its parent is the drawing, which has the class `bs`.
 struct Node<'a> {
-    /// `None` for the drawing itself.
+    /// Element type; `None` for the drawing itself.
     tag: Option<Tag>,
     classes: &'a str,
 }

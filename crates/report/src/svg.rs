@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Drawing {
-    /// Writes the drawing for a page that contains the style.
+    /// Writes the drawing for a page that contains the style sheet.
     pub(crate) fn inline(&self) -> String {
         let [w, h] = [self.width, self.height].map(coordinate);
         format!(
@@ -19,7 +19,7 @@ impl Drawing {
         )
     }
 
-    /// Writes the drawing with its own style on white.
+    /// Writes the drawing with its own style sheet on white.
     pub(crate) fn standalone(&self) -> String {
         let [w, h] = [self.width, self.height].map(coordinate);
         format!(
@@ -181,7 +181,7 @@ impl Writer {
     }
 }
 
-/// Formats a coordinate to a hundredth of a pixel without trailing zeros; zero when not finite.
+/// Formats a coordinate to a hundredth of a pixel without trailing zeros; zero if it is not finite.
 fn coordinate(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();
@@ -191,9 +191,10 @@ fn coordinate(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// Path data of runs of points: absolute starts, then relative steps to 0.05 px.
+/// Returns path data for runs of points: absolute starting points, then relative steps rounded to
+/// 0.05 px.
 ///
-/// Each step starts from the rounded end of the one before, so rounding never adds up.
+/// Each step starts from the rounded end of the previous step, so rounding errors do not add up.
 fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
     let mut out = String::new();
     for run in runs {
@@ -217,7 +218,7 @@ fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
         if closed {
             out.push('z');
         } else if !drawn {
-            // A single point: a segment of zero length, which round caps turn into a dot.
+            // A single point becomes a segment of zero length, which round caps turn into a dot.
             out.push_str("h0");
         }
     }

@@ -1,4 +1,4 @@
-//! A table: named columns with units, rows of cells.
+//! A table: named columns with units, and rows of cells.
 
 use crate::{escape, number};
 
@@ -9,16 +9,16 @@ pub struct Table {
     pub caption: String,
     /// The columns, left to right.
     pub columns: Vec<Column>,
-    /// The rows. Short rows are filled with [`Cell::Missing`], surplus cells are not shown.
+    /// The rows. Missing cells are filled with [`Cell::Missing`], and surplus cells are not shown.
     pub rows: Vec<Vec<Cell>>,
 }
 
-/// A column's name and unit.
+/// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Heading of the column.
     pub name: String,
-    /// Unit of its numbers, shown in parentheses; empty when there is none.
+    /// Unit of the numbers, shown in parentheses; empty if there is none.
     pub unit: String,
 }
 
@@ -54,17 +54,17 @@ impl Rating {
     }
 }
 
-/// One cell.
+/// One cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
     /// Plain text.
     Text(String),
-    /// Text with a rating, which the text or a sign must state too: the color only repeats it.
+    /// Text with a rating; the text must state the rating too, because the color only repeats it.
     Rated(Rating, String),
-    /// A number and its number of significant digits; CSV keeps every digit.
+    /// A number, and its number of significant digits; CSV keeps all digits.
     Number(f64, usize),
-    /// A measured number, shown with at most so many decimals by [`measured`](crate::measured);
-    /// CSV keeps every digit.
+    /// A measured number, shown by [`measured`](crate::measured) with at most the given number of
+    /// decimals; CSV keeps all digits.
     Measured(f64, usize),
     /// No value: shown as a dash, empty in CSV.
     Missing,
@@ -76,17 +76,17 @@ impl Cell {
         Self::Text(text.into())
     }
 
-    /// Creates a cell of text, or a missing one.
+    /// Creates a cell of text, or a missing cell.
     pub fn maybe(text: Option<impl Into<String>>) -> Self {
         text.map_or(Self::Missing, Self::text)
     }
 
-    /// Creates a number with significant digits, or a missing cell.
+    /// Creates a number with the given number of significant digits, or a missing cell.
     pub fn number(value: Option<f64>, digits: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Number(value, digits))
     }
 
-    /// Creates a measured number with at most so many decimals, or a missing cell.
+    /// Creates a measured number with at most the given number of decimals, or a missing cell.
     pub fn measured(value: Option<f64>, decimals: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Measured(value, decimals))
     }
@@ -101,7 +101,7 @@ impl Cell {
     }
 }
 
-/// A column of a table of items: its name, its unit, and the function that returns its cell.
+/// A column of a table of items: its name, its unit, and the function that makes its cells.
 pub type ColumnOf<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
 
 impl Table {
@@ -111,7 +111,7 @@ impl Table {
         Self { caption: caption.into(), columns, rows: Vec::new() }
     }
 
-    /// Creates a table with a row for each item.
+    /// Creates a table with one row per item.
     pub fn of<T>(
         caption: impl Into<String>,
         things: impl IntoIterator<Item = T>,
@@ -122,7 +122,7 @@ impl Table {
         Self { rows: things.into_iter().map(row).collect(), ..Self::new(caption, &heads) }
     }
 
-    /// Writes the table as CSV: a header with units, then every row at full precision.
+    /// Writes the table as CSV: a heading line with units, then every row at full precision.
     pub fn to_csv(&self) -> String {
         let mut out = String::new();
         let header: Vec<_> = self.columns.iter().map(|c| escape::csv(&c.heading())).collect();
@@ -144,13 +144,13 @@ impl Table {
         out
     }
 
-    /// Returns the cells of a row as displayed, one for each column.
+    /// Returns the cells of a row as displayed, one per column.
     pub(crate) fn shown<'a>(&'a self, row: &'a [Cell]) -> impl Iterator<Item = String> + 'a {
         let cells = row.iter().chain(std::iter::repeat(&Cell::Missing));
         cells.take(self.columns.len()).map(Cell::shown)
     }
 
-    /// Returns for each column whether it is numeric: it holds a number and no text.
+    /// Returns for each column whether it is numeric, that is, contains a number and no text.
     pub(crate) fn numeric(&self) -> Vec<bool> {
         let numeric = |column: usize| {
             let cells = || self.rows.iter().filter_map(|row| row.get(column));

@@ -1,11 +1,11 @@
-//! Logical structure of a PDF: headings, table cells, figures.
+//! Logical structure of a PDF: headings, table cells and figures.
 
 use pdf_writer::{
     Finish as _, Pdf, Ref, TextStr,
     types::{StructRole, TableHeaderScope},
 };
 
-/// Elements in reading order; the first is the document.
+/// Structure elements in reading order; the first is the document.
 pub(crate) struct Tags {
     elements: Vec<Element>,
 }
@@ -13,7 +13,7 @@ pub(crate) struct Tags {
 struct Element {
     role: StructRole,
     parent: usize,
-    /// Text alternative, for a figure.
+    /// Text alternative of a figure.
     words: Option<String>,
     kids: Vec<Kid>,
 }
@@ -33,7 +33,7 @@ impl Tags {
         Self { elements: vec![document] }
     }
 
-    /// Appends a new element to another and returns its index.
+    /// Appends a new element to its parent and returns the index of the new element.
     pub(crate) fn open(&mut self, parent: usize, role: StructRole, words: Option<&str>) -> usize {
         let place = self.elements.len();
         let words = words.map(str::to_owned);
@@ -46,13 +46,15 @@ impl Tags {
         self.elements[place].role
     }
 
-    /// Records that content of an element is on a page under a marked-content identifier.
+    /// Records that content of an element is on a page, under a marked-content identifier.
     pub(crate) fn paint(&mut self, place: usize, page: usize, number: i32) {
         self.elements[place].kids.push(Kid::Painted { page, number });
     }
 
-    /// Writes the tree; `pages` are those of the document, `painted` the elements of each page by their
-    /// marked-content identifiers, `next` allocates references.
+    /// Writes the structure tree.
+    ///
+    /// `pages` are the pages of the document, `painted` are the elements of each page by their
+    /// marked-content identifiers, and `next` allocates references.
     pub(crate) fn write(
         &self,
         pdf: &mut Pdf,

@@ -8,20 +8,22 @@ use crate::{
 /// Character set of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Characters {
-    /// Dots of Braille cells and blocks of eight heights.
+    /// Braille cells, and blocks of eight heights.
     #[default]
     Unicode,
-    /// ASCII alone.
+    /// ASCII characters only.
     Ascii,
 }
 
-/// Largest number of columns and rows of a picture.
+/// Maximum number of columns and rows of a picture.
 const MOST: [usize; 2] = [72, 16];
-/// Dots in a cell, across and down.
+/// Number of dots in a cell, horizontally and vertically.
 const CELL: [usize; 2] = [2, 4];
 
-/// Draws the outlines of a scene at a frame in at most 72 columns and 16 rows; empty if there is nothing
-/// to draw. Lines have no trailing blanks, and the first is not empty.
+/// Draws the outlines of a scene at a frame in at most 72 columns and 16 rows; empty if there is
+/// nothing to draw.
+///
+/// Lines have no trailing blanks, and the first line is not empty.
 pub fn terminal_picture(scene: &Scene, frame: usize, characters: Characters) -> Vec<String> {
     if scene.frames.poses.get(frame).is_none() || scene.bodies.is_empty() {
         return Vec::new();
@@ -53,7 +55,7 @@ struct Dots {
 impl Dots {
     fn of(extent: Extent) -> Self {
         let most = [(MOST[0] * CELL[0]) as f64, (MOST[1] * CELL[1]) as f64];
-        // One dot is lost at the edge, since dots lie on both ends of the window.
+        // One dot is lost at the edge, because dots lie on both ends of the window.
         let scale = ((most[0] - 1.0) / extent.width().max(1e-6))
             .min((most[1] - 1.0) / extent.height().max(1e-6));
         let cells = |length: f64, dots: usize, most: usize| {
@@ -102,7 +104,7 @@ impl Dots {
             let cells = (0..self.columns).step_by(CELL[0]).map(|column| cell(row, column));
             cells.collect::<String>().trim_end().to_owned()
         };
-        // After a collapse, the space above is omitted.
+        // After a collapse, the empty space above is omitted.
         (0..self.rows).step_by(CELL[1]).map(line).skip_while(String::is_empty).collect()
     }
 }
@@ -155,8 +157,10 @@ fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
     }
 }
 
-/// Draws a history as `columns` characters, each showing the largest value of its interval over
-/// `highest`. Values that are not finite count as zero; without values the result is empty.
+/// Draws a history as `columns` characters, each showing the largest value of its interval as a
+/// share of `highest`.
+///
+/// Values that are not finite count as zero; without values the result is empty.
 pub fn sparkline(values: &[f64], highest: f64, columns: usize, characters: Characters) -> String {
     let marks: [char; 8] = match characters {
         Characters::Unicode => ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'],

@@ -7,7 +7,7 @@ use crate::number;
 pub struct Ticks {
     /// Positions of the ticks.
     pub values: Vec<f64>,
-    /// Their labels; an empty one is a tick without a label.
+    /// Labels of the ticks; an empty text is a tick without a label.
     pub labels: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ pub struct Ticks {
 pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     let none = Ticks { values: Vec::new(), labels: Vec::new() };
     let span = high - low;
-    // Below this the ticks are indistinguishable in double precision.
+    // Below this span, ticks are indistinguishable in double precision.
     let resolvable = span > 1e-12 * low.abs().max(high.abs());
     if !(span.is_finite() && span > 0.0 && resolvable) {
         return none;
@@ -31,7 +31,7 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     let rough = span / target.max(1) as f64;
     let mut exponent = rough.log10().floor();
     let mantissa = rough / 10_f64.powf(exponent);
-    // The slack keeps quotients such as 0.2/0.1 from taking the next step.
+    // The slack keeps quotients such as 0.2/0.1 from selecting the next larger step.
     let factor = match mantissa {
         m if m <= 1.0 + 1e-9 => 1.0,
         m if m <= 2.0 + 1e-9 => 2.0,
@@ -74,8 +74,10 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     Ticks { values, labels }
 }
 
-/// Returns logarithmic ticks inside `[low, high]`, both above zero: 1, 2, 5 × 10ⁿ labeled up to three
-/// decades, powers of ten labeled beyond that. Invalid ranges give no ticks.
+/// Returns logarithmic ticks inside `[low, high]`, both above zero.
+///
+/// Ticks are at 1, 2, 5 × 10ⁿ. All are labeled up to three decades, and only powers of ten beyond
+/// that. Invalid ranges give no ticks.
 pub fn log_ticks(low: f64, high: f64) -> Ticks {
     let mut ticks = Ticks { values: Vec::new(), labels: Vec::new() };
     if !(low > 0.0 && high > low && high.is_finite()) {
@@ -108,7 +110,8 @@ pub fn log_ticks(low: f64, high: f64) -> Ticks {
     ticks
 }
 
-/// Returns the largest length of 1, 2 or 5 × 10ⁿ not above `most`; zero when `most` is not above zero.
+/// Returns the largest length of 1, 2 or 5 × 10ⁿ that does not exceed `most`; zero if `most` is not
+/// positive.
 pub(crate) fn round_length(most: f64) -> f64 {
     if !(most.is_finite() && most > 0.0) {
         return 0.0;

@@ -1,15 +1,15 @@
-//! "Try a change": a page with a program, embedded in a report.
+//! "Try a change": a report with an embedded page that contains the program.
 
-/// A page with a program, and its start data.
+/// An embedded page that contains the program, and its start data.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
-    /// The page, as [`Shell`](crate::Shell) makes it.
+    /// The page, as built by [`Shell`](crate::Shell).
     pub page: &'a str,
-    /// The content of its element `start`: JSON.
+    /// JSON content of the element `start` of the page.
     pub start: &'a str,
 }
 
-/// Markup of the control that opens it.
+/// Markup of the control that opens the embedded page.
 pub(crate) const OPENER: &str = include_str!("../assets/trial.html");
 
 /// Script of the control.

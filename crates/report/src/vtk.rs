@@ -13,22 +13,24 @@ use crate::{
     scene::{Point, Pose2, place, window},
 };
 
-/// Returns the files of a scene for ParaView, for a folder of their own: `stack.pvd`, which is the one to
-/// open, a `bodies-*.vtp` and a `forces-*.vtp` for each of its times, and `bodies.csv` with the names of
-/// the bodies by number.
+/// Returns the files of a scene for ParaView, to be written into a folder of their own.
+///
+/// `stack.pvd` is the file to open. There are a `bodies-*.vtp` and a `forces-*.vtp` for each time,
+/// and `bodies.csv` lists the names of the bodies by number.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film).
 /// The plane of the scene is y = 0, z up, lengths in m.
 ///
-/// - Bodies: closed outlines are polygons, open ones and marks are lines. Cells carry `body` (its
-///   index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device), points carry
-///   `displacement` (m) from the first frame. A body without a finite pose is left out.
+/// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
+///   (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
+///   carry `displacement` (m) from the first frame. A body without a finite pose is left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
     let digits = frames.len().to_string().len().max(4);
     let mut index = opened_index();
-    // The ground is hundreds of meters long, and a viewer fits its first picture to all of it.
+    // The ground is hundreds of meters long, and a viewer fits its first picture to the whole
+    // scene.
     let view = window(scene, &frames);
     let sight = [view.lower[0] - view.width(), view.upper[0] + view.width()];
     let mut files = Vec::new();
@@ -57,7 +59,7 @@ fn opened_index() -> String {
         .to_owned()
 }
 
-/// Adds a file of a time (s) to the index; several parts of one time have a file each.
+/// Adds the file of a time (s) to the index; a time with several parts has a file for each.
 fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
     // Writing to a String cannot fail, here and below.
     let _ = writeln!(
@@ -71,7 +73,7 @@ fn closed_index(index: String) -> String {
     index + "</Collection>\n</VTKFile>\n"
 }
 
-/// Points, cells and their data.
+/// Points and cells, with their data.
 #[derive(Default)]
 struct Mesh {
     points: Vec<Point>,
@@ -103,7 +105,7 @@ fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> String {
     mesh.write()
 }
 
-/// Returns the part of a line between `from` and `to` along x.
+/// Returns the part of a line between `from` and `to` (m) along x.
 fn shortened(line: &Polyline, [from, to]: [f64; 2]) -> Polyline {
     let mut points: Vec<Point> = Vec::new();
     for pair in line.points.windows(2) {
@@ -178,7 +180,8 @@ fn forces(scene: &Scene, frame: usize) -> String {
     poly_data("", &piece)
 }
 
-/// Returns the start of a piece, up to its vectors, with the numbers of points, vertices, lines and polygons.
+/// Returns the start of a piece up to its vector data, given the numbers of points, vertices, lines
+/// and polygons.
 fn piece(points: usize, [vertices, lines, polygons]: [usize; 3], vectors: &str) -> String {
     format!(
         "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"{vertices}\" NumberOfLines=\"{lines}\" \
@@ -194,7 +197,7 @@ fn poly_data(packing: &str, piece: &str) -> String {
     )
 }
 
-/// Writes plane vectors as spatial vectors, at full precision.
+/// Writes planar vectors as spatial vectors, at full precision.
 fn vectors(out: &mut String, name: &str, values: &[Point]) {
     let _ = writeln!(
         out,

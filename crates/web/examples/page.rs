@@ -1,9 +1,9 @@
 //! Writes the page that contains the program: `page MODULE FOLDER TITLE FILE`.
 //!
-//! The folder has the body (`page.html`), the style sheet (`page.css`), the scripts (`*.js`, of which `main.js` comes
-//! last), and the script of its workers (`worker.js`).
-//! The engine's answers for the first stack are computed here and embedded, so that the page shows it before the
-//! engine has started.
+//! The folder contains the body (`page.html`), the style sheet (`page.css`), the scripts (`*.js`,
+//! of which `main.js` is last), and the script of the workers (`worker.js`). The answers of the
+//! engine for the first stack are computed here and embedded, so that the page shows the stack
+//! before the engine has started.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -57,9 +57,9 @@ fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     Ok(packed)
 }
 
-/// Returns the engine's answers for the first stack, and the catalog.
+/// Returns the answers of the engine for the first stack, and the catalog.
 fn first() -> Result<Value, Box<dyn std::error::Error>> {
-    let scenario = builtin::get(FIRST).ok_or("the first scenario is not there")?;
+    let scenario = builtin::get(FIRST).ok_or("the first scenario is missing")?;
     let answer_to = |kind| -> Result<Value, Box<dyn std::error::Error>> {
         let request = Request { name: format!("{FIRST}.toml"), ..Request::of(kind, scenario) };
         let answer = answered(&request.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(()))?;

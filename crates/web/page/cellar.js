@@ -1,29 +1,30 @@
-// What is asked for: a scenario that comes with the program or was opened, and the changes made to it. The same in a
-// request to the engine, on a command line, and in a link.
+// What the reader chose: a scenario, bundled or opened, and the changes made to it. A request to
+// the engine, a command line and a link express the same choice.
 
-// As a shell takes it for one word.
+// Quotes a word for a shell.
 const shellWord = (word) => (/^[\w\-./=:,+]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
-// `base` is { name, text, own }, where `own` says that it was opened and is none of the program's.
+// `base` is { name, text, own }, where `own` is true if the scenario was opened and is not bundled.
 function makeCellar(base) {
   return { base, changes: {}, records: [] };
 }
 
-// A copy to which changes may be made.
+// Returns a copy to which changes may be made.
 const copied = ({ base, changes, records }) => ({ base, changes: { ...changes }, records });
 
 const setOf = ({ changes }) => Object.entries(changes).map(([path, value]) => `${path}=${value}`);
 
-// What two cellars of the same have in common, but for the bytes of their records.
+// Returns a key of a cellar; it contains everything except the bytes of the records.
 const keyOf = (cellar) => JSON.stringify([cellar.base.name, cellar.base.text, cellar.changes, cellar.records.map(({ path }) => path)]);
 
-// The request for it.
+// Returns the head of a request for a cellar.
 function headOf(cellar, ask, more) {
   const { base } = cellar;
   return { ask, scenario: base.text, name: base.own ? base.name : `${base.name}.toml`, set: setOf(cellar), ...more };
 }
 
-// The command that gives the same bits; that which makes one file of several goes before it.
+// Returns the command that gives bit-identical results, preceded by a command that joins the files
+// of a record, if there are several.
 function commandOf(cellar) {
   const made = cellar.records.filter(({ of }) => of).map(({ path, of, reading }) => {
     const told = [...(reading.unit ? ["--unit", reading.unit] : []), ...(reading.time_step ? ["--time-step", `${reading.time_step} s`] : [])];
@@ -39,7 +40,8 @@ async function through(stream, bytes) {
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 }
 
-// The whole scenario as the end of an address; a record of one's own goes by its name only.
+// Returns the whole scenario as the end of an address; a record of the reader is included by name
+// only.
 async function linkOf({ base, changes, records }) {
   const told = { base: base.own ? { name: base.name, text: base.text } : { name: base.name }, changes, records: records.map(({ path }) => path) };
   const packed = await through(new CompressionStream("gzip"), new TextEncoder().encode(JSON.stringify(told)));
@@ -48,8 +50,8 @@ async function linkOf({ base, changes, records }) {
   return "#s=" + btoa(raw).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-// What a link holds: { base, changes, missing }, where `missing` names the records that are to be given again; none for
-// the end of an address that is no link.
+// Reads a link: returns { base, changes, missing }, where `missing` lists the records that must be
+// given again; none if the end of the address is not a link.
 async function linked(hash, scenarios) {
   const found = /^#s=([\w-]+)$/.exec(hash);
   if (!found) return null;

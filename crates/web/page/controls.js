@@ -1,25 +1,26 @@
-// The five choices and the strength of the shaking, read from what the engine says of a scenario and written into the
-// changes made to it.
+// The five choices and the strength of the shaking, read from the scenario as resolved by the
+// engine, and written as changes to the scenario.
 
-const STRENGTHS = [3, 160]; // ends of the slider (cm/s)
+const STRENGTHS = [3, 160]; // limits of the slider (cm/s)
 const STEPS = 200;
 
 const velocityAt = (step) => STRENGTHS[0] * (STRENGTHS[1] / STRENGTHS[0]) ** (step / STEPS);
 const stepAt = (velocity) => Math.round((STEPS * Math.log(velocity / STRENGTHS[0])) / Math.log(STRENGTHS[1] / STRENGTHS[0]));
 
-// What is given, by its path; fields without a value are left out.
+// Returns the values of a scenario by path; fields without a value are left out.
 const valuesOf = (look) => Object.fromEntries(look.settings.filter(({ value }) => value !== "").map(({ path, value }) => [path, value]));
 
-// `changed` is called when the reader has changed something: it gets a function that writes that into a cellar.
+// `changed` is called when the reader has changed something, with a function that writes the change
+// into a cellar.
 function makeControls(find, catalog, changed) {
   const [barrel, rack, levels, view, fill, strength] = ["barrel", "rack", "levels", "view", "fill", "strength"].map(find);
-  let stated = null, shown = null; // what the scenario says without changes, and with them
-  let own = 0; // peak velocity (cm/s) of its motion as it is recorded; 0 where nothing shakes
+  let stated = null, shown = null; // the resolved scenario without changes, and with them
+  let own = 0; // peak velocity (cm/s) of the motion as recorded; 0 without a motion
   const offer = (select, names) => select.replaceChildren(...names.map((name) => make("option", { value: name }, called(name))));
   offer(barrel, catalog.barrels.map(({ name }) => name));
   offer(rack, catalog.racks.map(({ name }) => name));
 
-  // Writes a value unless it is the one that is stated.
+  // Writes a value unless it equals the stated one.
   const write = (cellar, path, value, same) => {
     if (same) delete cellar.changes[path];
     else cellar.changes[path] = value;
@@ -32,12 +33,12 @@ function makeControls(find, catalog, changed) {
       write(cellar, "stack.barrel", text, is("stack.barrel.base", barrel.value) && is("stack.barrel.fill", fill.value));
     },
     rack: (cellar) => write(cellar, "stack.rack", `"${rack.value}"`, is("stack.rack.base", rack.value)),
-    // `now` is what the cellar says, with all its changes.
+    // `now` is the resolved scenario with all its changes.
     levels(cellar, count = Number(levels.value), now = shown) {
       const most = Math.min(Math.max(Math.round(count) || 1, 1), 12), values = valuesOf(now);
       const had = Number(values["stack.levels"]);
       write(cellar, "stack.levels", String(most), is("stack.levels", most));
-      // A device on all levels stays on all, and none is on more than there are.
+      // A device on all levels stays on all levels, and no device is on more levels than there are.
       for (const [path, value] of Object.entries(values)) {
         if (!/^stack\.\w+\.levels$/.test(path) || Number(value) === 0) continue;
         const on = Number(value) >= Math.min(had, most) ? most : Number(value);
@@ -47,11 +48,11 @@ function makeControls(find, catalog, changed) {
     },
     view(cellar) {
       write(cellar, "stack.view", `"${view.value}"`, is("stack.view", view.value));
-      // Of both planes the one along the barrels has columns of its own.
+      // With both planes, the one along the barrels has its own number of columns.
       const along = stated["stack.columns_along"];
       if (along !== undefined) write(cellar, "stack.columns", along, view.value !== "longitudinal");
     },
-    // In place of whatever is said of the same device.
+    // Replaces any setting of the same device.
     device(cellar, table, settings) {
       for (const path of Object.keys(cellar.changes)) if (path === `stack.${table}` || path.startsWith(`stack.${table}.`)) delete cellar.changes[path];
       for (const setting of settings) {
@@ -90,12 +91,12 @@ function makeControls(find, catalog, changed) {
 
   return {
     writers,
-    // The scenario as it is stated, without changes.
+    // Sets the scenario as stated, without changes.
     state(look) {
       stated = valuesOf(look);
     },
     states: (path) => stated[path],
-    // Shows what a scenario says.
+    // Shows a resolved scenario.
     show(look) {
       shown = look;
       const values = valuesOf(look), motion = look.checked[0].motion;
@@ -112,23 +113,23 @@ function makeControls(find, catalog, changed) {
       if (motion) {
         const velocity = 100 * motion.pgv;
         own = velocity / Math.abs(Number(values["motion.scale.factor"] ?? 1));
-        // Not while it is being moved.
+        // Not while the reader is moving it.
         if (document.activeElement !== strength) strength.value = stepAt(velocity);
         feel(velocity);
-        // Each plane has a component of its own.
+        // Each plane has its own component of the motion.
         const shaken = look.checked.filter((plane) => plane.motion), several = shaken.length > 1;
         const place = ({ view }) => (several ? (view === "longitudinal" ? "along the barrels " : "across the barrels ") : "");
         const planes = shaken.map((plane) => `${place(plane)}${plane.motion.name}, peak acceleration ${(plane.motion.pga / 9.80665).toPrecision(2)} g`);
         find("motion").textContent = `${planes.join("; ")}; ${motion.duration.toFixed(0)} s`;
       } else {
-        find("feels").textContent = "Nothing shakes it.";
+        find("feels").textContent = "There is no ground motion.";
         find("motion").textContent = "Drop a record here.";
       }
     },
   };
 }
 
-// A stack in a few words: what of it matters, and what is unusual about it.
+// Returns a short description of a stack: its main properties, and what is unusual.
 function labelOf(look) {
   const values = valuesOf(look), motion = look.checked[0].motion;
   if (values["stack.levels"] === undefined) return look.title;

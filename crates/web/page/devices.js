@@ -1,14 +1,14 @@
-// What could be put on the stack: the devices that the engine knows, each with what it does beside what the stack does
-// without it.
+// Devices that could be added to the stack, each with its effect compared with the stack without
+// it.
 
-const GLANCE = 8; // variants that tell at a glance what a device does
+const GLANCE = 8; // number of variants for a first estimate of the effect of a device
 
-// The plane in which most variants fall.
+// Returns the plane in which most variants fall.
 const worstOf = (verdict) => verdict.planes.reduce((a, b) => ((b.spread.share ?? -1) > (a.spread.share ?? -1) ? b : a));
 
-// `lasts` tells how long (s) some variants of a stack take.
+// `lasts` returns the expected duration (s) of a number of variants of a stack.
 function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts }) {
-  let now = null, going = 0; // the run whose devices are shown, and how often they were tried
+  let now = null, going = 0; // the run whose devices are shown, and the number of estimates started
 
   const group = "devices";
   const tableOf = (changes) => changes[0].split(".")[1];
@@ -19,9 +19,9 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
 
   const unknown = ({ glance, run, refused }) => !glance && !run && !refused;
 
-  // What is known of a device: from a run with it, or from a glance.
+  // Returns the known effect of a device, from a run with it or from a first estimate.
   function effectOf(candidate) {
-    if (candidate.refused) return "does not go on it";
+    if (candidate.refused) return "does not fit this stack";
     if (candidate.run && candidate.run.verdict) return tell(candidate.run.verdict);
     if (candidate.glance) return tell(candidate.glance);
     return candidate.running ? "…" : "";
@@ -45,7 +45,7 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
       return button;
     }));
     const head = make("tr", {}, ...["device", "with it", ""].map((name) => (name ? make("th", { scope: "col" }, name) : make("td"))));
-    const plain = make("tr", {}, make("th", { scope: "row" }, "none, the stack as it is"), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
+    const plain = make("tr", {}, make("th", { scope: "row" }, "none (the stack as it is)"), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
     find("devices").replaceChildren(make("thead", {}, head), make("tbody", {}, plain, ...candidates.map(row)));
     find("devices-box").hidden = candidates.length === 0 && present.length === 0;
     const open = candidates.filter(unknown).length;
@@ -53,10 +53,10 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
     if (open > 0) find("devices-said").textContent = `${open} devices in ${GLANCE} variants each: about ${lasting(lasts(now.look, open * (GLANCE + 1)))}`;
   }
 
-  // Whether leaving out changes, or a number of levels, takes a device off.
+  // Whether a device can be removed by leaving out changes, or by setting its number of levels.
   const removable = (table) => states(`stack.${table}.levels`) !== undefined || Object.keys(now.cellar.changes).some((path) => path.startsWith(`stack.${table}`));
 
-  // Shows the devices of a run; the engine is asked once it has nothing else to do.
+  // Shows the devices of a run; the engine is asked when it has nothing else to do.
   async function show(run) {
     if (now !== run) {
       stop();
@@ -67,7 +67,7 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
       if (!(run.done || run.stopped) || run.asking) return;
       run.asking = true;
       try {
-        // Whoever goes on at once has no need of it.
+        // A reader who goes on at once does not need the devices.
         await new Promise((next) => setTimeout(next, 300));
         if (run !== now) return;
         run.devices = jsonOf(await desk.ask(headOf(run.cellar, "devices"), { records: run.cellar.records }));
@@ -81,7 +81,7 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
     if (run === now) draw();
   }
 
-  // A few variants with each device, which all share the engines.
+  // Runs a few variants with each device, shared among all engines.
   async function glance() {
     const own = (going += 1), { cellar, look, devices: { candidates } } = now;
     const numbers = orderOf(look.variants).slice(0, GLANCE + 1);
@@ -107,7 +107,7 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
     };
     try {
       await Promise.all(candidates.filter(unknown).map(one));
-      if (own === going) find("devices-said").textContent = `Each in ${GLANCE} variants; try one to know more.`;
+      if (own === going) find("devices-said").textContent = `Each device was run in ${GLANCE} variants; try one to run them all.`;
     } catch (error) {
       if (!error.stopped) refuse(error);
     }

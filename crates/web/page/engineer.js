@@ -1,7 +1,7 @@
 // For the engineer: every field, the text, the command, the link, and the report with its files.
 
-// `change` writes into the cellar at hand and looks at it; `open` takes another base; `tallyOf` gives what is known of the
-// variants of a cellar.
+// `change` writes into the current cellar and resolves it; `open` takes another base; `tallyOf`
+// returns the known results of the variants of a cellar.
 function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }) {
   const rows = new Map();
 
@@ -15,7 +15,8 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
       waiting = setTimeout(async () => {
         const { cellar } = state();
         const tried = copied(cellar);
-        // A value that is none of TOML is a text, as on the command line; without one the field is as it was.
+        // A value that is not valid TOML is a text, as on the command line; an empty value restores
+        // the field.
         const write = ({ changes }) => {
           if (input.value.trim() === "") delete changes[path];
           else changes[path] = input.value;
@@ -40,8 +41,8 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
     for (const { row, words } of rows.values()) row.hidden = !words.includes(wanted);
   }
 
-  // Fields come and go, and take other places, with what others say. Rows that are here stay where they are: somebody
-  // may be typing into one of them.
+  // Fields appear, disappear and move as other fields change. Existing rows are kept in place,
+  // because the reader may be typing into one of them.
   function listFields(settings) {
     const paths = new Set(settings.map(({ path }) => path));
     for (const [path, { row }] of rows) {
@@ -58,7 +59,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
     filter();
   }
 
-  // Shows what a scenario says, once somebody looks; what is being typed stays.
+  // Shows a resolved scenario when the section is open; text being typed is kept.
   function show() {
     if (!find("engineer-fold").open) return;
     const { cellar, look } = state();
@@ -93,7 +94,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
       const tried = { base: { name: "mine.toml", text: find("text").value, own: true }, changes: {}, records: state().cellar.records };
       try {
         await desk.ask(headOf(tried, "look"), { records: tried.records, group: "text" });
-        say("text-said", "The text is sound.");
+        say("text-said", "The text is valid.");
         find("text").removeAttribute("aria-invalid");
         find("text-take").disabled = false;
       } catch (error) {
@@ -107,7 +108,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
     }, 300);
   });
 
-  // Brings the line of a mistake into sight.
+  // Scrolls to the line of an error.
   function reveal(message) {
     const at = /mine\.toml:(\d+)/.exec(message);
     if (!at) return;
@@ -133,8 +134,8 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
   find("link").addEventListener("click", async () => {
     const link = location.href.replace(/#.*/, "") + (await linkOf(state().cellar));
     const done = await copyText(link);
-    const kept = state().cellar.records.length > 0 ? " Your record is not in it: it goes by its name." : "";
-    find("link-said").textContent = (done ? "Copied." : "It stands in the address of this page.") + kept;
+    const kept = state().cellar.records.length > 0 ? " The link contains only the name of your record." : "";
+    find("link-said").textContent = (done ? "Copied." : "The link is the address of this page.") + kept;
     setHash(link);
   });
 
@@ -147,7 +148,8 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
     const { look } = state(), cellar = copied(state().cellar);
     busy(true);
     try {
-      // What the variants did is known, or is shared among the engines; the run that is shown is one engine's.
+      // The results of the variants are known, or are computed by all engines; the shown run is
+      // computed by one engine.
       const tally = tallyOf(cellar);
       const said = (what) => (done, of) => { find("report-said").textContent = `${what}: ${percentOf(of > 0 ? done / of : 0)}`; };
       const heard = (_, count) => said("variants")(count - 1, look.variants);
@@ -184,7 +186,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
   return { show };
 }
 
-// Files with their names, from an answer that has their list before them.
+// Returns the files in an answer, which begins with their list.
 function filesOf(answer) {
   const { head, rest } = partsOf(answer);
   let at = 0;
@@ -194,7 +196,8 @@ function filesOf(answer) {
   });
 }
 
-// Browsers keep the clipboard to pages from a safe place; the old way works everywhere else.
+// Browsers offer the clipboard only to pages from a secure origin; the old method works everywhere
+// else.
 async function copyText(text) {
   try {
     await navigator.clipboard.writeText(text);
@@ -214,6 +217,6 @@ function setHash(link) {
   try {
     history.replaceState(null, "", link);
   } catch {
-    // A page inside another has no address of its own.
+    // An embedded page has no address of its own.
   }
 }

@@ -1,9 +1,10 @@
-// The engines: workers that answer requests, the most urgent first. Work that is wanted no more is stopped by ending
-// its worker, which no computation can withstand.
+// The engines: workers that answer requests, the most urgent first. Work that is no longer wanted
+// is stopped by ending its worker, which always works.
 
-const ROOM = 384e6; // memory of an engine (bytes) above which it is ended once it has answered, since it gives none back
+const ROOM = 384e6; // memory (bytes) above which an engine is ended after its answer, because it never releases memory
 
-// A request as the engine reads it: the length of its head, the head, the records, and what else goes with it.
+// Encodes a request for the engine: the length of the head, the head, the records, and further
+// data.
 function requestOf(head, files) {
   const records = files.filter(({ path }) => path !== undefined);
   const text = new TextEncoder().encode(JSON.stringify({ ...head, records: records.map(({ path, bytes }) => [path, bytes.length]) }));
@@ -18,7 +19,7 @@ function requestOf(head, files) {
   return request;
 }
 
-// The module, unpacked and compiled in a worker, so that nobody waits for it.
+// Unpacks and compiles the module in a worker, so that the page is not blocked.
 function compiled(address, packed) {
   return new Promise((resolve, reject) => {
     const worker = new Worker(address);
@@ -32,7 +33,8 @@ function compiled(address, packed) {
   });
 }
 
-// As many engines as `most`, each started when there is work for it; the module may still be on its way.
+// Creates up to `most` engines, each started when there is work for it; the module may still be
+// loading.
 function makeEngines(module, address, most) {
   const all = new Set();
   let waiting = [];
@@ -94,8 +96,8 @@ function makeEngines(module, address, most) {
     warm() {
       while (all.size < most) start();
     },
-    // Answers in bytes, or as `said` where it `draws` a picture. `group` is what it is stopped by, `told` hears how far
-    // it is.
+    // Returns an answer in bytes, or as `said` if it `draws` a picture. `group` identifies the work
+    // for stopping; `told` receives the progress.
     ask(head, { records = [], urgency = 0, group = "", told, draws } = {}) {
       return new Promise((resolve, reject) => {
         const job = { request: () => requestOf(head, records), urgency, group, told, draws, resolve, reject };
@@ -104,7 +106,7 @@ function makeEngines(module, address, most) {
         next();
       });
     },
-    // Ends all work of a group.
+    // Stops all work of a group.
     stop(group) {
       const stopped = Object.assign(new Error("stopped"), { stopped: true });
       const dropped = waiting.filter((job) => job.group === group);
@@ -123,7 +125,7 @@ function makeEngines(module, address, most) {
 
 const jsonOf = ({ said, bytes }) => said || JSON.parse(new TextDecoder().decode(bytes));
 
-// An answer of which bytes follow a head.
+// Returns an answer that has bytes after its head.
 function partsOf({ bytes }) {
   const end = 4 + new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
   return { head: JSON.parse(new TextDecoder().decode(bytes.subarray(4, end))), rest: bytes.subarray(end) };

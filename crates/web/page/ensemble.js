@@ -1,10 +1,11 @@
-// All variants of a stack, shared among the engines; what they say so far is told by one of them after each share.
+// All variants of a stack, shared among the engines; after each share, one engine combines the
+// results so far.
 
-const SHARE = 4; // variants that an engine takes at once: half a second of work for a stack of the catalog
-const FEWEST = 8; // variants from which a verdict is stated before all are in
+const SHARE = 4; // number of variants that an engine takes at a time: half a second of work for a stack of the catalog
+const FEWEST = 8; // minimum number of variants for a verdict before all have finished
 
-// Numbers in the order in which they are run: the stack as it is stated first, then from both halves in turn, since the
-// second half of a stack that is looked at in both planes has the components of the record exchanged.
+// Returns the variant numbers in running order: the nominal case first, then alternately from both
+// halves, because in both planes the second half has the components of the record exchanged.
 function orderOf(count) {
   const half = Math.ceil(count / 2), order = [0];
   for (let at = 1; at <= half; at += 1) {
@@ -14,12 +15,14 @@ function orderOf(count) {
   return order;
 }
 
-// Collects results of variants, and asks what they say together; keeps what a report needs where `reports` says so.
+// Collects results of variants and requests their combined verdict; if `reports` is set, keeps the
+// data that a report needs.
 function makeTally(desk, cellar, reports) {
-  const results = new Map(); // by number, a result in each plane
-  const trails = []; // where barrels were, as bytes, for a report
+  const results = new Map(); // by variant number, the results in each plane
+  const trails = []; // trails of the barrels, as bytes, for a report
   const planes = () => (results.get(0) || []).length;
-  // The results of these numbers, or all that are known, as the engine takes them.
+  // Returns the results of the given numbers, or all known results, in the form that the engine
+  // reads.
   const given = (some) => {
     const numbers = [...(some ?? results.keys())].sort((a, b) => a - b);
     return { numbers, cases: Array.from({ length: planes() }, (_, plane) => numbers.map((number) => results.get(number)[plane])) };
@@ -28,13 +31,15 @@ function makeTally(desk, cellar, reports) {
     count: () => results.size,
     has: (number) => results.has(number),
     given, trails,
-    // Takes an answer about variants, whose numbers may be others here than there.
+    // Adds an answer about variants, whose numbers in this tally may differ from those in the
+    // answer.
     add(numbers, answer) {
       const { head, rest } = partsOf(answer);
       numbers.forEach((number, at) => results.set(number, head.map((plane) => plane[at])));
       if (reports) trails.push(rest);
     },
-    // The verdict of these numbers, or of all that are known; none before the stack as it is stated is among them.
+    // Returns the verdict of the given numbers, or of all known ones; none until the nominal case
+    // is among them.
     async verdict(group, numbers) {
       if (!results.has(0)) return null;
       return jsonOf(await desk.ask(headOf(cellar, "verdict", given(numbers)), { records: cellar.records, urgency: 1, group }));
@@ -42,9 +47,12 @@ function makeTally(desk, cellar, reports) {
   };
 }
 
-// Runs all variants that a tally has not; after each share `heard` gets the verdict so far, how many results there are, and
-// whether that was the last share. There is no verdict of fewer than FEWEST variants while more are to come, and it counts
-// those alone that lead the order without a gap: what ends first is no fair sample, since runs that collapse end sooner.
+// Runs all variants that a tally lacks. After each share, `heard` receives the verdict so far, the
+// number of results, and whether this was the last share.
+//
+// There is no verdict of fewer than FEWEST variants while more are to come. A verdict counts only
+// the variants that lead the order without a gap: those that finish first are not a fair sample,
+// because runs that collapse end sooner.
 async function runAll({ crew, cellar, tally, count, group, heard }) {
   const whole = orderOf(count), order = whole.filter((number) => !tally.has(number));
   const leading = () => {
@@ -57,7 +65,7 @@ async function runAll({ crew, cellar, tally, count, group, heard }) {
   let asking = false, behind = false, left = shares.length, ended;
   const all = new Promise((resolve, reject) => { ended = { resolve, reject }; });
 
-  // One verdict at a time, of what is there when it is asked for.
+  // One verdict at a time, of the results available when it is requested.
   async function tell() {
     if (asking) {
       behind = true;

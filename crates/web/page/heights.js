@@ -1,18 +1,20 @@
-// How high is safe: stacks of two to six levels under the motion at hand at six strengths, each cell by its variants, the
-// cell about which least is known first.
+// How high is safe: stacks of two to six levels under the current motion at six strengths. Each
+// cell is run in its variants, the cell with the least certain result first.
 
 const HEIGHTS = [6, 5, 4, 3, 2];
 const VELOCITIES = [12, 24, 36, 50, 70, 100]; // cm/s, as in `barrelstack heights`
-const CELL = 32; // variants after which a cell is done
-const BATCH = 4; // that are run at once
-const OTHER = 1e5; // more than there are variants, between numbers of two motions
-const ENOUGH = 8; // variants from which a cell is colored, and its neighbors are taken to be like it
-const FALLS = 0.9, STANDS = 0.05; // shares from and up to which a cell is said to fall and to stand, as in a verdict
+const CELL = 32; // number of variants after which a cell is finished
+const BATCH = 4; // number of variants that are run together
+const OTHER = 1e5; // offset between the variant numbers of two motions; exceeds the number of variants
+const ENOUGH = 8; // minimum number of variants for coloring a cell, and for conclusions about its neighbors
+const FALLS = 0.9, STANDS = 0.05; // minimum share of "falls" and maximum share of "stands", as in a verdict
 
-// Of cells, each with its level, its strength, its counts and what runs of it, the one to run next; none when all are done.
+// Returns the cell to run next, given cells with level, strength, counts and pending runs; none if
+// all are finished.
 //
-// What is known of a cell is the width of its interval. One that weaker shaking or a lower stack fells nearly always is
-// taken to fall, and one that stronger shaking or a higher stack leaves standing to stand, until all others are done.
+// The uncertainty of a cell is the width of its interval. A cell that nearly always falls under
+// weaker shaking or with fewer levels is assumed to fall, and a cell that stands under stronger
+// shaking or with more levels is assumed to stand, until all other cells are finished.
 function nextCell(cells) {
   const sure = (cell) => {
     const beside = (other) => other !== cell && other.run >= ENOUGH;
@@ -26,11 +28,11 @@ function nextCell(cells) {
   return open.reduce((best, cell) => (best && worth(best) >= worth(cell) ? best : cell), null);
 }
 
-// `motionsOf` gives the motions for a cellar: that at hand, or all that the reader gave.
+// `motionsOf` returns the motions for a cellar: the current one, or all that the reader gave.
 function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
   let cells = [], going = 0;
 
-  // What is known of a cell, in words and a color.
+  // Returns the known result of a cell, in words and a color.
   function tell(cell) {
     const { place, verdict, refused } = cell;
     if (refused) {
@@ -39,7 +41,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     }
     if (!verdict) return;
     const { collapsed, variants, interval: [low, high], share } = worstOf(verdict).spread;
-    // A few say little.
+    // Too few variants get no color.
     place.className = variants < ENOUGH ? "" : share >= FALLS ? "poor" : share <= STANDS ? "good" : "fair";
     place.replaceChildren(`${collapsed} of ${variants} fall`, make("small", {}, `${percentOf(low)} to ${percentOf(high)}`));
   }
@@ -51,7 +53,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     }));
     const rows = HEIGHTS.map((levels) => make("tr", {}, make("th", { scope: "row" }, String(levels)),
       ...cells.filter((cell) => cell.levels === levels).map(({ place }) => place)));
-    const caption = make("caption", {}, make("span", {}, `Variants of a stack that fall in the worse plane, with the 95 % interval of the share of all such stacks; across: peak ground velocity. Shaken by ${motions.join("; ")}.`));
+    const caption = make("caption", {}, make("span", {}, `Variants that fall in the worse plane, with the 95 % interval of their share; columns: peak ground velocity. Shaken by ${motions.join("; ")}.`));
     find("heights-table").replaceChildren(caption, make("thead", {}, head), make("tbody", {}, ...rows));
     find("heights-table").parentElement.hidden = false;
   }
@@ -82,8 +84,8 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     tell(cell);
   }
 
-  // The variants of a cell in shares, of one motion after the other; numbers of other motions than the first get names of
-  // their own, and the stack as it is stated counts once.
+  // Returns the variants of a cell in shares, one motion after the other. Variants under further
+  // motions get numbers of their own, and the nominal case counts once.
   function sharesOf(cellars, count) {
     const order = orderOf(count), shares = [];
     const each = Math.min(Math.ceil(CELL / cellars.length), count);
@@ -96,7 +98,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     return shares;
   }
 
-  // What the engine says of the cellar under each of the motions.
+  // Returns the resolved cellar under each of the motions.
   async function underEach(cellar, look) {
     const motions = motionsOf(cellar);
     if (motions.length < 2) return [{ cellar, look }];
@@ -106,7 +108,8 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     }));
   }
 
-  // A cellar of so many levels, its motion brought to a peak velocity; one factor for all components, as the slider has it.
+  // Returns a cellar with a number of levels, its motion scaled to a peak velocity by one factor
+  // for all components, like the slider.
   function cellAt({ cellar, look }, levels, velocity) {
     const one = copied(cellar), values = valuesOf(look);
     writers.levels(one, levels, look);
@@ -120,7 +123,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
 
   async function go() {
     const { cellar, look } = state();
-    if (valuesOf(look)["stack.levels"] === undefined || !look.checked[0].motion) return refuse(new Error("heights need a stack, and a motion that shakes it"));
+    if (valuesOf(look)["stack.levels"] === undefined || !look.checked[0].motion) return refuse(new Error("this computation needs a stack and a ground motion"));
     const own = (going += 1);
     busy(true);
     try {
@@ -147,11 +150,11 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     if (own === going) busy(false);
   }
 
-  // The highest stack that stands, for each strength at which one does.
+  // Returns the highest stack that stands, for each strength at which one does.
   function safest() {
     const stands = (velocity) => HEIGHTS.find((levels) => cells.filter((cell) => cell.velocity === velocity && cell.levels <= levels).every((cell) => cell.share <= STANDS && !cell.refused));
     const parts = VELOCITIES.filter(stands).map((velocity) => `${stands(velocity)} levels stand ${velocity} cm/s`);
-    return parts.length > 0 ? `${parts.join(", ")}.` : "None of these stands even the weakest of these.";
+    return parts.length > 0 ? `${parts.join(", ")}.` : "None of these stacks stands even under the weakest of these motions.";
   }
 
   find("heights-go").addEventListener("click", go);

@@ -1,8 +1,9 @@
-// The page: starts the engines, and joins the choices, the picture, the runs and what engineers ask for.
+// The page: starts the engines, and connects the choices, the picture, the runs and the section for
+// engineers.
 
 const find = (id) => document.getElementById(id);
 document.documentElement.classList.add("js");
-// Times (ms) since the page was asked for: when it can be used, and when there is an engine.
+// Times (ms) since the page was requested at which it can be used, and at which an engine is ready.
 window.barrelstack = { started: null, ready: null, marks: null };
 
 function broken(error) {
@@ -10,7 +11,7 @@ function broken(error) {
   if (!find("broken").open) find("broken").showModal();
 }
 
-// The text of an element that stands behind the scripts.
+// Returns the text of an element that follows the scripts.
 async function later(id) {
   if (!find(id)) await new Promise((done) => document.addEventListener("DOMContentLoaded", done, { once: true }));
   return find(id).textContent;
@@ -18,12 +19,12 @@ async function later(id) {
 
 async function start() {
   const first = JSON.parse(new TextDecoder().decode(await held("first")));
-  // What workers share with the page goes before their own text.
+  // Functions that the workers share with the page precede their own script.
   const shared = [bytesOf, unpack, unpacked].map(String);
   const address = URL.createObjectURL(new Blob([...shared, find("worker").textContent], { type: "text/javascript" }));
   const module = later("engine").then((packed) => compiled(address, packed));
   const cores = navigator.hardwareConcurrency || 2;
-  // One engine answers what cannot wait; the others leave a core to the page where there are enough.
+  // One engine answers urgent requests; the others leave one core to the page if there are enough.
   const desk = makeEngines(module, address, 1);
   const crew = makeEngines(module, address, Math.min(Math.max(cores - 1, Math.min(cores, 2)), 8));
   const players = [];
@@ -41,7 +42,7 @@ async function start() {
     find("refused").hidden = false;
   }
 
-  // Asks what the cellar says, and shows it; gives whether it says anything.
+  // Resolves the cellar and shows it; returns whether it is valid.
   let asked = 0;
   async function seen(of) {
     const own = (asked += 1);
@@ -67,10 +68,11 @@ async function start() {
     controls.show(look);
     engineer.show();
     runs.forecast(look);
-    if (missing.length > 0) find("motion").textContent = `The link is about a record that it does not hold: drop ${missing.join(", ")} here. Until then: ${find("motion").textContent}`;
+    if (missing.length > 0) find("motion").textContent = `The link refers to a record that it does not contain: drop ${missing.join(", ")} here. Until then: ${find("motion").textContent}`;
   }
 
-  // Changes the cellar at hand, shows it standing, and shakes it where that is asked for, which gives the run.
+  // Changes the current cellar, shows the stack at rest and, if requested, shakes it and returns
+  // the run.
   async function change(write, shake) {
     write(cellar);
     if (!(await seen(cellar))) return null;
@@ -90,7 +92,7 @@ async function start() {
     showAll();
   }
 
-  // What the base says without changes, which choices are held against.
+  // Resolves the base without changes, with which the choices are compared.
   async function stated() {
     if (cellar.base.look === undefined && Object.keys(cellar.changes).length === 0) cellar.base.look = look;
     if (cellar.base.look === undefined) {
@@ -99,7 +101,7 @@ async function start() {
         cellar.base.look = jsonOf(await desk.ask(headOf(bare, "look"), { records: bare.records, urgency: 2, group: "stated" }));
       } catch (error) {
         if (error.broken) throw error;
-        // One that needs a record which is not at hand is as it is with it.
+        // If the base needs a record that is missing, its values with the record are used.
         cellar.base.look = look;
       }
     }
@@ -115,7 +117,7 @@ async function start() {
     await picture.put(look.stage, { still: true });
   }
 
-  // Takes a motion that the reader gave; gives what the engine says of the stack under it.
+  // Uses a motion that the reader gave; returns the resolved stack under that motion.
   async function shake(motion) {
     const tried = shakenBy(cellar, motion);
     if (!(await seen(tried))) return null;
@@ -157,7 +159,7 @@ async function start() {
     }
   });
 
-  // What the page is given where it is part of another.
+  // Reads the data that an embedding report passes to the page.
   async function fromReport() {
     const given = find("start");
     if (!given) return false;
@@ -176,7 +178,7 @@ async function start() {
     return true;
   }
   window.addEventListener("hashchange", () => fromAddress().catch(refuse));
-  // What came with the page is there before an engine is.
+  // Answers embedded in the page are available before an engine is.
   const opening = async () => {
     try {
       if ((await fromReport()) || (await fromAddress())) return;
@@ -191,7 +193,7 @@ async function start() {
 
   let width = window.innerWidth, waiting = 0;
   window.addEventListener("resize", () => {
-    // Phones fire this when the address bar hides; only the width matters.
+    // Phones fire this event when the address bar hides; only a change of the width matters.
     if (window.innerWidth === width) return;
     width = window.innerWidth;
     clearTimeout(waiting);

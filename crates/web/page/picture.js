@@ -1,17 +1,18 @@
-// The picture of the stack: standing, or in motion with the run before it as a ghost.
+// The picture of the stack: at rest, or in motion with the previous run as a ghost.
 
-// `box` is where it goes; `players` is the list that keys work on.
+// `box` is the container of the picture; `players` is the list of players that keys operate.
 function makePicture(box, players) {
-  let player = null, moved = null, ghostly = null, turn = 0; // what is shown, and the panes that moved last and before that
+  let player = null, moved = null, ghostly = null, turn = 0; // the player shown, and the panes of the last motion and of the one before
 
-  // `ghost` says that what moved before stays, as dashed lines over what comes; `goesOn` that this is more of what is
-  // in motion.
+  // `ghost` keeps the previous motion as dashed lines over the new one; `goesOn` says that this
+  // continues the current motion.
   async function put({ markup, data }, { still = false, ghost = false, goesOn = false }) {
     const own = (turn += 1);
-    // A worker has read it, or it came with the page.
+    // A worker has parsed the data, or they came with the page.
     const { players: [read], dashes } = typeof data === "string" ? JSON.parse(data) : data;
     const raw = { ...read };
-    // What comes is made in pieces, a frame apart, under what is shown, which goes on meanwhile.
+    // The new picture is built in pieces, one per frame, below the current one, which continues
+    // meanwhile.
     const shot = make("div", { class: still ? "still" : "" });
     const isLate = async () => {
       if (player) await frame();
@@ -19,12 +20,12 @@ function makePicture(box, players) {
       return own !== turn;
     };
     if (await isLate()) return;
-    // The opening of a run is no ghost of it.
+    // The opening of a run is not a ghost of the same run.
     const last = goesOn ? ghostly : moved;
     const before = ghost && !still && last && last.length === raw.panes.length ? last : null;
     if (before) {
       raw.overlay = "as before";
-      // A ghost has none of its own.
+      // A ghost has no ghost of its own.
       for (const { data: pane } of before) pane.overlay = null;
     }
     shot.innerHTML = markup;
@@ -34,7 +35,7 @@ function makePicture(box, players) {
     figure.querySelector("figcaption b").remove();
     if (await isLate()) return;
     const next = makePlayer(raw, figure, dashes, before);
-    // Where motion is unwanted it stays on the still that it opens with.
+    // For readers who prefer reduced motion, the picture stays on its opening still.
     const moves = !still && ((goesOn && player) || !window.matchMedia("(prefers-reduced-motion: reduce)").matches);
     if (moves) next.take();
     if (before) {
@@ -57,12 +58,12 @@ function makePicture(box, players) {
     box.replaceChildren(shot);
     player = next;
     players.splice(0, players.length, player);
-    // What is shown as a ghost later are numbers alone, since panes hold on to their player.
+    // Ghosts keep only numbers, because panes hold on to their player.
     if (!still) [ghostly, moved] = [last, player.panes.map((pane) => ({ data: pane.data }))];
     if (moves && (time === null || playing || ended)) player.play();
   }
 
-  // After the next frame; a page that is not in sight has none.
+  // Waits for the next frame; a page out of sight has none.
   const frame = () => new Promise((next) => {
     requestAnimationFrame(() => setTimeout(next));
     setTimeout(next, 200);

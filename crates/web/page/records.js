@@ -1,8 +1,9 @@
-// Records of one's own: files that are dropped or chosen become motions, and the page says which became what.
+// Records of the reader: files that are dropped or chosen become motions, and the page reports the
+// use of each file.
 
 const UNITS = [["g", "1 g"], ["m/s2", "1 m/s^2"], ["cm/s2", "1 cm/s^2"], ["mm/s2", "1 mm/s^2"]];
 
-// All files of what was dropped, also those in folders.
+// Returns all dropped files, including those in folders.
 async function filesIn(transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry && item.webkitGetAsEntry());
   if (!entries.some((entry) => entry && entry.isDirectory)) return [...transfer.files];
@@ -20,11 +21,12 @@ async function filesIn(transfer) {
   return found;
 }
 
-// `shake` takes a motion into the cellar at hand and gives what the engine says then; none where it refuses.
+// `shake` uses a motion in the current cellar and returns the resolved scenario; none if it is
+// refused.
 function makeRecords(find, { desk, shake, refuse }) {
-  let motions = [], unread = null; // what was given; the files that wait for their unit or step, and what is said of them
+  let motions = [], unread = null; // the given motions; the files that lack a unit or a step, with what the reader stated about them
 
-  // The motions of files, with what cannot be read.
+  // Reads the motions of files, and lists the files that cannot be read.
   async function read(files, reading) {
     const { head, rest } = partsOf(await desk.ask({ ask: "records", reading }, { records: files, urgency: 2, group: "look" }));
     let at = 0;
@@ -48,7 +50,7 @@ function makeRecords(find, { desk, shake, refuse }) {
         if (!look) return;
         motions = found;
         lines.unshift(...told(found[0], look));
-      } else lines.push("The stack is shaken as before. A record is a file of accelerations, as agencies publish them.");
+      } else lines.push("The stack is shaken as before. A record is a file of accelerations, as published by agencies.");
       say(lines);
       ask(files, refused, reading);
       offer();
@@ -59,17 +61,17 @@ function makeRecords(find, { desk, shake, refuse }) {
 
   const say = (lines) => find("given").replaceChildren(...lines.map((line) => make("li", {}, line)));
 
-  // Which file became what, where one of the motions shakes the stack.
+  // Describes the use of each file, if one of the motions shakes the stack.
   function told(motion, look) {
     const lines = motions.length > 1
-      ? [...motions.map(({ path, of }) => `${path} is an earthquake of its own${of ? `, from ${of.join(", ")}` : ""}`), `${motion.path} shakes the stack; the chart of heights takes all ${motions.length}.`]
+      ? [...motions.map(({ path, of }) => `${path} is a separate earthquake${of ? `, from ${of.join(", ")}` : ""}`), `${motion.path} shakes the stack; the chart of heights takes all ${motions.length}.`]
       : motion.channels;
     const plane = ({ view, motion }) => `${view === "longitudinal" ? "along the barrels" : "across the barrels"} by ${motion.name}`;
-    const up = look.checked[0].motion.vertical ? "and up and down" : "and not up and down";
+    const up = look.checked[0].motion.vertical ? "and up and down" : "but not up and down";
     return [...lines, `The stack is shaken ${look.checked.map(plane).join(", ")}, ${up}.`];
   }
 
-  // What a file does not say of itself the reader may.
+  // Asks the reader for information that a file lacks.
   function ask(files, refused, reading) {
     const missing = refused.map(({ missing }) => missing).filter(Boolean);
     find("unsaid").hidden = missing.length === 0;
@@ -79,7 +81,7 @@ function makeRecords(find, { desk, shake, refuse }) {
     find("unsaid-step").closest("label").hidden = !missing.includes("step");
   }
 
-  // Of several motions one shakes the stack.
+  // Lets the reader choose among several motions.
   function offer() {
     const box = find("which-motion");
     box.closest("label").hidden = motions.length < 2;
@@ -99,12 +101,12 @@ function makeRecords(find, { desk, shake, refuse }) {
   const given = async (files) => take(await Promise.all(files.map(async (file) => ({ path: file.name, bytes: new Uint8Array(await file.arrayBuffer()) }))));
   return {
     given: (files) => given(files).catch(refuse),
-    // All that were given, where the one at hand is of them.
+    // All given motions, if the current one is among them.
     all: (cellar) => (motions.includes(cellar.records[0]) ? motions : cellar.records.slice(0, 1)),
   };
 }
 
-// A cellar that is shaken by a motion, as it was recorded.
+// Returns a cellar that is shaken by a motion as recorded.
 function shakenBy(cellar, motion) {
   const shaken = copied(cellar);
   shaken.records = [motion];

@@ -1,20 +1,20 @@
-// Runs: the stack in motion, what its variants say as they come, and those that were tried before.
+// Runs: the stack in motion, the results of its variants as they arrive, and the earlier runs.
 
-const SLOW = 60; // a run that takes longer (s) is announced
-const KEPT = 4; // runs whose pictures and results are kept
-const LISTED = 24; // runs that are listed
+const SLOW = 60; // duration (s) above which a run is announced
+const KEPT = 4; // number of runs whose pictures and results are kept
+const LISTED = 24; // number of runs in the list
 
-// `state` is { cellar, look }, where `look` is what the engine says of the cellar; `apply` makes a cellar the one at hand;
-// `devices` shows those of a run.
+// `state` is { cellar, look }, where `look` is the resolved cellar; `apply` makes a cellar the
+// current one; `devices` shows the devices of a run.
 function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, controls, devices }) {
   const past = [];
   let now = null; // the run that is shown
   let cost = 4e-7; // time (s) of a step of a body, as measured
-  let marks = {}; // when things were there (ms), for those who measure
+  let marks = {}; // times (ms) of milestones, for measurements
 
   const lasts = (look, variants) => (cost * look.work * variants) / crew.most;
 
-  // Says so before something takes long.
+  // Announces the expected duration of a long run.
   function forecast(look) {
     const due = lasts(look, look.variants + 1), slow = due > SLOW;
     find("costs").hidden = !slow;
@@ -40,9 +40,9 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   function tell(run) {
     const before = past[past.indexOf(run) - 1];
     const cards = [];
-    // The picture keeps its place when words come.
+    // The picture keeps its place when text appears.
     const { variants } = run.look, done = Math.max(run.tally ? run.tally.count() - 1 : 0, 0);
-    const waits = run.stopped ? `Stopped after ${done} of ${variants} variants: that makes no verdict.` : `Shaking it, and ${variants} like it.`;
+    const waits = run.stopped ? `Stopped after ${done} of ${variants} variants, so there is no verdict.` : `Shaking the stack and ${variants} variants of it.`;
     if (!run.verdict && variants > 0) cards.push(make("div", { class: "card waits" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, waits)));
     const label = run.done ? run.label : `${run.label}, variants so far`;
     if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${label}` : label, false));
@@ -57,7 +57,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     list();
   }
 
-  // The runs of an ensemble that are worth a look.
+  // Offers the notable runs of an ensemble.
   function offerWhich(run) {
     const box = find("which");
     box.hidden = !(run.done && run.verdict && run.verdict.planes.length > 0);
@@ -74,7 +74,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     }));
   }
 
-  // One thing to change, for whoever looks at a stack.
+  // Offers single changes to the reader.
   function offerChanges(run) {
     const values = valuesOf(run.look), levels = Number(values["stack.levels"] || 0);
     find("next").hidden = !run.shown || levels === 0;
@@ -106,7 +106,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     }).reverse());
   }
 
-  // Shows an earlier run again, with its scenario at hand.
+  // Shows an earlier run again and makes its scenario the current one.
   async function back(run) {
     stop();
     now = run;
@@ -116,7 +116,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     else await show(run, run.shown ? run.shown.variant : 0).catch(refuse);
   }
 
-  // Makes a variant move: at first as far as it takes to see it under way, then all of it.
+  // Shows a variant in motion: first its opening, then the whole run.
   async function show(run, variant) {
     const { cellar, look } = run, first = !run.shown;
     const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
@@ -144,23 +144,24 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     cost = answer.took / 1000 / Math.max(look.work, 1);
     run.shown = await put(answer, opened ? { ghost: past.length > 1, goesOn: true } : { ghost: first && past.length > 1 });
     if (run === now && !opened) marks.moved = performance.now();
-    // The oldest are kept by what is said of them alone.
+    // The oldest runs keep only their texts.
     const full = past.filter((one) => one !== run && one !== now && one.shown && one.shown.stage);
     for (const one of full.slice(0, Math.max(full.length + 1 - KEPT, 0))) one.shown.stage = one.tally = null;
   }
 
-  // What is known of the variants of a cellar: that of the run which is shown, where it is of it.
+  // Returns the known results of the variants of a cellar: those of the shown run, if it is of that
+  // cellar.
   function tallyOf(cellar) {
     const same = now && now.tally && keyOf(now.cellar) === keyOf(cellar) && now.cellar.records.every((record, at) => record === cellar.records[at]);
     return same ? now.tally : makeTally(desk, cellar, true);
   }
 
-  // Starts a run of the cellar at hand, and gives it.
+  // Starts a run of the current cellar and returns it.
   function run() {
     stop();
     const { look } = state(), cellar = copied(state().cellar);
     const mine = { cellar, look, label: labelOf(look), verdict: null, shown: null, done: false, tally: makeTally(desk, cellar, true) };
-    // What was stopped before anything was seen of it is forgotten.
+    // A run that was stopped before it was shown is forgotten.
     const at = past.indexOf(now), seen = Boolean(now && now.shown);
     past.splice(seen ? at + 1 : Math.max(at, 0), now && !seen ? 1 : 0, mine);
     if (past.length > LISTED) past.splice(past[0] === now ? 1 : 0, 1);
@@ -172,13 +173,13 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     find("bar").value = 0;
     find("sofar").textContent = "shaking it";
     tell(mine);
-    // On a phone the stack stands below the choices.
+    // On a phone the stack is below the choices.
     if (find("result").getBoundingClientRect().top > 0.5 * window.innerHeight) find("result").scrollIntoView({ block: "start" });
     follow(mine);
     return mine;
   }
 
-  // Shows a run and what its variants say, until all are in.
+  // Shows a run and the results of its variants, until all are finished.
   async function follow(mine) {
     const { cellar, look } = mine;
     const heard = (verdict, count, last) => {
@@ -198,7 +199,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
       await Promise.all([showing, varying]);
       mine.done = true;
       const typical = mine.verdict && mine.verdict.planes[0] ? mine.verdict.planes[0].spread.typical : 0;
-      // The stack as it is stated may do what hardly any other does.
+      // The nominal case may behave unlike nearly all variants.
       const collapses = mine.shown.outcomes.some(({ kind }) => kind === "collapse");
       if (mine.verdict && collapses !== (mine.verdict.tone === "falls") && typical !== 0) await show(mine, typical);
       if (mine === now) {

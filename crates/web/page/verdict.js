@@ -1,4 +1,5 @@
-// What the variants say: a card with the verdict in words and a share with its interval for each plane.
+// The results of the variants: a card with the verdict in words and, for each plane, the share with
+// its interval.
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -8,7 +9,7 @@ function drawn(tag, attributes) {
   return element;
 }
 
-// The share that falls, as a dot on a line from none to all, amid its interval.
+// Returns the share that falls, as a dot on a line from none to all, within its interval.
 function shareOf({ words, spread }, several) {
   const { variants, collapsed, share, interval: [low, high] } = spread;
   const line = drawn("svg", { viewBox: "0 0 100 14", preserveAspectRatio: "none", "aria-hidden": "true" });
@@ -22,7 +23,7 @@ function shareOf({ words, spread }, several) {
   return make("div", { class: "share" }, make("span", {}, several ? words : "share that falls"), line, make("span", { class: "soft" }, said));
 }
 
-// `when` says which run it is of.
+// `when` identifies the run.
 function cardOf(verdict, when, before) {
   const card = make("div", { class: `card ${verdict.tone}${before ? " before" : ""}` });
   card.innerHTML = verdict.badge;
@@ -31,7 +32,7 @@ function cardOf(verdict, when, before) {
   return card;
 }
 
-// The share of the worse plane in a few words, for a list.
+// Returns the share of the worse plane in a few words, for a list.
 function briefly(verdict) {
   const [worst] = [...verdict.planes].sort((a, b) => (b.spread.share ?? -1) - (a.spread.share ?? -1));
   return worst ? worst.fate : "has no verdict";

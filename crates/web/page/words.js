@@ -1,7 +1,8 @@
-// What a strength of shaking feels like, and what things of the catalog are called.
+// Descriptions of strengths of shaking, and names of entries of the catalog.
 
-// Modified Mercalli intensity of a peak ground velocity (cm/s): Worden, Gerstenberger, Rhoades and Wald (2012),
-// Bulletin of the Seismological Society of America 102, 204–221, two lines over log PGV for California.
+// Modified Mercalli intensity of a peak ground velocity (cm/s): Worden, Gerstenberger, Rhoades and
+// Wald (2012), Bulletin of the Seismological Society of America 102, 204–221; bilinear in log PGV,
+// for California.
 function intensityOf(velocity) {
   const log = Math.log10(Math.max(velocity, 0.1));
   return Math.min(Math.max(log <= 0.53 ? 3.78 + 1.47 * log : 2.89 + 3.16 * log, 1), 10);
@@ -9,7 +10,8 @@ function intensityOf(velocity) {
 
 const ROMAN = ["", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X"];
 
-// What people feel, by whole intensities from III to X: the scale of Wood and Neumann (1931) in plain words.
+// Perceived shaking by whole intensities from III to X: the scale of Wood and Neumann (1931) in
+// plain words.
 const FELT = {
   3: ["weak", "a lorry seems to pass; hanging lamps swing"],
   4: ["light", "glasses rattle, walls creak, some sleepers wake"],
@@ -21,7 +23,8 @@ const FELT = {
   10: ["extreme", "few buildings stay whole"],
 };
 
-// Peak velocity (cm/s) of the stronger horizontal of records, as `barrelstack motion info` reads them.
+// Peak velocity (cm/s) of the stronger horizontal component of records, as `barrelstack motion
+// info` reads them.
 const LIKE = [
   [3, "South Napa 2014 at Concord"],
   [23, "Northridge 1994 at Arleta"],
@@ -33,7 +36,7 @@ const LIKE = [
   [148, "Northridge 1994 at Rinaldi"],
 ];
 
-// A strength in words: { name, felt, roman, like }.
+// Returns a description of a strength: { name, felt, roman, like }.
 function feels(velocity) {
   const level = Math.max(3, Math.round(intensityOf(velocity)));
   const [name, felt] = FELT[level];
@@ -57,7 +60,7 @@ const percentOf = (share) => {
   return `${percent.toFixed(0)} %`;
 };
 
-// A time that something takes (s), in words.
+// Returns a duration (s) in words.
 function lasting(seconds) {
   if (seconds < 1.5) return "a second";
   if (seconds < 90) return `${Math.round(seconds)} seconds`;

@@ -1,10 +1,11 @@
-// An engine in a worker: unpacks and compiles the module, or takes it; then answers requests, one after the other, and
-// says how far it is. It finds `unpacked` and `unpack` of the page before this text.
+// An engine in a worker: unpacks and compiles the module, or receives it, then answers requests one
+// after the other and reports its progress. The functions `unpacked` and `unpack` of the page
+// precede this script.
 
 let engine = null, last = 0;
 const bytes = (address, length) => new Uint8Array(engine.memory.buffer, address, length);
 
-// How far the work is; not more often than a screen is drawn anew.
+// Reports progress, at most as often as a screen is redrawn.
 function progress(done, of) {
   const now = performance.now();
   if (now - last > 60) {
@@ -14,7 +15,8 @@ function progress(done, of) {
   return 0;
 }
 
-// A picture whose numbers are unpacked here, where nobody waits for a frame; their buffers go to the page.
+// Decodes the numbers of a picture here, so that the page is not blocked; their buffers are
+// transferred to the page.
 function drawn(value, buffers) {
   if (value === null || typeof value !== "object") return value;
   if (Array.isArray(value)) return typeof value[0] === "object" ? value.map((one) => drawn(one, buffers)) : value;

@@ -1,14 +1,14 @@
-//! Results of variants in transfer between engines: what a verdict needs, bit-exact.
+//! Results of variants as transferred between engines: the data that a verdict needs, bit-exact.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::{CollapseMode, Outcome};
 use serde::{Deserialize, Serialize};
 
-/// The result of a variant, as far as a verdict on all variants needs it.
+/// The result of a variant, reduced to the data that a verdict on all variants needs.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// Outcome.
+    /// Outcome of the variant.
     outcome: Ended,
     /// Time (s) at which the first barrel has fallen.
     first_fall: Option<f64>,
@@ -16,9 +16,10 @@ pub struct Case {
     barrels: usize,
     /// Time (s) at which each barrel has fallen, by name.
     falls: Vec<(String, Option<f64>)>,
-    /// Largest displacement of the top relative to the ground, over the height of the stack.
+    /// Largest displacement of the top relative to the ground, as a share of the height of the
+    /// stack.
     drift: Option<f64>,
-    /// Largest load on a stave over its capacity, if stated.
+    /// Largest load on a stave as a share of its capacity, if a capacity is stated.
     stave_utilization: Option<f64>,
     /// The first warning.
     warning: Option<String>,
@@ -66,7 +67,8 @@ impl Case {
         }
     }
 
-    /// Converts back to a result with the data that a verdict needs; the trail is transferred separately.
+    /// Converts the case back to a result with the data that a verdict needs; the trail is
+    /// transferred separately.
     pub(crate) fn result(self) -> Result<CaseResult, String> {
         let outcome = match self.outcome {
             Ended::Stable => Ok(Outcome::Stable),

@@ -1,4 +1,4 @@
-//! Devices for a stack, one at a time.
+//! Devices on a stack, and devices that could be added.
 
 use barrelstack::Scenario;
 use barrelstack::device::DEVICES;
@@ -7,12 +7,12 @@ use barrelstack::scenario::MotionSource;
 use barrelstack::variants::planes;
 use serde::Serialize;
 
-/// The devices on a stack, and those that it could have.
+/// The devices on a stack, and those that could be added.
 #[derive(Serialize)]
 pub(crate) struct Devices {
-    /// Names of the devices present, and their tables in `[stack]`.
+    /// Names of the devices on the stack, with their tables in `[stack]`.
     present: Vec<Known>,
-    /// Applicable settings of devices that the stack does not have.
+    /// Applicable settings of the devices that the stack does not have.
     candidates: Vec<Candidate>,
 }
 
@@ -22,18 +22,19 @@ struct Known {
     table: String,
 }
 
-/// A setting of a device.
+/// A setting of a device that could be added.
 #[derive(Serialize)]
 struct Candidate {
     device: &'static str,
-    /// Description.
+    /// Description of the setting.
     name: String,
-    /// Changes of the scenario, such as `stack.lid.levels=1`.
+    /// Changes to the scenario, such as `stack.lid.levels=1`.
     changes: Vec<String>,
 }
 
 impl Devices {
-    /// Lists the devices of a scenario; candidate settings are checked at rest, without its motion.
+    /// Lists the devices of a scenario; each candidate setting is checked at rest, without the
+    /// motion.
     pub(crate) fn of(scenario: &Scenario) -> Self {
         let mut still = scenario.clone();
         still.motion.source = MotionSource::None;
@@ -63,7 +64,7 @@ impl Devices {
     }
 }
 
-/// Returns the table that a change of the stack refers to.
+/// Returns the table to which a change of the stack refers.
 fn table(change: &str) -> Option<String> {
     Some(change.strip_prefix("stack.")?.split_once('.')?.0.to_owned())
 }

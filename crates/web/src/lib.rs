@@ -1,4 +1,4 @@
-//! The engine of a page: a request in, a document out.
+//! The engine of a page: handles a request and returns a document.
 //!
 //! A request is four bytes (the length of the following object, little-endian), a JSON object, and the bytes of its
 //! records, one after the other:
@@ -8,8 +8,8 @@
 //!   "records": [["site.at2", 81920]] }
 //! ```
 //!
-//! The answer equals the output of the command for the same scenario, byte for byte except for times of computation:
-//! nothing is opened, requested from the system, or sent.
+//! The answer equals the output of the command for the same scenario, byte for byte except for
+//! computation times. Nothing is opened, requested from the system, or sent.
 //! The interface to a page is [four functions and one import](https://webassembly.github.io/spec/core/), written by
 //! hand, so that no glue code is generated:
 //!
@@ -58,31 +58,35 @@ use verdict::Verdict;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequestKind {
-    /// The bundled scenarios, except those in space: a JSON list of pairs of name and text.
+    /// The bundled scenarios, except those in space, as a JSON list of pairs of name and text.
     #[default]
     Scenarios,
     /// The barrels and racks of the catalog, as JSON.
     Catalog,
     /// The assembled stack and all settings of the scenario before a run, as JSON.
     Look,
-    /// The devices on the stack, and the applicable settings of others with their changes of the scenario, as JSON.
+    /// The devices on the stack, and the applicable settings of other devices with their changes to
+    /// the scenario, as JSON.
     Devices,
-    /// The given record files, grouped into the components of one record, and files without a motion, as JSON; then the
-    /// bytes of motions from several files. Needs no scenario.
+    /// The given record files, grouped into motions, and the files that contain no motion, as JSON;
+    /// then the bytes of motions combined from several files. Needs no scenario.
     Records,
-    /// A variant in motion, by the first of the numbers, as JSON: 0 is the stack as stated.
+    /// A variant in motion, as JSON; the first of the numbers selects the variant, and 0 is the
+    /// stack as stated.
     Show,
-    /// The results of the numbered variants in each plane, as JSON; then the trails of their barrels, as bytes
-    /// for a report.
+    /// The results of the numbered variants in each plane, as JSON; then the trails of their
+    /// barrels as bytes, for a report.
     Variants,
-    /// The verdict of given results, as JSON: of numbers, the first of which is 0, with their results in each plane.
+    /// The verdict on given results, as JSON: on variants by number, of which the first is 0, with
+    /// their results in each plane.
     Verdict,
     /// The summary of a run and its variants, as JSON.
     Summary,
     /// The report of a run and its variants, as a page.
     Report,
-    /// All files that the command writes for them, including the report: in the form of a request, whose head lists
-    /// their names and lengths. If the results of all variants are given, none is run again.
+    /// All files that the command writes for a run and its variants, including the report, in the
+    /// form of a request whose head lists their names and lengths. If the results of all variants
+    /// are given, none is run again.
     Files,
 }
 
@@ -90,13 +94,13 @@ pub enum RequestKind {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
-    /// Its kind.
+    /// Kind of the request.
     #[serde(rename = "ask")]
     pub kind: RequestKind,
     /// The text of the scenario.
     #[serde(default)]
     pub scenario: String,
-    /// Its name in errors.
+    /// Name of the scenario, for error messages.
     #[serde(default)]
     pub name: String,
     /// Overrides, such as `stack.levels=5`.
@@ -108,13 +112,13 @@ pub struct Request {
     /// Numbers of variants.
     #[serde(default)]
     pub numbers: Vec<u32>,
-    /// Their results in each plane.
+    /// Results of these variants, in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
     /// Length in bytes of the trails of the barrels, which follow the records.
     #[serde(default)]
     pub trails: usize,
-    /// Information that record files lack.
+    /// Information that the record files lack.
     #[serde(default)]
     pub reading: Reading,
 }
@@ -125,21 +129,23 @@ impl Request {
         Self { kind, scenario: scenario.to_owned(), ..Self::default() }
     }
 
-    /// Encodes the request, followed by its records in their order.
+    /// Encodes the request, followed by its records in order.
     pub fn to_bytes(&self, records: &[&[u8]]) -> Vec<u8> {
-        // Serialization fails only for maps with keys that are not text, and there are none.
+        // Serialization fails only for maps with keys other than text, and there are none.
         enveloped(&serde_json::to_vec(self).unwrap_or_default(), records)
     }
 }
 
-/// Encodes a head after its length, then the rest.
+/// Encodes the length of a head, the head, and the rest.
 fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
     let length = u32::try_from(head.len()).unwrap_or(u32::MAX);
     [&length.to_le_bytes(), head, &rest.concat()].concat()
 }
 
-/// Handles a request; `observer(done, of)` reports progress and may stop the work, whose results up to then are
-/// returned.
+/// Handles a request and returns the answer.
+///
+/// `observer(done, of)` receives the progress and may stop the work; the results obtained so far
+/// are then returned.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -153,7 +159,7 @@ fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
 /// ```
 ///
 /// # Errors
-/// A message if the request cannot be read, the scenario is wrong, or it cannot be run.
+/// A message if the request cannot be read, the scenario is invalid, or it cannot be run.
 pub fn answered(
     request: &[u8],
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
@@ -161,7 +167,7 @@ pub fn answered(
     let Opened { request, records, trails } = read(request)?;
     if request.kind == RequestKind::Scenarios {
         let text = |name| Some((name, builtin::get(name)?));
-        // The page supports only plane scenarios.
+        // The page supports only planar scenarios.
         let in_a_plane =
             |name: &&str| Scenario::builtin(name, &[]).is_ok_and(|scenario| !scenario.is_spatial());
         return json(&builtin::names().filter(in_a_plane).filter_map(text).collect::<Vec<_>>());
@@ -224,7 +230,8 @@ pub fn answered(
     }
 }
 
-/// Runs some variants in each plane; returns their results and the trails of their barrels.
+/// Runs some variants in each plane; returns their results, and the trails of their barrels as
+/// bytes.
 fn some(
     planes: &[Plane],
     numbers: &[u32],
@@ -252,7 +259,7 @@ struct Shown<'a> {
     variant: u32,
     /// The result in sentences.
     sentences: Vec<String>,
-    /// The outcome of each plane, the worse first.
+    /// Outcomes of the planes, the governing one first.
     outcomes: Vec<&'a barrelstack::summary::OutcomeSummary>,
     warnings: &'a [String],
     stage: Fragment,
@@ -280,7 +287,7 @@ fn words_of(error: impl Display) -> String {
     error.to_string()
 }
 
-/// Formats an error of a run with the place in the scenario that it concerns.
+/// Formats an error of a run, with the position in the scenario that it concerns.
 fn placed(error: &RunFailure, scenario: &Scenario) -> String {
     match scenario.place_of(&error.fields()) {
         Some(place) => format!("{place}: {error}"),
@@ -291,7 +298,7 @@ fn placed(error: &RunFailure, scenario: &Scenario) -> String {
 /// A decoded request with its attached data.
 struct Opened<'a> {
     request: Request,
-    /// By path.
+    /// Record bytes by path.
     records: BTreeMap<String, &'a [u8]>,
     trails: &'a [u8],
 }

@@ -1,4 +1,4 @@
-//! A scenario before it is run, and the catalog.
+//! A scenario as resolved before a run, and the catalog.
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
@@ -9,7 +9,7 @@ use barrelstack::{RunFailure, report};
 use barrelstack_report::{Fragment, fragment};
 use serde::Serialize;
 
-/// The catalog.
+/// The catalog of barrels and racks.
 #[derive(Serialize)]
 pub(crate) struct Catalog {
     barrels: Vec<Known>,
@@ -34,7 +34,7 @@ impl Catalog {
     }
 }
 
-/// A scenario before it is run.
+/// A scenario as resolved before a run.
 #[derive(Serialize)]
 pub(crate) struct Looked {
     title: String,
@@ -42,21 +42,22 @@ pub(crate) struct Looked {
     variants: u32,
     /// The scenario with every default written out.
     resolved: String,
-    /// All its values.
+    /// All values of the scenario.
     settings: Vec<Stated>,
     /// Results of the check of each plane.
     checked: Vec<Checked>,
     /// Names of the devices on the stack.
     devices: Vec<&'static str>,
-    /// Steps of one variant in all planes times the number of moving bodies, to estimate its duration.
+    /// Number of steps of one variant in all planes, times the number of moving bodies; used to
+    /// estimate the duration.
     work: f64,
-    /// End (s) of a first picture that shows the stack in motion while the whole run is computed; `None` without
-    /// ground motion.
+    /// End (s) of the opening, which shows the stack in motion while the whole run is computed;
+    /// `None` without ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }
 
-/// Adds the absent fields of the tables present.
+/// Adds the fields that the present tables leave out.
 fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'static Section) {
     for field in section.fields {
         let path =
@@ -68,11 +69,11 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
                     absent(list, present, &path, inner);
                 }
             }
-            // The title and other top-level texts do not affect a run.
+            // The title and other texts at the top level do not affect a run.
             None if path.contains('.') && !present.contains(&path) => list.push(Stated {
                 path,
                 value: String::new(),
-                help: format!("{} Holds {}.", field.help, field.kind),
+                help: format!("{} Type: {}.", field.help, field.kind),
                 source: "not given".into(),
             }),
             None => {}
@@ -80,8 +81,8 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
     }
 }
 
-/// Fraction of the peak from which ground motion counts as strong, as in a player, and duration (s) of an opening from
-/// then.
+/// Share of the peak above which ground motion counts as strong, as in a player, and duration (s)
+/// of the opening from then on.
 const STRONG: f64 = 0.1;
 const IN_PROGRESS: f64 = 3.0;
 

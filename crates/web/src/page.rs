@@ -1,5 +1,5 @@
 //! The interface to a page: four functions and one import over linear memory.
-#![expect(unsafe_code, reason = "names that the page knows, and a function that it has")]
+#![expect(unsafe_code, reason = "functions exported to and imported from the page")]
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -31,7 +31,7 @@ pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Handles the request: 0 done, 1 refused.
+/// Handles the request; returns 0 if it was done and 1 if it was refused.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn run() -> u32 {
     let request = REQUEST.with(RefCell::take);

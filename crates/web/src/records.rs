@@ -1,4 +1,4 @@
-//! Record files given together: grouped into motions, and files without a motion.
+//! Record files given together: grouped into motions, and files that contain no motion.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use barrelstack::motion::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Information supplied by the user for files that lack it.
+/// Information supplied by the user that the files lack.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Reading {
@@ -18,41 +18,44 @@ pub struct Reading {
     pub time_step: Option<f64>,
 }
 
-/// The contents of files.
+/// The contents of the given files.
 #[derive(Default, Serialize)]
 pub(crate) struct Files {
-    /// The motions in them; the bytes of combined motions follow in this order.
+    /// The motions in the files; the bytes of combined motions follow in this order.
     motions: Vec<Motion>,
-    /// Files without a motion.
+    /// Files that contain no motion.
     refused: Vec<Refused>,
 }
 
-/// A motion.
+/// A motion from one file or several.
 #[derive(Serialize)]
 pub(crate) struct Motion {
-    /// Name of a file for it.
+    /// File name for the motion.
     name: String,
-    /// Its source files.
+    /// Source files of the motion.
     files: Vec<String>,
     /// Description of each channel.
     channels: Vec<String>,
-    /// Number of bytes that follow: one file for all channels; 0 if it is a single file as given.
+    /// Number of bytes that follow, for one file with all channels; 0 if the motion is a single
+    /// file as given.
     length: usize,
 }
 
-/// A file that holds no motion.
+/// A file that contains no motion.
 #[derive(Serialize)]
 struct Refused {
     file: String,
     why: String,
-    /// Information that would make it readable: "unit", "step", "unit or sensitivity" or "sensitivity".
+    /// Missing information that would make the file readable: "unit", "step", "unit or sensitivity"
+    /// or "sensitivity".
     missing: Option<&'static str>,
 }
 
-/// Largest number of channels of one record.
+/// Maximum number of channels of one record.
 const COMPONENTS: usize = 3;
 
-/// Reads and groups files; returns the groups, and the bytes of motions combined from several files.
+/// Reads and groups files; returns the groups, and the bytes of motions combined from several
+/// files.
 pub(crate) fn of(
     files: &BTreeMap<String, &[u8]>,
     reading: &Reading,
@@ -81,14 +84,17 @@ pub(crate) fn of(
     Ok((found, gathered))
 }
 
-/// Returns the instruments of a station file, if the file contains nothing else.
+/// Returns the instruments in a station file, if the file contains nothing else.
 fn station(bytes: &[u8]) -> Option<Vec<Instrument>> {
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.trim_start().starts_with('<'))?;
     station_xml(text).ok().filter(|found| !found.is_empty())
 }
 
-/// Groups records: into one if they are compatible and have together no more than the components of one record; else
-/// by file name, as in a folder; files that do not fit together stay alone.
+/// Groups records into motions.
+///
+/// Records form one motion if they are compatible and have together at most as many components as
+/// one record. Otherwise they are grouped by file name, as in a folder, and files that do not fit
+/// together stay separate.
 fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
     let whole = |records: &[Record]| {
         records.iter().map(|record| record.channels.len()).sum::<usize>() <= COMPONENTS
@@ -112,8 +118,8 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 }
 
 impl Motion {
-    /// Combines the files of one record; with `described`, data of station files are included, so that even one file is
-    /// rewritten.
+    /// Combines the files of one record. If `described`, the data of station files are included, so
+    /// that even a single file is rewritten.
     fn of(records: &[Record], described: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {
@@ -145,7 +151,7 @@ fn name_of(files: &[String]) -> String {
     format!("{}-set.txt", if files.len() == 1 || stem.len() < 3 { whole } else { stem })
 }
 
-/// Describes a channel in words.
+/// Returns the role of a channel in words.
 fn role(channel: &Channel) -> String {
     let direction = match channel.direction.azimuth {
         _ if channel.is_vertical() => "is up and down".to_owned(),

@@ -1,17 +1,18 @@
-//! Trails of barrels in variants, in transfer between engines for a report.
+//! Trails of the barrels of variants, as transferred between engines for a report.
 
 use std::collections::BTreeMap;
 
 use barrelstack::ensemble::Trail;
 
-/// Trails by the index of the plane and the number of the variant.
+/// Trails by index of the plane and number of the variant.
 pub(crate) type Trails = BTreeMap<(u32, u32), Trail>;
 
-/// Encodes trails: numbers and lengths in four bytes, positions in single precision, little-endian.
+/// Encodes trails: numbers and lengths in four bytes, positions in single precision, all
+/// little-endian.
 pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trail)>) -> Vec<u8> {
     let mut out = Vec::new();
     let number = |number: usize, out: &mut Vec<u8>| {
-        // Exact: no stack has so many bodies.
+        // The conversion is exact, because no stack has that many bodies.
         out.extend(u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes());
     };
     for ((plane, variant), trail) in trails {
@@ -88,7 +89,7 @@ mod tests {
         assert_eq!(read(&bytes).unwrap(), all);
         let ends: Vec<usize> =
             (0..bytes.len()).filter(|end| read(&bytes[..*end]).is_some()).collect();
-        // After zero, one and two trails.
+        // A prefix is valid after zero, one and two trails.
         assert_eq!(ends.len(), 3);
     }
 }

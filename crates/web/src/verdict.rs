@@ -1,4 +1,4 @@
-//! The verdict on the results of several engines.
+//! The verdict on results that several engines computed.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::scenario::View;
@@ -8,12 +8,12 @@ use serde::Serialize;
 
 use crate::{Case, Request, trails};
 
-/// The verdict on results.
+/// The verdict on the results of variants.
 #[derive(Serialize)]
 pub(crate) struct Verdict {
-    /// In one sentence.
+    /// Verdict in one sentence.
     headline: String,
-    /// Markup of its sign and word, and the class of its color.
+    /// Markup of the sign and the word, and the class of the color.
     badge: String,
     tone: &'static str,
     /// Verdict in each plane.
@@ -26,7 +26,7 @@ struct Judged {
     view: &'static str,
     /// Name of the plane, such as "across the barrels".
     words: &'static str,
-    /// Summary, such as "falls in 97 % of variants".
+    /// Result in this plane, such as "falls in 97 % of variants".
     fate: String,
     spread: Spread,
 }
@@ -53,7 +53,7 @@ impl Verdict {
     }
 }
 
-/// Returns the results in a request, the stack as stated first.
+/// Returns the results in a request; the first is the nominal case.
 fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, String> {
     let Request { numbers, cases, .. } = request;
     let whole = cases.iter().all(|plane| plane.len() == numbers.len());
@@ -76,7 +76,7 @@ pub(crate) fn results(
     let mut trails = trails::read(trails).ok_or("the request ends within its trails")?;
     if request.numbers != all {
         return Err(format!(
-            "a report needs the results of all {} variants, and has those of {}",
+            "a report needs the results of all {} variants, but has those of {}",
             all.len().saturating_sub(1),
             request.numbers.len().saturating_sub(1)
         ));

@@ -1,11 +1,11 @@
-//! Names of the runs of a comparison, made from their differences.
+//! Names of compared runs, derived from their differences.
 
 use super::{Difference, differences};
 use crate::report::shown;
 use crate::scenario::Scenario;
 use crate::scenario::title::{counted, shakes};
 
-/// Maximum number of differences in a name; runs with more keep the name of their file.
+/// Maximum number of differences in a name; with more, a run keeps its given name.
 const MOST: usize = 2;
 
 /// Kinds of differences that a name can state.
@@ -18,12 +18,14 @@ enum Topic {
     Other,
 }
 
-/// Names every run by its differences, in words: "five levels", "with straps"; keeps the given names where runs differ
-/// in more than a name can state.
+/// Names every run by its differences, such as "five levels" or "with straps".
+///
+/// If the runs differ in more than a name can state, the given names are kept.
 pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
     let differing = differences(runs.iter().map(|(_, scenario)| scenario));
     let mut topics: Vec<(Topic, &Difference)> = Vec::new();
-    // A static coefficient that is not stated equals the kinetic one.
+    // A static coefficient that the scenario omits equals the kinetic one, so it is not a
+    // difference of its own.
     let follows = |one: &Difference| {
         one.path.strip_suffix("static_coefficient").is_some_and(|of| {
             let led = |other: &Difference| other.path == format!("{of}coefficient");
@@ -74,7 +76,7 @@ fn topic(path: &str) -> Topic {
     }
 }
 
-/// Describes straps, in the properties that differ from those of other runs.
+/// Describes the straps by the properties that differ from those of the other runs.
 fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {
@@ -91,9 +93,9 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     said.join(" ")
 }
 
-/// Describes an input: "rack-ground friction 0.1".
+/// Describes an input and its value, such as "rack-ground friction 0.1".
 fn other(one: &Difference, at: usize) -> String {
-    // Parts that all paths of a kind share carry no information.
+    // These parts occur in all paths of a kind, so they carry no information.
     let empty = ["interface", "coefficient", "stack", "run"];
     let parts: Vec<&str> = one.path.split('.').filter(|part| !empty.contains(part)).collect();
     let name = parts.join(" ").replace('_', " ");

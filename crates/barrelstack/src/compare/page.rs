@@ -1,4 +1,4 @@
-//! The page of a comparison: verdict, players on one clock, tables, superimposed histories.
+//! Page of a comparison: verdict, synchronized players, tables and superimposed histories.
 
 use barrelstack_report::{
     Axis, Block, Document, Figure, History, Mark, Pane, Players, Plot, Series, SeriesStyle,
@@ -12,7 +12,7 @@ use crate::report;
 use crate::scenario::{View, title};
 use crate::variants::{Spread, words};
 
-/// The comparison as a document, free of any output format.
+/// Builds the comparison as a document that is independent of any output format.
 pub fn document(sides: &[Side]) -> Document {
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
     let mut blocks = vec![Block::Players(players(sides))];
@@ -22,8 +22,8 @@ pub fn document(sides: &[Side]) -> Document {
             blocks.extend(content);
         }
     };
-    section("What is different", vec![Block::Table(tables::inputs(sides, &differing))]);
-    section("What came of it", vec![Block::Table(tables::outcomes(sides))]);
+    section("Differences", vec![Block::Table(tables::inputs(sides, &differing))]);
+    section("Outcomes", vec![Block::Table(tables::outcomes(sides))]);
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));
     let common = vec![Block::Table(tables::common(sides, &differing))];
@@ -52,8 +52,8 @@ fn fate(side: &Side) -> String {
         Outcome::Stable => "stands".to_owned(),
         Outcome::Collapse { time, .. } => format!("gives way after {time:.1} s"),
         Outcome::NotJudged => "ran to its end".into(),
-        Outcome::Interrupted => "was stopped before its end and says nothing".into(),
-        Outcome::Invalid { .. } => "broke down and says nothing".into(),
+        Outcome::Interrupted => "was stopped before its end and gives no result".into(),
+        Outcome::Invalid { .. } => "failed and gives no result".into(),
     };
     match (&side.other, side.run.assembly.view) {
         (Some(OtherPlane { view, outcome, .. }), Some(shown)) => format!(
@@ -83,7 +83,7 @@ fn falls_where(side: &Side) -> String {
     format!(" ({})", listed(views))
 }
 
-/// Returns the names of the runs, and the title where all have the same.
+/// Returns the names of the runs, followed by their title if all runs share it.
 fn heading(sides: &[Side]) -> String {
     let names = format!("Comparison of {}", listed(sides.iter().map(|side| side.name.clone())));
     let first = sides.first().map(|side| &side.run.stated.title);
@@ -93,13 +93,13 @@ fn heading(sides: &[Side]) -> String {
     }
 }
 
-/// Returns the statistics of the variants in each plane, those of the shown one first.
+/// Returns the statistics of the variants in each plane, the shown plane first.
 fn spreads(side: &Side) -> impl Iterator<Item = &Spread> {
     let other = side.other.iter().filter_map(|other| other.spread.as_ref());
     side.summary.ensemble.iter().chain(other)
 }
 
-/// Returns the statistics of the plane with the larger share of collapse; `None` for a single run.
+/// Returns the statistics of the plane with the larger share of collapses; `None` for a single run.
 fn share(side: &Side) -> Option<&Spread> {
     spreads(side)
         .filter(|spread| spread.share.is_some())
@@ -113,10 +113,11 @@ fn stands(side: &Side) -> bool {
     }
 }
 
-/// Cause of a difference where the first run has straps and the other has none.
+/// Cause stated in the headline if the first run has straps and the second has none.
 const WITHOUT: &str = "Leaving straps off";
 
-/// Describes the effect on the share that collapses, variant by variant; `None` where a run has no variants.
+/// Describes the effect on the number of collapses, in paired variants; `None` if a run has no
+/// variants.
 fn effect(sides: &[Side]) -> Option<String> {
     let (first, others) = sides.split_first()?;
     let pairs: Vec<Vec<Paired>> = others.iter().map(|other| Paired::of(first, other)).collect();
@@ -159,7 +160,7 @@ fn effect(sides: &[Side]) -> Option<String> {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
         let place = place(first, pair);
         let unproven = match (from == to, pair.is_clear()) {
-            (false, false) => ", which so few variants do not prove",
+            (false, false) => ", too few to prove a difference",
             _ => "",
         };
         let verb = match (&*cause, from == to, to < from) {
@@ -198,7 +199,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     let of = |(at, other): (usize, &Side)| {
         let second = letter(at + 1);
         let sentence = move |pair: &Paired| {
-            // Rounded, and a zero without its sign.
+            // Rounded to whole points; the addition turns −0 into 0.
             let points = |share: f64| (100.0 * share).round() + 0.0;
             let ([low, high], word) = match pair.reduction {
                 more if more < 0.0 => ([-pair.interval[1], -pair.interval[0]], "higher"),
@@ -213,15 +214,15 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             let motions = if one_motion([first, other]) {
                 " under the same motions"
             } else {
-                ", by their numbers,"
+                " with the same numbers"
             };
             let lost = match pair.without_verdict {
                 0 => String::new(),
-                some => format!(" Of {some} more variants one of the two has no verdict."),
+                some => format!(" In {some} more variants one of the two runs has no verdict."),
             };
-            let clear = if pair.is_clear() { "" } else { ", so they do not prove a difference" };
+            let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
             format!(
-                "Of the same {} variants{motions}{} {} collapse in both, {} with A only and {} with \
+                "Of the same {} variants{motions}{}, {} collapse in both, {} with A only and {} with \
                  {second} only: {difference} (95 % interval {low} to {high}{clear}).{lost}",
                 pair.pairs(),
                 place(first, pair),
@@ -286,7 +287,8 @@ fn cut_short(sides: &[Side]) -> String {
     if !sides.iter().any(cut) {
         return String::new();
     }
-    " Runs end before their motion does: what stands until then may fall later.".to_owned()
+    " Runs end before their motion does, so a stack that stands at the end may still fall later."
+        .to_owned()
 }
 
 /// Describes the runs whose variants fall under their own weight, before they are shaken.
@@ -300,7 +302,7 @@ fn by_themselves(sides: &[Side]) -> String {
     if all.is_empty() {
         return String::new();
     }
-    capital(&format!("{} fall before being shaken, under their own weight. ", listed(all)))
+    capital(&format!("{} fall under their own weight, before they are shaken. ", listed(all)))
 }
 
 /// Describes the result of a run, with the interval of its share, and the drift of a stack that stands.
@@ -320,7 +322,7 @@ fn describe(at: usize, side: &Side) -> String {
     let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
     match drift {
         Some(drift) => format!(
-            "{result}; where it stands it still sways, its top by up to {} % of its height in the run that is shown.",
+            "{result}; in the run that is shown its top sways by up to {} % of its height.",
             significant(100.0 * drift, 2)
         ),
         None => format!("{result}."),
@@ -351,7 +353,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let view = sides[0].run.assembly.view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
         sentences.push(format!(
-            "What is shown is {}; the other plane is in the table of outcomes.",
+            "The runs are shown {}; the table of outcomes has both planes.",
             view.words()
         ));
     }
@@ -360,14 +362,12 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             let shown = sides[0].summary.variant;
             let one = sides.iter().all(|side| side.summary.variant == shown);
             match shown {
-                0 if one => "Each is shown as it is stated.".to_owned(),
+                0 if one => "Each is shown as stated.".to_owned(),
                 _ if one => format!(
                     "Each is shown in variant {shown}, the most typical of all of them together{}.",
                     if one_motion(sides) { ", under the same component of the motion" } else { "" }
                 ),
-                _ => {
-                    "The run of each that is shown is the most typical of its variants.".to_owned()
-                }
+                _ => "Each is shown in the most typical of its own variants.".to_owned(),
             }
         }
     } else {
@@ -395,7 +395,7 @@ fn players(sides: &[Side]) -> Players {
         id: "players".into(),
         caption: format!(
             "The runs as computed, on one clock and to one scale. A run that has ended holds its last \
-             frame. With “A in the others” the dashed outlines are those of A at the same time.{}",
+             frame. With “A in the others” switched on, dashed outlines show A at the same time.{}",
             panes.iter().map(|pane| report::legend(&pane.scene)).max().unwrap_or_default()
         ),
         panes,
@@ -404,7 +404,8 @@ fn players(sides: &[Side]) -> Players {
     }
 }
 
-/// `true` if one motion shakes all; the length scale of a run stretches its time.
+/// `true` if all runs have the same motion; the length scale must agree too, because it stretches
+/// time.
 fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     let motion = |side: &'a Side| (&side.run.scenario.motion, side.run.scenario.run.similitude);
     let mut motions = sides.into_iter().map(motion);
@@ -412,7 +413,8 @@ fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     motions.all(|motion| Some(motion) == first)
 }
 
-/// Returns the motion under the stages: that of the longest run where all share it, else one of each.
+/// Returns the ground motions drawn below the stages: that of the longest run if all runs share it,
+/// otherwise one per run.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
         let longest = sides.iter().max_by(|a, b| a.run.end_time.total_cmp(&b.run.end_time));
@@ -425,7 +427,7 @@ fn lanes(sides: &[Side]) -> Vec<History> {
     sides.iter().map(|side| &side.run).enumerate().filter_map(own).collect()
 }
 
-/// Plots histories of all runs superimposed, a color and a dash for each run.
+/// Plots histories of all runs superimposed, with a color and a dash pattern per run.
 fn histories(sides: &[Side]) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut add =
@@ -496,7 +498,7 @@ fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
     Some(channel.values.iter().map(|v| 100.0 * v).collect())
 }
 
-/// Plots lines over time, each given with its run.
+/// Plots histories over time, each given with its run.
 fn history(
     sides: &[Side],
     id: &str,
@@ -508,8 +510,9 @@ fn history(
         let at_time = side.run.fates.collapse_time()?;
         Some(Mark { at: at_time, label: format!("{} gives way", letter(at)) })
     });
-    // Falling bodies leave the plot, so that standing ones can be read; forces and accelerations are
-    // plotted in full.
+    // Falling bodies leave the plot, so that the standing ones stay legible; forces and
+    // accelerations are plotted in full.195 Describes the paired differences that support the
+    // headline, with their intervals.
     let ranges: Vec<Option<[f64; 2]>> = lines
         .iter()
         .map(|(side, one)| report::standing_range(&side.run, std::slice::from_ref(one)))
@@ -527,7 +530,7 @@ fn history(
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns the provenance of the results: once where it is the same for all, else for each run.
+/// Returns the provenance of the results: entries that all runs share once, all others per run.
 fn provenance(sides: &[Side]) -> Vec<(String, String)> {
     let all: Vec<_> =
         sides.iter().map(|side| report::provenance(&side.run, &side.summary)).collect();

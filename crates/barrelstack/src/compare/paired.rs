@@ -1,4 +1,4 @@
-//! Paired comparison of two runs: the same variants of both.
+//! Paired comparison of two runs, variant by variant.
 
 use barrelstack_fragility::wilson;
 use barrelstack_report::described;
@@ -8,28 +8,28 @@ use crate::scenario::View;
 use crate::variants::LEVEL;
 
 described! {
-    /// The same variants of the first run and of another one in one plane, under the same motions.
+    /// Paired comparison of two runs in one plane: the same variants under the same motions.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Paired {
-        /// The plane; null for a free scene.
+        /// The plane of the model; null for a free scene.
         pub view: Option<&'static str> ["transverse", "longitudinal"],
-        /// The first run.
+        /// Name of the first run.
         pub first: String,
-        /// The other one.
+        /// Name of the second run.
         pub second: String,
-        /// Variants that collapse in both.
+        /// Number of variants that collapse in both runs.
         pub both: u32,
-        /// Variants that collapse in the first one only.
+        /// Number of variants that collapse in the first run only.
         pub only_first: u32,
-        /// Variants that collapse in the other one only.
+        /// Number of variants that collapse in the second run only.
         pub only_second: u32,
-        /// Variants that collapse in neither.
+        /// Number of variants that collapse in neither run.
         pub neither: u32,
-        /// Further variants, of which one of the two has no verdict.
+        /// Number of further variants that have no verdict in one of the two runs.
         pub without_verdict: u32,
-        /// By how much a smaller share of the other one collapses.
+        /// Share that collapses in the first run, less the share that collapses in the second.
         pub reduction: f64 as "1",
-        /// Its 95 % interval (Newcombe 1998, for pairs).
+        /// 95 % interval of the reduction (Newcombe 1998, for paired samples).
         pub interval: [f64; 2] as "1",
     }
 }
@@ -75,24 +75,27 @@ impl Paired {
         })
     }
 
-    /// Returns the number of variants with a verdict in both.
+    /// Returns the number of variants with a verdict in both runs.
     pub fn pairs(&self) -> u32 {
         self.both + self.only_first + self.only_second + self.neither
     }
 
-    /// Returns the number of them that collapse in the first run and in the other.
+    /// Returns the number of these variants that collapse, in the first run and in the second.
     pub fn collapsed(&self) -> [u32; 2] {
         [self.both + self.only_first, self.both + self.only_second]
     }
 
-    /// `true` if the interval excludes zero.
+    /// `true` if the 95 % interval of the reduction excludes zero.
     pub fn is_clear(&self) -> bool {
         self.interval[0] > 0.0 || self.interval[1] < 0.0
     }
 }
 
-/// Returns the difference of two shares of the same cases and its interval: Wilson's half-intervals, corrected for
-/// their correlation (method 10 of Newcombe 1998, with his correction for continuity); `None` without cases.
+/// Returns the difference of two shares of the same cases, and its interval; `None` without cases.
+///
+/// `[a, b, c, d]` counts the cases that collapse in both runs, in the first only, in the second
+/// only, and in neither. The interval combines Wilson's half-intervals, corrected for their
+/// correlation (method 10 of Newcombe 1998, with his correction for continuity).
 fn newcombe([a, b, c, d]: [u32; 4]) -> Option<(f64, [f64; 2])> {
     let n = a + b + c + d;
     if n == 0 {
@@ -141,7 +144,7 @@ mod tests {
             // A share of 95 % of 4,000 samples has a standard deviation of 0.3 %.
             assert!(f64::from(covered) >= 0.94 * 4000.0, "{chances:?}: {covered}");
         }
-        // Equal runs: no difference, and the interval is symmetric about zero.
+        // Equal runs differ by nothing, and the interval is symmetric about zero.
         let (difference, [low, high]) = newcombe([5, 0, 0, 5]).unwrap_or_default();
         assert!(difference == 0.0 && low < 0.0 && (low + high).abs() < 1e-12, "{low} {high}");
         assert_eq!(newcombe([0; 4]), None);

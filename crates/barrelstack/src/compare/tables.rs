@@ -1,4 +1,4 @@
-//! The tables of a comparison, one column for every run.
+//! Tables of a comparison, with one column per run.
 
 use barrelstack_report::{Cell, Column, Table};
 
@@ -8,7 +8,7 @@ use crate::report;
 use crate::variants::Spread;
 use crate::variants::words::{course, percent};
 
-/// Creates an empty table: the first columns, then one for each run.
+/// Creates an empty table: the `first` columns, one column per run, then the `last` columns.
 fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &str)]) -> Table {
     let mut table = Table::new(caption, first);
     let letters = sides.iter().enumerate().map(|(at, _)| Column::new(letter(at), ""));
@@ -35,7 +35,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     table
 }
 
-/// Tabulates the inputs that are the same in all runs.
+/// Tabulates the inputs that are equal in all runs.
 pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
     let mut settings: Vec<_> =
         sides.iter().take(1).flat_map(|one| one.run.stated.settings()).collect();
@@ -99,7 +99,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
 /// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "Until the first loss of seat of each stack, but for the slip at the end of the run; a run of one stack by itself states those of the whole run beside them.",
+        "Demands until the first loss of seat of each stack, except the slip, which is that at the end of the run. The report of a single run also states the demands over the whole run.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],

@@ -1,4 +1,4 @@
-//! The file that states what the columns of all tables of a folder mean.
+//! Data dictionary: the meaning of the columns of all tables in a folder.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -7,8 +7,10 @@ use barrelstack_report::csv_field;
 
 use crate::ensemble;
 
-/// Names of columns with their meanings; one that begins with `_` stands for all names that end in it, after the name
-/// of a body, of two bodies or of the ground.
+/// Column names with their meanings.
+///
+/// A name that begins with `_` stands for all column names that end in it; these begin with the
+/// name of a body, of two bodies or of the ground.
 const MEANINGS: [(&str, &str); 39] = [
     ("time", "time since the motion began"),
     ("plane", "plane of the run: transverse, across the barrels, or longitudinal, along them"),
@@ -21,18 +23,21 @@ const MEANINGS: [(&str, &str); 39] = [
     ("ground_displacement_z", "displacement of the ground upward"),
     ("energy_kinetic", "kinetic energy of all bodies"),
     ("energy_potential", "potential energy of all bodies"),
-    ("energy_elastic", "energy in the springs of all contacts"),
-    ("energy_stick", "energy in the springs of friction that holds"),
-    ("energy_damped", "energy taken by the dampers of all contacts so far"),
-    ("energy_friction", "energy taken by friction so far"),
-    ("energy_viscous", "energy taken by viscous drag so far"),
-    ("energy_ground_work", "work of the ground on the bodies so far"),
+    ("energy_elastic", "energy stored in the springs of all contacts"),
+    ("energy_stick", "energy stored in the tangential springs of sticking contacts"),
+    ("energy_damped", "energy dissipated by the dampers of all contacts so far"),
+    ("energy_friction", "energy dissipated by friction so far"),
+    ("energy_viscous", "energy dissipated by viscous drag so far"),
+    ("energy_ground_work", "work done by the ground on the bodies so far"),
     ("energy_residual", "error of the energy balance"),
     ("body", "name of the body"),
-    ("x", "place of the point on the boundary, from the center of mass to the right at rest"),
-    ("z", "place of the point on the boundary, from the center of mass upward at rest"),
-    ("coordinate", "place along the boundary: angle on a round one, length on a straight one"),
-    ("length_of_boundary", "length on which the stress acts at rest"),
+    ("x", "position of the boundary point at rest, to the right of the center of mass"),
+    ("z", "position of the boundary point at rest, above the center of mass"),
+    (
+        "coordinate",
+        "position along the boundary: an angle on a round one, a length on a straight one",
+    ),
+    ("length_of_boundary", "length of boundary on which the stress acts at rest"),
     ("stress_at_rest", "normal stress at rest"),
     (
         "peak_stress_until_first_loss_of_seat",
@@ -41,31 +46,38 @@ const MEANINGS: [(&str, &str); 39] = [
     ("peak_stress_of_whole_run", "largest normal stress over the whole run"),
     (
         "_displacement_x",
-        "displacement to the right, relative to the ground and to the place at rest",
+        "displacement to the right from the position at rest, relative to the ground",
     ),
-    ("_displacement_z", "displacement upward, relative to the ground and to the place at rest"),
+    ("_displacement_z", "displacement upward from the position at rest, relative to the ground"),
     ("_rotation", "rotation, counterclockwise"),
     ("_vertical_force", "upward force on the upper body"),
     ("_horizontal_force", "force to the right on the upper body"),
-    ("_x", "place of the center of mass to the right, in the frame of the ground before it moved"),
+    (
+        "_x",
+        "position of the center of mass to the right, in an inertial frame: that of the ground before the motion",
+    ),
     (
         "_y",
-        "place of the center of mass away from the viewer, in the frame of the ground before it moved",
+        "position of the center of mass away from the viewer, in an inertial frame: that of the ground before the motion",
     ),
-    ("_z", "place of the center of mass upward, in the frame of the ground before it moved"),
+    (
+        "_z",
+        "position of the center of mass upward, in an inertial frame: that of the ground before the motion",
+    ),
     ("_angle", "rotation, counterclockwise"),
     (
         "_qw",
-        "real part of the quaternion from the frame of the body to that of the ground before it moved",
+        "real part of the quaternion from the frame of the body to an inertial frame, that of the ground before the motion",
     ),
     ("_qx", "first imaginary part of that quaternion"),
     ("_qy", "second imaginary part of that quaternion"),
     ("_qz", "third imaginary part of that quaternion"),
 ];
 
-/// Returns the file `columns.csv` of a folder: one row for each column of its tables, with file, name, unit and meaning.
+/// Returns the file `columns.csv` of a folder: file, name, unit and meaning of each column of its
+/// tables.
 ///
-/// `other` knows columns of cases that only some folders have.
+/// `other` returns the meanings of columns that only some folders have.
 pub fn dictionary(
     files: &[(String, Vec<u8>)],
     other: &dyn Fn(&str) -> Option<&'static str>,
@@ -89,12 +101,12 @@ pub fn dictionary(
     ("columns.csv".to_owned(), text.into_bytes())
 }
 
-/// Returns the meaning of a name that is listed whole.
+/// Returns the meaning of a column that is listed under its full name.
 fn equal(name: &str) -> Option<&'static str> {
     MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
 }
 
-/// Returns the meaning of a name that begins with a body.
+/// Returns the meaning of a column whose name ends in a listed suffix.
 fn ends_in(name: &str) -> Option<&'static str> {
     let ends = |end: &str| end.starts_with('_') && name.ends_with(end);
     MEANINGS.iter().find(|(end, _)| ends(end)).map(|(_, meaning)| *meaning)

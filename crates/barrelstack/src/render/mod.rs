@@ -1,4 +1,4 @@
-//! Renders a run to files for papers, films and ParaView, in one folder.
+//! Rendering of a run to files: figures, report, animations, frames and ParaView series.
 
 mod terminal;
 
@@ -21,16 +21,16 @@ use barrelstack_input::system;
 
 pub use terminal::{drift_line, final_picture};
 
-/// Part of a rendering; each has a folder or file of its own.
+/// A part of a rendering, with its own folder or file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// `figures/`: every figure of the report with its numbers as CSV; `report.md` beside it.
+    /// `figures/`: every figure of the report, with its numbers as CSV; writes `report.md` as well.
     Figures,
-    /// `report.pdf`: the report on paper.
+    /// `report.pdf`: the report for printing.
     Report,
     /// `animation/`: the stack as a GIF and as an animated PNG.
     Animation,
-    /// `frames/`: numbered pictures of one size, and `times.csv` with the time of each.
+    /// `frames/`: numbered pictures of equal size, and `times.csv` with the time of each picture.
     Frames,
     /// `paraview/`: bodies and contact forces over time; `stack.pvd` is the file to open.
     Paraview,
@@ -41,12 +41,12 @@ impl Part {
     pub const ALL: [Self; 5] =
         [Self::Figures, Self::Report, Self::Animation, Self::Frames, Self::Paraview];
 
-    /// Returns its name on the command line.
+    /// Returns the name of the part on the command line.
     pub fn name(self) -> &'static str {
         if self == Self::Report { "report" } else { self.place() }
     }
 
-    /// Returns the name of its folder, or of its file.
+    /// Returns the name of the folder or file of the part.
     pub fn place(self) -> &'static str {
         match self {
             Self::Figures => "figures",
@@ -58,21 +58,21 @@ impl Part {
     }
 }
 
-/// Options of rendering.
+/// Options of a rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendering {
-    /// Formats of figures besides SVG, which is always written. Frames are PNG where that is among
-    /// them and SVG where it is not.
+    /// Formats of the figures besides SVG, which is always written. Frames are PNG if this list
+    /// contains PNG, and SVG otherwise.
     pub formats: Vec<Format>,
-    /// Dots per inch of figures as PNG.
+    /// Resolution (dots per inch) of figures in PNG.
     pub dpi: f64,
-    /// Paper of the report.
+    /// Paper size of the report.
     pub paper: Paper,
-    /// Pictures, and ParaView times, per second of the run (1/s).
+    /// Pictures, and ParaView time steps, per second of the run (1/s).
     pub rate: f64,
-    /// Time interval to be filmed (s); `None` for all of it.
+    /// Time interval (s) to render; `None` for the whole run.
     pub between: Option<[f64; 2]>,
-    /// Longer side of animations (pixels).
+    /// Longer side (pixels) of animations.
     pub largest: u32,
 }
 
@@ -90,10 +90,10 @@ impl Default for Rendering {
 }
 
 impl Rendering {
-    /// Checks that a run can be rendered with these options; the error is a sentence.
+    /// Checks that a run can be rendered with these options; the error is a sentence for the user.
     ///
     /// # Errors
-    /// When a number is out of range, or the run ends before the interval.
+    /// When a number is out of range, or when the run ends before the interval begins.
     pub fn check(&self, run: &Run) -> Result<(), String> {
         let expected =
             |what: &str, found: &dyn Display| Err(format!("expected {what}, found {found}"));
@@ -101,17 +101,17 @@ impl Rendering {
             return expected("20 to 1200 dots per inch, such as 300", &self.dpi);
         }
         if !(self.rate.is_finite() && self.rate > 0.0) {
-            return expected("pictures a second above zero, such as 20", &self.rate);
+            return expected("a number of pictures per second above zero, such as 20", &self.rate);
         }
         if !(64..=4096).contains(&self.largest) {
             return expected("64 to 4096 pixels, such as 480", &self.largest);
         }
         match self.between {
             Some([from, to]) if !(from >= 0.0 && to > from) => Err(format!(
-                "expected two times (s), the first from 0 on, the second later, found {from} and {to}"
+                "expected two times (s), the first not negative and the second later, found {from} and {to}"
             )),
             Some([from, _]) if from > run.end_time => Err(format!(
-                "the run ends at {:.2} s, and there is nothing to film from {from} s on",
+                "the run ends at {:.2} s, so there is nothing to film from {from} s on",
                 run.end_time
             )),
             _ => Ok(()),
@@ -119,13 +119,13 @@ impl Rendering {
     }
 }
 
-/// Extensions of files that rendering writes into its folders, and may remove from them.
+/// Extensions of the files that a rendering writes into its folders, and may remove from them.
 const KINDS: [&str; 7] = ["svg", "png", "pdf", "gif", "csv", "vtp", "pvd"];
 
-/// Maximum number of pictures per second that viewers of animations show.
+/// Maximum frame rate (1/s) that viewers of animations support.
 const FASTEST: f64 = 50.0;
 
-/// A folder that is ready for rendered parts.
+/// A folder that has been checked for rendered parts.
 #[derive(Clone, Debug)]
 pub struct RenderFolder {
     path: PathBuf,
@@ -134,23 +134,23 @@ pub struct RenderFolder {
     overwrite: bool,
 }
 
-/// Written files of a part.
+/// The written files of one part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rendered {
     /// The part.
     pub part: Part,
-    /// Its folder or file.
+    /// Folder or file of the part.
     pub place: PathBuf,
-    /// Number of its files.
+    /// Number of files written.
     pub files: usize,
 }
 
 impl RenderFolder {
-    /// Checks a folder before the work is done; creates and removes nothing yet.
+    /// Checks a folder before the computation starts; creates and removes nothing yet.
     ///
     /// # Errors
-    /// When a part's place holds files of an earlier rendering and `overwrite` is not set, or
-    /// when something that should be a folder is a file.
+    /// When the place of a part holds files of an earlier rendering and `overwrite` is not set, or
+    /// when a path that should be a folder is a file.
     pub fn prepare(path: &Path, parts: &[Part], overwrite: bool) -> Result<Self, ExportError> {
         let folders = parts.iter().filter(|part| **part != Part::Report);
         let folders = folders.map(|part| path.join(part.place()));
@@ -171,18 +171,19 @@ impl RenderFolder {
         Ok(folder)
     }
 
-    /// The refusal of a folder that holds a file already.
+    /// Returns the error for a folder that already holds a file.
     fn occupied(&self, file: &Path) -> ExportError {
         let file = file.strip_prefix(&self.path).unwrap_or(file).display().to_string();
         ExportError::Occupied { folder: self.path.clone(), file }
     }
 
     /// Writes all parts.
-    /// Files of an earlier rendering in the places of these parts are removed first, so that a
+    ///
+    /// Files of an earlier rendering are removed first from the places of these parts, so that a
     /// shorter run leaves no frames of a longer one.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write(
         &self,
         run: &Run,
@@ -212,11 +213,12 @@ impl RenderFolder {
         Ok(written)
     }
 
-    /// Writes the ParaView series that `make` produces file by file, so that long series of bodies in space need not be
-    /// in memory as a whole.
+    /// Writes the ParaView series that `make` produces file by file.
+    ///
+    /// Long series of bodies in space thus need not fit into memory as a whole.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When a file cannot be written.
     pub fn write_paraview(
         &self,
         make: impl FnOnce(
@@ -233,8 +235,8 @@ impl RenderFolder {
         })
     }
 
-    /// Writes a part by calling `write`, which returns the number of files; where a file cannot be written, removes
-    /// those before it.
+    /// Writes a part by calling `write`, which returns the number of files; if writing fails,
+    /// removes the files already written.
     fn whole(
         &self,
         part: Part,
@@ -245,7 +247,7 @@ impl RenderFolder {
             Ok(files) => Ok(Rendered { part, place, files }),
             Err(error) => {
                 for file in self.earlier(part).unwrap_or_default() {
-                    // What cannot be removed is left; the error of the write says more.
+                    // A file that cannot be removed is left; the error of the write says more.
                     let _ = std::fs::remove_file(file);
                 }
                 if part != Part::Report {
@@ -256,7 +258,7 @@ impl RenderFolder {
         }
     }
 
-    /// Creates the place of a part and removes the files of an earlier rendering from it.
+    /// Creates the place of a part, and removes the files of an earlier rendering from it.
     fn cleared(&self, part: Part) -> Result<PathBuf, ExportError> {
         let place = self.path.join(part.place());
         let folder = if part == Part::Report { "" } else { part.place() };
@@ -264,7 +266,7 @@ impl RenderFolder {
             .map_err(|error| ExportError::refused(&place, &error))?;
         let earlier = self.earlier(part)?;
         if let (false, Some(file)) = (self.overwrite, earlier.first()) {
-            // Another rendering wrote it since the folder was checked.
+            // Another rendering has written this file since the folder was checked.
             return Err(self.occupied(file));
         }
         for file in earlier {
@@ -286,7 +288,7 @@ impl RenderFolder {
         let mut files = Vec::new();
         if let Some(alone) = alone {
             let name = alone.file_name().unwrap_or_default().to_os_string();
-            // A killed rendering leaves the part of a file beside its place.
+            // A killed rendering leaves an unfinished file beside the final one.
             let own = |path: &PathBuf| {
                 *path == alone || system::is_unfinished(path, |whole| *whole == *name)
             };
@@ -306,7 +308,7 @@ impl RenderFolder {
     }
 }
 
-/// Returns the paths in a folder; none if it is no folder.
+/// Returns the paths in a folder; empty if the path is not a folder.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     if !folder.is_dir() {
         return Ok(Vec::new());
@@ -316,11 +318,13 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     found.map(|entry| Ok(entry.map_err(refused)?.path())).collect()
 }
 
-/// Writes the figures of a document in formats besides SVG, named as the SVG files; `dpi` (dots per inch)
-/// applies to pixels. Returns the number of files.
+/// Writes the figures of a document in formats other than SVG, named like the SVG files, and
+/// returns the number of files.
+///
+/// `dpi` (dots per inch) applies to pixel formats.
 ///
 /// # Errors
-/// When the system refuses.
+/// When a file cannot be written.
 pub fn write_figures(
     document: &Document,
     folder: &Path,
@@ -337,7 +341,7 @@ pub fn write_figures(
     Ok(count)
 }
 
-/// Writes both kinds of animations, from the same pictures.
+/// Writes the animation in both formats, from the same pictures.
 fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize, ExportError> {
     let film = Film::of_run(Arc::clone(scene), how.rate.min(FASTEST));
     let Some(animation) = Animation::of(&film, how.largest) else { return Ok(0) };
@@ -345,8 +349,8 @@ fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize
         + put(&folder.join("stack.png"), &animation.apng())?)
 }
 
-/// Writes numbered pictures, rendered on all cores with one of them per core in memory, and the times
-/// of all.
+/// Writes numbered pictures and the table of their times. All cores render, each with one picture
+/// in memory.
 fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportError> {
     let digits = film.len().to_string().len().max(4);
     let pixels = how.formats.contains(&Format::Png);
@@ -354,7 +358,7 @@ fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportEr
         let format = if pixels { Format::Png } else { Format::Svg };
         format!("frame-{:0digits$}.{}", at + 1, format.extension())
     };
-    // If one picture is refused the rest would be too; skip them.
+    // If one picture cannot be written, the remaining ones would fail too, so they are skipped.
     let refused = AtomicBool::new(false);
     let paint = |at: usize| {
         if refused.load(Ordering::Relaxed) {

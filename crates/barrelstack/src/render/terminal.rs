@@ -1,4 +1,4 @@
-//! A run in a few lines of a terminal: the stack at the end, and the drift of its top.
+//! A run in a few lines of text: the final picture of the stack, and the drift of its top.
 
 use barrelstack_report::{Characters, sparkline, terminal_picture};
 
@@ -16,10 +16,11 @@ pub fn final_picture(run: &Run, characters: Characters) -> Vec<String> {
     }
 }
 
-/// Draws the displacement of the top barrels relative to the ground while the stack stands, as `columns`
-/// characters; also returns its last instant and that of its maximum (s).
+/// Draws the displacement of the top barrels relative to the ground, while the stack stands, as a
+/// line of `columns` characters.
 ///
-/// `None` without a stack, and for an invalid run.
+/// Also returns two times (s): the end of the line, and that of the maximum. `None` without a
+/// stack, and for an invalid run.
 pub fn drift_line(run: &Run, columns: usize, characters: Characters) -> Option<(String, [f64; 2])> {
     if matches!(run.outcome, Outcome::Invalid { .. }) {
         return None;

@@ -1,4 +1,5 @@
-//! A stack in three dimensions, of which a plane models a section: barrels and racks by the dimensions of the scenario.
+//! Three-dimensional scene of a planar stack: the plane models a section, and the scenario gives
+//! the other dimensions.
 
 use barrelstack_dynamics::{Vec2, math};
 use barrelstack_report::{
@@ -8,13 +9,14 @@ use barrelstack_report::{
 use crate::assemble::{Assembly, BAR_RADIUS, Outline, Part, PartKind, cup};
 use crate::scenario::{Barrel, Cradle, Rack, RackKind, Scenario, Scene, StackSpec, View};
 
-/// Half the thickness (m) of plates of devices, which planes draw as lines: an assumption.
+/// Half the thickness (m) of device plates, which planar drawings show as lines: an assumption.
 const PLATE: f64 = 0.012;
 
-/// Number of parts of a profile or a trough.
+/// Number of segments of a barrel profile or of a cradle arc.
 const PARTS: u32 = 12;
 
-/// Returns the bodies of a plane in three dimensions, with its events; `None` for a free scene, whose depth is unknown.
+/// Returns the bodies of a planar stack in three dimensions, with its events; `None` for a free
+/// scene, whose depth is unknown.
 pub(super) fn depth(
     scenario: &Scenario,
     assembly: &Assembly,
@@ -36,22 +38,22 @@ pub(super) fn depth(
     })
 }
 
-/// A plane section of a stack.
+/// A planar section of a stack.
 struct Section<'a> {
     spec: &'a StackSpec,
-    /// Length scale.
+    /// Length scale of similitude.
     length: f64,
 }
 
 impl Section<'_> {
-    /// Returns a body and its equals in other sections.
+    /// Returns a body, and its copies in the parallel sections.
     fn body(&self, assembly: &Assembly, index: usize, part: &Part) -> DepthBody {
         let (role, volumes, rows) = match part.kind {
             PartKind::Barrel => (Role::Barrel, vec![self.barrel()], self.rows()),
             PartKind::Rack => (Role::Rack, self.rack(assembly, index, part), Vec::new()),
             PartKind::Ground => (Role::Ground, self.plates(part.outlines.get(1..)), Vec::new()),
             PartKind::Device => (Role::Device, self.plates(Some(&part.outlines)), Vec::new()),
-            // It swings inside of its barrel.
+            // Wine swings inside its barrel, so it has no volume of its own.
             PartKind::Wine => (Role::Device, Vec::new(), Vec::new()),
             PartKind::Body => (Role::Block, Vec::new(), Vec::new()),
         };
@@ -59,7 +61,7 @@ impl Section<'_> {
         DepthBody { name: part.name.clone(), role, volumes, rows }
     }
 
-    /// Returns a point from its coordinates in the plane and the distance from it (m).
+    /// Returns a point from its coordinates (m) in the plane and its distance (m) from the plane.
     fn at(&self, [along, up]: [f64; 2], away: f64) -> Point3 {
         match self.spec.view {
             View::Transverse => [along, away, up],
@@ -67,7 +69,8 @@ impl Section<'_> {
         }
     }
 
-    /// Returns the distances (m) from the plane of the rails across it, or of the barrels along it.
+    /// Returns the distances (m) from the plane: of the rails in the transverse plane, of the
+    /// barrels in the longitudinal one.
     fn away(&self) -> Vec<f64> {
         let rack = &self.spec.rack;
         match self.spec.view {
@@ -76,12 +79,12 @@ impl Section<'_> {
         }
     }
 
-    /// Returns the distance (m) of barrels of a rack one behind the other.
+    /// Returns the spacing (m) of barrels that lie one behind the other in a rack.
     fn pitch_along(&self) -> f64 {
         self.spec.barrel.length + self.spec.gap
     }
 
-    /// Returns the places of the barrels that one body of the plane represents.
+    /// Returns the positions (m) of the barrels that one body of the plane represents.
     fn rows(&self) -> Vec<Point3> {
         let rack = &self.spec.rack;
         let places = match self.spec.view {
@@ -105,17 +108,18 @@ impl Section<'_> {
         }
     }
 
-    /// Returns a rack, with plates of devices on it.
+    /// Returns the volumes of a rack, including the device plates on it.
     fn rack(&self, assembly: &Assembly, index: usize, part: &Part) -> Vec<Volume> {
         let spec = self.spec;
         let surfaces = &assembly.model.bodies()[index].surfaces;
-        // Rails at two heights have their center of mass beside the middle.
+        // If the rails are at two heights, the center of mass of the rack is beside its middle.
         let places = surfaces.iter().zip(&part.outlines).flat_map(|(_, outline)| &outline.points);
         let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
             [low.min(point.x), high.max(point.x)]
         });
         let middle = if low < high { 0.5 * (low + high) } else { 0.0 };
-        // Along the barrels rails may rise with an inclined barrel: the lower end of the rail that is nearest.
+        // Along the barrels, rails may rise with an inclined barrel; this is the underside of the
+        // nearest rail.
         let rise = |y: f64| match spec.view {
             View::Longitudinal if spec.rack.posts.is_none() => {
                 let rails = surfaces.iter().zip(&part.outlines);
@@ -139,7 +143,7 @@ impl Section<'_> {
         volumes
     }
 
-    /// Scales a solid of a rack, and moves it (m).
+    /// Scales a solid of a rack, and moves it by an offset (m).
     fn scale(&self, volume: &mut Volume, offset: Point3) {
         let scaled = |point: &mut Point3| point.iter_mut().for_each(|v| *v *= self.length);
         let placed = |point: &mut Point3| {
@@ -166,7 +170,7 @@ impl Section<'_> {
         }
     }
 
-    /// Returns lines of the plane as bars, once for each rail or barrel.
+    /// Returns the lines of a planar outline as bars, one for each rail or barrel.
     fn plates(&self, outlines: Option<&[Outline]>) -> Vec<Volume> {
         let mut bars = Vec::new();
         for outline in outlines.unwrap_or(&[]) {
@@ -184,7 +188,7 @@ impl Section<'_> {
         bars
     }
 
-    /// Returns a band of the plane, once for each rail or barrel.
+    /// Returns the bands of a tie, one for each rail or barrel.
     fn bands(&self, tie: &Tie) -> Vec<DepthTie> {
         let band = |away: f64| DepthTie {
             bodies: tie.bodies,
@@ -195,22 +199,23 @@ impl Section<'_> {
     }
 }
 
-/// Returns places (m) at equal distances about the middle.
+/// Returns positions (m) at equal spacing, centered on zero.
 fn spread(count: u32, pitch: f64) -> Vec<f64> {
     (0..count).map(|at| (f64::from(at) - 0.5 * f64::from(count - 1)) * pitch).collect()
 }
 
-/// Returns the places (m) of the rails of a rack along its barrels.
+/// Returns the positions (m) of the rails of a rack, along its barrels.
 fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
     let rail = |place: f64| [-1.0, 1.0].map(|side| place + side * rack.rail_half_spacing);
     spread(rack.barrels_deep, pitch).into_iter().flat_map(rail).collect()
 }
 
-/// Returns the solids of a rack, full-scale, from the middle of its underside.
+/// Returns the solids of a rack at full scale, relative to the middle of its underside.
 ///
-/// They are those of the plane across the barrels at every rail, which is as wide as the plane along them shows it. Two
-/// tubes that join the beams at their ends are an assumption, as in space. `rise` is the height (m) of the rail at a place,
-/// `chocks` are an angle (rad) and a gap (m).
+/// The shape of the transverse plane is repeated at every rail, with the width that the
+/// longitudinal plane shows. Two tubes that join the beams at their ends are an assumption, as in
+/// the spatial model. `rise` returns the height (m) of the rail at a position, and `chocks` are an
+/// angle (rad) and a gap (m).
 fn frame(
     spec: &StackSpec,
     (level, pitch): (u32, f64),
@@ -239,7 +244,8 @@ fn frame(
                 let foot = [rack.foot_half_length, half_rail, 0.5 * lift];
                 volumes.push(Volume::upright([place, y, up + foot[2]], foot));
             }
-            // A bar that stands on the beam and ends at an angle and a distance from the middle of the barrel.
+            // A bar that stands on the beam and ends at an angle and a distance from the center of
+            // the barrel.
             let beside = |angle: f64, away: f64| {
                 let (sin, cos) = math::sin_cos(angle);
                 let end = [place + sin * away, rack.clearance + radius - cos.abs() * away];
@@ -299,16 +305,16 @@ mod tests {
     use crate::assemble::assemble;
     use crate::report::drawing::outlines;
 
-    /// Extents `[lower, upper]` of numbers.
+    /// Returns the extent `[lower, upper]` of numbers.
     fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
     }
 
-    /// Extents of solids along an axis.
+    /// Returns the extent of solids along an axis.
     fn along(volumes: &[Volume], axis: usize) -> [f64; 2] {
         extent(volumes.iter().flat_map(|volume| match volume {
             Volume::Tube { ends: [a, b], radius } => {
-                // A round end reaches beyond its axis to the side alone.
+                // The round end of a tube extends beyond the axis only sideways.
                 let away: f64 = (0..3).map(|k| (b[k] - a[k]).powi(2)).sum::<f64>().sqrt();
                 let part = if away > 0.0 { (b[axis] - a[axis]) / away } else { 0.0 };
                 let reach = radius * (1.0 - part * part).max(0.0).sqrt();
@@ -329,8 +335,9 @@ mod tests {
         }))
     }
 
-    /// Turned bodies have the extents of the computed ones: across the barrels those of all bodies, along them those of
-    /// the barrels, and of the racks their length and their underside.
+    /// The three-dimensional bodies must have the extents of the computed ones: all bodies in the
+    /// transverse plane; in the longitudinal plane the barrels, and the length and underside of the
+    /// racks.
     #[test]
     fn bodies_have_the_extents_of_their_plane() {
         let cases: [(&str, &[&str]); 10] = [
@@ -361,8 +368,9 @@ mod tests {
                     outlines(&assembly, index).into_iter().flat_map(|line| line.points).collect();
                 let flat = [0, 1].map(|axis| extent(points.iter().map(|point| point[axis])));
                 let deep = [usize::from(!across), 2].map(|axis| along(&body.volumes, axis));
-                // Of a barrel the plane across shows the section above its rails, which the bilge exceeds. Of a rack
-                // along the barrels it shows rails up to the barrel, whose supports are beside them.
+                // The transverse plane shows a barrel at the section above its rails, which is
+                // thinner than the bilge. The longitudinal plane shows a rack as its rails alone;
+                // the supports beside the barrel are hidden.
                 let barrel = &stack.barrel;
                 let bulge = 0.5
                     * (barrel.bilge_diameter - barrel.section_diameter)
@@ -371,7 +379,7 @@ mod tests {
                 for (axis, side) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                     let hidden = !across && body.role == Role::Rack && (axis, side) == (1, 1);
                     let apart = (deep[axis][side] - flat[axis][side]).abs();
-                    // The mesh of an outline is 1.5 mm within its arc, measured.
+                    // The mesh of an outline lies within 1.5 mm of its arc (measured).
                     assert!(
                         hidden || (apart - bulge).abs() < 2e-3,
                         "{name} {set:?} {}, axis {axis}, side {side}: {} in depth, {} in the plane",

@@ -1,4 +1,4 @@
-//! Converts bodies and frames to a scene that can be drawn.
+//! Converts the bodies and frames of a run to a drawable scene.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub fn scene(run: &Run) -> Arc<Scene> {
     scene_among(run, None)
 }
 
-/// Returns the scene of a run, with the results of its variants.
+/// Returns the scene of a run, with ghosts of its variants.
 pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> {
     let frames = &run.recording.frames;
     let ties = ties(&run.assembly, |element| run.elements.get(element)?.broken_at);
@@ -46,13 +46,13 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
     })
 }
 
-/// Returns a contact force on the body that is pushed up, of the two in contact.
+/// Returns a contact force as it acts on the one of the two bodies that it pushes upward.
 fn pushed(&[x, z, fx, fz]: &[f64; 4]) -> ContactForce {
     let sign = if fz < 0.0 { -1.0 } else { 1.0 };
     ContactForce { x, z, fx: sign * fx, fz: sign * fz }
 }
 
-/// Returns the scene of bodies as assembled, before they settle into their contacts.
+/// Returns the scene of the bodies as assembled, before settling.
 pub(super) fn still(assembly: &Assembly) -> Scene {
     let poses = assembly.model.bodies().iter().map(|body| body.pose);
     Scene {
@@ -67,10 +67,10 @@ pub(super) fn still(assembly: &Assembly) -> Scene {
     }
 }
 
-/// Maximum number of variants whose paths are drawn; more would merge to a black area.
+/// Maximum number of variants whose paths are drawn; more paths would merge into a black area.
 const DRAWN: usize = 128;
 
-/// Returns the paths of the top barrels of all variants, and the final positions of their barrels.
+/// Returns the paths of the top barrels of all variants, and the final poses of their barrels.
 fn ghosts(variants: &Variants) -> Option<Ghosts> {
     let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
     let wide = |place: &[f32; 2]| place.map(f64::from);
@@ -89,11 +89,11 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
     })
 }
 
-/// Returns the part of the caption on straps, devices, wine, and ghosts of variants.
+/// Returns the part of the caption that explains straps, devices, wine and variants.
 pub fn legend(scene: &Scene) -> String {
     let mut legend = String::new();
     if !scene.ties.is_empty() {
-        legend += " Bands with a buckle are straps and ties, in a free scene all force elements; one that breaks is gone.";
+        legend += " Bands with a buckle are straps and ties (in a free scene, all force elements); a broken one disappears.";
     }
     let devices = scene.bodies.iter().filter(|body| body.role == Role::Device);
     let (wine, others): (Vec<_>, Vec<_>) =
@@ -102,12 +102,12 @@ pub fn legend(scene: &Scene) -> String {
         legend += " Green bodies are devices.";
     }
     if !wine.is_empty() {
-        legend += " The disc in a barrel is what swings of its wine.";
+        legend += " The disc in a barrel is the swinging part of its wine.";
     }
     if let Some(ghosts) = &scene.ghosts {
         let paths = format!(
-            " With “{}” thin lines are the paths of the barrels of the top level in each until it ends, and the darker a \
-             place, the more often a barrel is there then.",
+            " With “{}” switched on, thin lines show the paths of the top barrels in each variant until its run ends, and the darker a \
+             place, the more often a barrel ends there.",
             ghosts.label
         );
         legend += &paths;
@@ -115,11 +115,11 @@ pub fn legend(scene: &Scene) -> String {
     legend
 }
 
-/// Displacement (m) below which the page does not open at the largest displacement.
+/// Largest displacement (m) below which the page opens at the start of the run.
 const STILL: f64 = 1e-3;
 
-/// Returns the instant on which a page opens: the first loss of seat, or, if all seats are kept, the largest
-/// displacement of a body sideways or upward.
+/// Returns the instant at which a page opens: the first loss of seat or, if all seats are kept, the
+/// largest sideways or upward displacement of a body.
 fn moment(run: &Run) -> Option<Moment> {
     match &run.outcome {
         Outcome::Collapse { time, first, .. } => {
@@ -138,7 +138,7 @@ fn moment(run: &Run) -> Option<Moment> {
     }
 }
 
-/// Returns time and body of the largest displacement from rest, sideways or upward.
+/// Returns the time and the body of the largest sideways or upward displacement from rest.
 fn furthest(run: &Run) -> Option<Moment> {
     let mut furthest: Option<(f64, f64, usize, &str)> = None;
     for (body, part) in run.assembly.parts.iter().enumerate() {
@@ -160,7 +160,7 @@ fn furthest(run: &Run) -> Option<Moment> {
     Some(Moment { time, body, text, falls: false })
 }
 
-/// Returns the largest contact stress of every barrel as a color scale.
+/// Returns the largest contact stress of every barrel over time, as a color scale.
 fn tint(run: &Run) -> Tint {
     let parts = &run.assembly.parts;
     let of = |(part, stress): (&Part, &f64)| {
@@ -174,7 +174,7 @@ fn tint(run: &Run) -> Tint {
     }
 }
 
-/// Returns the outlines of a body as lines in its own frame.
+/// Returns the outlines of a body as polylines in the frame of the body.
 pub(super) fn outlines(assembly: &Assembly, body: usize) -> Vec<Polyline> {
     assembly.parts[body]
         .outlines
@@ -195,8 +195,8 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
         }
         (PartKind::Barrel, Some(Shape::BarrelProfile(profile))) => {
             let mut body = SceneBody::new(&part.name, Role::Barrel, outlines(assembly, index));
-            // The bung, at the top of the bilge, then hoops at their usual places: at the heads and on both
-            // sides of the bilge.
+            // The bung is at the top of the bilge; the hoops are at their usual positions, near the
+            // heads and on both sides of the bilge.
             let bilge = profile.radius_at(0.0);
             body.marks.push(Polyline::open(vec![[0.0, 0.9 * bilge], [0.0, bilge]]));
             for share in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94] {
@@ -224,7 +224,8 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
     }
 }
 
-/// Returns the elements drawn as lines between two bodies: straps, and all elements of a free scene.
+/// Returns the elements that are drawn as lines between two bodies: straps, and all elements of a
+/// free scene.
 fn ties(assembly: &Assembly, torn_at: impl Fn(usize) -> Option<f64>) -> Vec<Tie> {
     assembly
         .elements()
@@ -275,7 +276,7 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-/// Returns acceleration and velocity of the ground along the plane; empty without a motion.
+/// Returns the horizontal acceleration and velocity of the ground; empty without a motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
     let span = (motion.horizontal.natural_step(), run.end_time);
@@ -284,21 +285,23 @@ pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     vec![first, ground_history("ground velocity", "cm/s", span, &velocity)]
 }
 
-/// Returns the acceleration (g) of a component of the ground until `end` (s).
+/// Returns the acceleration (g) of a component of the ground motion until `end` (s).
 pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end: f64) -> History {
     let value = |time: f64| component.at(time).acceleration / STANDARD_GRAVITY;
     ground_history(label, "g", (component.natural_step(), end), &value)
 }
 
-/// Thins a quantity of the ground for a picture: from every fiftieth of a second until `end` (s) it keeps the sample of
-/// the motion, `step` (s) apart, that is largest in size, at its own time, so that peaks are those of the motion.
+/// Thins a quantity of the ground motion for a picture, until `end` (s).
+///
+/// Of the samples of the motion, `step` (s) apart, one per fiftieth of a second is kept: the one with
+/// the largest magnitude, at its own time, so that the picture shows the true peaks.
 pub fn ground_history(
     label: &str,
     unit: &str,
     (step, end): (f64, f64),
     value: &dyn Fn(f64) -> f64,
 ) -> History {
-    /// Samples of a picture per second.
+    /// Samples per second of the picture.
     const RATE: f64 = 50.0;
     let (mut times, mut values): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let step = step.max(1e-4);

@@ -1,40 +1,41 @@
-//! Technical terms of the pages, explained for winery managers.
+//! Glossary of the report pages, written for winery managers.
 
 use barrelstack_report::Word;
 
-/// Each is explained where it occurs; GLOSSARY.md has the same list.
+/// Terms with their explanations; a page explains each where it occurs. GLOSSARY.md has the same
+/// list.
 pub const WORDS: &[Word] = &[
     word(
         "variant",
-        "the same stack a little different: set down millimeters elsewhere, a little heavier, more or less slippery",
+        "the same stack with small differences: millimeters out of place, a little heavier or lighter, more or less slippery",
     ),
     word("95 % interval", "the range in which the true share lies in 19 of 20 such samples"),
-    word("across the barrels", "seen from the head of the barrels, which are circles then"),
-    word("along the barrels", "seen from the side of the barrels, which are longer than high then"),
+    word("across the barrels", "in the plane that shows the heads of the barrels, as circles"),
+    word("along the barrels", "in the plane that shows the barrels from the side"),
     word("cradle", "the two bars of a rack between which a barrel lies"),
     word("seat", "the place that holds a barrel in its rack, or a rack on the barrels below"),
     word("ejection", "the top level leaves the stack, or a barrel its rack"),
     word("rocking", "upper levels rock on the barrels below and topple together"),
-    word("rack-sliding", "a rack walks along the barrels below until it is off them"),
+    word("rack-sliding", "a rack slides along the barrels below until it leaves them"),
     word("overturning", "the whole stack turns over about its foot"),
     word("gravity", "the stack falls under its own weight, before it is shaken"),
-    word("drift", "how far the top moves sideways, over the height of the stack"),
-    word("uplift", "how far a body rises from what it stands on"),
-    word("pretension", "the force to which a strap is tightened when it is put on"),
+    word("drift", "sideways displacement of the top, divided by the height of the stack"),
+    word("uplift", "how far a body rises above its support"),
+    word("pretension", "the force to which a strap is tightened when it is installed"),
     word(
         "stress amplification",
-        "the largest pressure until the first loss of seat, over the largest at rest",
+        "the largest contact stress until the first loss of seat, divided by the largest at rest",
     ),
     word("PGA", "peak ground acceleration: the largest acceleration of the ground"),
     word("PGV", "peak ground velocity: the largest speed of the ground"),
-    word("contact constants", "how stiff and how damped bodies are where they touch"),
+    word("contact constants", "stiffness and damping of bodies where they touch"),
     word(
         "energy balance",
-        "what energy came in, is stored and was lost; what is missing is an error of the computation",
+        "comparison of the energy supplied with the energy stored and dissipated; the difference is the error of the computation",
     ),
     word(
         "residual",
-        "what is left over: of energy an error of the computation, of displacement where a body stays",
+        "what is left at the end: of the energy balance, the error of the computation; of a displacement, the final position of the body",
     ),
     word("similitude", "a model at another scale that behaves like the full-size one"),
 ];

@@ -1,14 +1,14 @@
-//! Table of the inputs of a run: every value with its unit, its meaning and its source.
+//! Table of the inputs of a run: values with units, sources and meanings.
 
 use barrelstack_report::{Block, Cell, Table, significant};
 
 use crate::run::Run;
 use crate::scenario::{Scenario, Setting, Source, catalog};
 
-/// Formats the value of a given input: as it was written, then in SI units where these are others.
+/// Formats a given input as it was written, followed by its value in SI units if these differ.
 fn given(scenario: &Scenario, one: &Setting) -> String {
     let value = shown(&one.path, &one.value);
-    // Other texts, such as paths and names, are the value itself.
+    // Other texts, such as paths and names, have no second form.
     let is_quantity =
         |text: &str| text.split_once(' ').is_some_and(|(number, _)| number.parse::<f64>().is_ok());
     match scenario.as_written(&one.path) {
@@ -24,7 +24,7 @@ fn given(scenario: &Scenario, one: &Setting) -> String {
     }
 }
 
-/// Tabulates settings.
+/// Tabulates settings, with one row per input.
 pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
     Table::of(
         caption,
@@ -38,14 +38,15 @@ pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
     )
 }
 
-/// Formats the value of an input for a page: of a file its name, not its path.
+/// Formats the value of an input for a page; a file is shown by its name, without its path.
 pub(crate) fn shown(path: &str, value: &str) -> String {
     let file = ["motion.record", "motion.vertical_record"].contains(&path);
     let name = value.rsplit(['/', '\\']).next().filter(|_| file);
     name.map_or_else(|| readable(value), str::to_owned)
 }
 
-/// Formats a value for display: numbers, also before a unit, to six significant digits.
+/// Formats a value for display; a number, with or without a unit, is rounded to six significant
+/// digits.
 pub(crate) fn readable(value: &str) -> String {
     let (first, rest) = value.split_once(' ').unwrap_or((value, ""));
     match first.parse::<f64>() {
@@ -65,10 +66,10 @@ pub(crate) fn readable(value: &str) -> String {
     }
 }
 
-/// Significant digits of a printed input; the scenario beside the report has all.
+/// Significant digits of a printed input; the scenario file beside the report has all digits.
 const DIGITS: usize = 6;
 
-/// Tabulates the stated inputs, and, collapsed, all values.
+/// Tabulates the inputs that the user gave and, folded away, all inputs.
 pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
     let mut settings = run.stated.settings();
@@ -77,7 +78,7 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         setting.source == Source::Given || inside.is_none_or(|table| !absent.contains(&table))
     });
     let chosen = Table::of(
-        "Inputs that differ from their defaults, as they were given, and in SI units.",
+        "Inputs that differ from their defaults, as given and in SI units.",
         settings.iter().filter(|one| one.source == Source::Given),
         &[
             ("input", "", &|one| Cell::text(&one.path)),
@@ -88,18 +89,20 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let all = settings_table("Every input.", &settings);
     let left_out = (!absent.is_empty()).then(|| {
         let names = absent.join(", ").replace('_', " ");
-        Block::Paragraph(format!("Without those of devices that are not on the stack: {names}."))
+        Block::Paragraph(format!(
+            "Inputs of devices that the stack does not have are left out: {names}."
+        ))
     });
     let mut blocks = vec![Block::Table(chosen)];
     blocks.extend(dimensions(run));
     blocks.push(Block::details(
-        format!("All {} inputs with every default written out", all.rows.len()),
+        format!("All {} inputs, including defaults", all.rows.len()),
         [Block::Table(all)].into_iter().chain(left_out).collect(),
     ));
     blocks
 }
 
-/// Returns the sources of the catalog's dimensions.
+/// Returns the sources of the dimensions that the catalog provides.
 fn dimensions(run: &Run) -> Option<Block> {
     let stack = run.scenario.stack()?;
     let barrel = catalog::barrel(stack.barrel.base);

@@ -1,4 +1,4 @@
-//! The page sections of a stack in both planes and in all its variants.
+//! Report sections of a stack in both planes and in all its variants.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::summary::Summary;
 use crate::variants::words::percent;
 use crate::variants::{Range, Shown, Spread};
 
-/// Returns both planes beside each other on one clock, the one across the barrels first.
+/// Returns players for both planes on one clock, the plane across the barrels first.
 pub(super) fn players(
     (run, summary, scene): (&Run, &Summary, &Arc<Scene>),
     other: &Shown,
@@ -51,9 +51,9 @@ pub(super) fn players(
     }
 }
 
-/// Returns the stage before any motion: the stack in each plane as assembled.
+/// Returns the stage before any motion: the stack as assembled, in each plane.
 pub(super) fn still(assemblies: &[Assembly]) -> Block {
-    let caption = "The stack as it is put up, to scale.".to_owned();
+    let caption = "The stack before the motion, to scale.".to_owned();
     if let [alone] = assemblies {
         let scene = Arc::new(drawing::still(alone));
         return Block::Player(Player { id: "player".into(), caption, scene, traces: Vec::new() });
@@ -68,7 +68,7 @@ pub(super) fn still(assemblies: &[Assembly]) -> Block {
     })
 }
 
-/// Returns the pane of a plane with its letter and name, without a verdict.
+/// Returns the pane of a plane with its letter and name, but without a verdict.
 fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     let (mark, name) = match assembly.view {
         Some(view @ View::Transverse) => ("X", capital(view.words())),
@@ -79,21 +79,21 @@ fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     Pane { mark: mark.to_owned(), name, verdict, tone, scene, traces }
 }
 
-/// Returns the acceleration of the ground in a plane.
+/// Returns the ground acceleration in a plane.
 fn ground(run: &Run) -> Option<History> {
     let first = drawing::ground_histories(run).into_iter().next()?;
     let view = run.assembly.view?;
     Some(History { label: format!("{}, {}", first.label, view.words()), ..first })
 }
 
-/// Tabulates the statistics of all variants, with a column for every plane.
+/// Tabulates the statistics of all variants, with one column per plane.
 pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     let planes = summary.spreads();
     if planes.is_empty() {
         return Vec::new();
     }
     let mut table = Table::new(
-        "Ranges are those of 5 to 95 % of the variants, with all of them in brackets.",
+        "Ranges span the 5th to the 95th percentile of the variants; the range of all variants is in brackets.",
         &[("", "")],
     );
     table.columns.extend(
@@ -107,8 +107,8 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         }
     };
     row("variants with a verdict", &|spread| Some(spread.variants.to_string()));
-    row("collapse", &|spread| Some(spread.collapsed.to_string()));
-    row("share, with its 95 % interval", &|spread| {
+    row("variants that collapse", &|spread| Some(spread.collapsed.to_string()));
+    row("share that collapses, with its 95 % interval", &|spread| {
         let [low, high] = spread.interval.map(percent);
         spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
     });
@@ -127,7 +127,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
             within + &spread.counted("the first loss")
         })
     });
-    row("barrels fallen where it collapses", &|spread| {
+    row("barrels fallen in a collapse", &|spread| {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
             let within = format!("{} of {}", span(p05, p95, 0), spread.barrels);
             format!("{within} ({}){}", span(least, most, 0), spread.counted("the first loss"))
@@ -137,24 +137,26 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         let modes = spread.modes.iter().map(|(mode, count)| format!("{mode} {count}"));
         Some(modes.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty())
     });
-    row("of these under their own weight, before they are shaken", &|spread| {
+    row("fallen under their own weight, before they are shaken", &|spread| {
         (spread.cannot_stand > 0).then(|| spread.cannot_stand.to_string())
     });
-    row("without a verdict", &|spread| (spread.broken > 0).then(|| spread.broken.to_string()));
+    row("variants without a verdict", &|spread| {
+        (spread.broken > 0).then(|| spread.broken.to_string())
+    });
     let number = |number: u32| if number == 0 { "as stated".into() } else { number.to_string() };
-    row("most typical", &|spread| Some(number(spread.typical)));
-    row("gentlest", &|spread| Some(number(spread.gentlest)));
-    row("worst", &|spread| Some(number(spread.worst)));
+    row("most typical variant", &|spread| Some(number(spread.typical)));
+    row("gentlest variant", &|spread| Some(number(spread.gentlest)));
+    row("worst variant", &|spread| Some(number(spread.worst)));
     let mut blocks = vec![Block::Table(table)];
     blocks.extend(planes.iter().find_map(|(_, spread)| spread.reason.as_ref()).map(|reason| {
         Block::Paragraph(format!(
-            "The first variant that falls before it is shaken, or has no verdict: {reason}."
+            "First variant that falls before it is shaken, or has no verdict: {reason}."
         ))
     }));
     blocks
 }
 
-/// Formats a range, as one number where both ends are printed alike.
+/// Formats a range; a single number if both ends print alike.
 fn span(from: f64, to: f64, decimals: usize) -> String {
     let [from, to] = [from, to].map(|value| format!("{value:.decimals$}"));
     if from == to { from } else { format!("{from} to {to}") }

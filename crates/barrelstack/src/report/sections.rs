@@ -1,4 +1,4 @@
-//! The sections of a run's report, in reading order.
+//! Sections of the report of a run, in reading order.
 
 use std::sync::Arc;
 
@@ -29,12 +29,12 @@ pub(super) fn all(
 ) -> Vec<Block> {
     let mut blocks = vec![stage(run, summary, other, scene)];
     let remedy = summary.remedy.iter().map(|found| Block::Table(found.table(true))).collect();
-    section(&mut blocks, 2, "What would have kept it up", remedy);
+    section(&mut blocks, 2, "What would have kept the stack up", remedy);
     let spreads = summary.spreads();
     let placed: Vec<(&str, &Spread)> =
         spreads.iter().map(|(view, spread)| (view.words(), *spread)).collect();
     section(&mut blocks, 2, "What decides", unknowns(&placed));
-    section(&mut blocks, 2, "In all variants", planes::variants(summary));
+    section(&mut blocks, 2, "Results of all variants", planes::variants(summary));
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = verification.map(trust::trust).unwrap_or_default();
     section(&mut blocks, 2, "How far to trust this run", trusted);
@@ -42,7 +42,8 @@ pub(super) fn all(
     blocks
 }
 
-/// Builds the folded part for engineers: results of each plane, and the inputs, which both planes share.
+/// Builds the folded part for engineers: the results of each plane, and the inputs that both planes
+/// share.
 fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>) -> Vec<Block> {
     const PARTS: &str = "odies, demands, stresses, forces, motion, energies";
     let Some(other) = other else {
@@ -67,7 +68,7 @@ fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>
     ]
 }
 
-/// Returns the moving picture: of one plane, or of both beside each other.
+/// Returns the moving picture of one plane, or of both planes side by side.
 pub(super) fn stage(
     run: &Run,
     summary: &Summary,
@@ -80,10 +81,10 @@ pub(super) fn stage(
     }
 }
 
-/// Builds the sections of one plane for engineers.
+/// Builds the sections for engineers of one plane.
 fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) -> Vec<Block> {
     let mut blocks = Vec::new();
-    section(&mut blocks, 3, "What became of every body", vec![Block::Table(fates(summary))]);
+    section(&mut blocks, 3, "Outcome of every body", vec![Block::Table(fates(summary))]);
     section(&mut blocks, 3, "Displacements", displacements(run, variants));
     let table = demand_table(&summary.demands, &summary.demands_whole_run);
     let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
@@ -124,7 +125,7 @@ fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     }
 }
 
-/// Returns the traces of the centers of the barrels on the top level.
+/// Returns the traces of the centers of the barrels in the top level.
 pub(crate) fn traces(run: &Run) -> Vec<Trace> {
     let parts = &run.assembly.parts;
     run.assembly
@@ -143,13 +144,13 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
         return Vec::new();
     }
     let strip = Strip::of_run(Arc::clone(scene), 6);
-    vec![Block::Figure(Figure::new("sequence", "The stack at the moments that matter.", strip))]
+    vec![Block::Figure(Figure::new("sequence", "The stack at the decisive moments.", strip))]
 }
 
 fn fates(summary: &Summary) -> Table {
     Table::of(
-        "Largest slip: against what the body stands on, while the stack stood. At the end: displacement \
-         against the ground from the place at rest.",
+        "Largest slip: relative to the support of the body, while the stack stood. At the end: displacement \
+         relative to the ground, from the position at rest.",
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),
@@ -162,15 +163,17 @@ fn fates(summary: &Summary) -> Table {
     )
 }
 
-/// Plots histories over time with the collapse marked.
+/// Plots histories over time, with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
     let mark = run.fates.collapse_time().map(|at| Mark { at, label: "gives way".into() });
     let plot = Plot::over_time(y, series, mark.into_iter().collect());
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns the range that shows a stack while it stands and as it collapses; falling bodies leave the plot, as in the
-/// paper's histories. `None` without a collapse: then everything is shown.
+/// Returns the range of values that shows a stack while it stands and as it collapses.
+///
+/// Falling bodies leave the plot, as in the histories of the paper. `None` without a collapse: then
+/// all values are shown.
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     let until = run.fates.collapse_time()? + 0.5;
     let mut range = [0.0_f64; 2];
@@ -188,7 +191,7 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let mut series = Vec::new();
     let stack = run.assembly.levels > 0;
     for part in &run.assembly.parts {
-        // In a stack plot the left column, as in the paper: barrels 1, 4 and 7.
+        // For a stack, plot the left column as the paper does: barrels 1, 4 and 7.
         let shown = if stack {
             part.kind == PartKind::Barrel && part.column == Some(1)
         } else {
@@ -206,14 +209,15 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let band = variants.map(|variants| band(run, variants)).unwrap_or_default();
     let mut caption = "Horizontal displacement relative to the ground.".to_owned();
     if !band.is_empty() {
-        caption += " Between the thin lines lie 90 % of all variants; one that has ended counts with its last value.";
+        caption += " 90 % of all variants lie between the thin lines; a variant that has ended counts with its last value.";
     }
     series.extend(band);
     let axis = Axis { range, ..Axis::new("displacement", "cm") };
     vec![history(run, "displacements", &caption, axis, series)]
 }
 
-/// Returns the 5 and 95 % fractiles over the variants of the displacement (cm) of the first barrel of the top level.
+/// Returns the 5 % and 95 % fractiles, over the variants, of the displacement (cm) of the first
+/// barrel of the top level.
 ///
 /// A variant that has ended keeps its last displacement.
 fn band(run: &Run, variants: &Variants) -> Vec<Series> {
@@ -226,12 +230,12 @@ fn band(run: &Run, variants: &Variants) -> Vec<Series> {
         return Vec::new();
     };
     let longest = paths.iter().map(|path| path.len()).max().unwrap_or(0);
-    // The histories of the run end with it.
+    // The histories of the shown run end with that run.
     let recorded = |at: &usize| *at as f64 <= RATE * run.end_time;
     let count = (0..longest).take_while(recorded).count();
     let displacement = |path: &&[[f32; 2]], at: usize| {
         let now = path.get(at).or(path.last())?;
-        // To a tenth of a millimeter, which keeps the page short.
+        // Rounded to a tenth of a millimeter, which keeps the page small.
         Some((1e4 * f64::from(now[0] - path.first()?[0])).round() / 100.0)
     };
     let times: Vec<f64> = (0..count).map(|at| at as f64 / RATE).collect();
@@ -262,10 +266,10 @@ fn stresses(run: &Run) -> Vec<Block> {
         blocks.insert(
             0,
             Block::Paragraph(
-                "Stress is force per meter of boundary in the plane of the model, drawn outward from where \
-                 it acts. A node is taken to bear on half of the distance to each of its neighbors, a contact \
-                 without nodes on 1 cm at full scale (an assumption); the stress is the force over that length. Gray: \
-                 at rest. Behind it: the largest until the first loss of seat."
+                "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from where \
+                 it acts. A node is assumed to bear on half of the distance to each of its neighbors, a contact \
+                 without nodes on 1 cm at full scale (an assumption); the stress is the force divided by that length. Gray: \
+                 at rest. Behind it: the largest stress until the first loss of seat."
                     .into(),
             ),
         );
@@ -273,7 +277,7 @@ fn stresses(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// Plots the normal stress along the boundary of a body, at rest and at its largest.
+/// Plots the normal stress along the boundary of a body, at rest and at its maximum.
 pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     let name = &run.assembly.parts[envelope.body].name;
     let mut samples = Vec::new();
@@ -290,8 +294,8 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
         peak.push(1e-3 * most);
     };
     if envelope.is_on_nodes() {
-        // Every node of a rack is a block as wide as its tributary length; nodes without any contact are left
-        // out, and a gap separates the rows.
+        // Every node of a rack is drawn as a block as wide as its tributary length; nodes that were
+        // never in contact are left out, and a gap separates the blocks.
         let mut order: Vec<usize> =
             (0..envelope.points.len()).filter(|i| envelope.peak[*i] > 0.0).collect();
         order.sort_by(|a, b| {
@@ -320,7 +324,7 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
         amplification: envelope.amplification(),
         coordinate: (coordinate.into(), unit.into()),
     };
-    let caption = format!("Normal stress on {name}, at rest and at its largest.");
+    let caption = format!("Normal stress on {name}, at rest and at its maximum.");
     Figure::new(format!("stress-{name}"), caption, picture)
 }
 
@@ -329,8 +333,8 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let table = interface_table(
-        "Force on the upper body, or on the one that is named first, largest in size of all steps until the first \
-         loss of seat, and of all steps of the run, falls included; positive up and to the right.",
+        "Force on the upper body, or on the body that is named first: the largest magnitude in any step until the first \
+         loss of seat, and in any step of the run, falls included; positive up and to the right.",
         &summary.interfaces,
     );
     let recording = &run.recording;
@@ -373,12 +377,12 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// Plots the energies that change in a run, with the sum of the stored and dissipated ones, which must equal the
-/// work of the ground.
+/// Plots the energies that change during a run, and the sum of those stored and dissipated, which
+/// must equal the work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let recording = &run.recording;
     let Some(balance) = &summary.energy else { return Vec::new() };
-    // Each as its increase since the start, in kJ.
+    // Each energy is plotted as its increase since the start, in kJ.
     let gained = |names: &[&str]| -> Vec<f64> {
         let channels: Vec<&[f64]> = names
             .iter()
@@ -400,24 +404,25 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
         ("lost to friction", &["friction"], 2),
         ("lost to damping", &["damped", "viscous"], 5),
     ];
-    // The area of the work of the ground lies behind all others, and their sum along its edge.
+    // The work of the ground is an area behind all other curves, and their sum should follow its
+    // edge.
     let ground = SeriesStyle { area: true, ..color(4) };
     let mut series = vec![line("work of the ground", &["ground work"], ground)];
     series.extend(parts.iter().map(|(label, names, index)| line(label, names, color(*index))));
     let all: Vec<&str> = parts.iter().flat_map(|(_, names, _)| names.iter().copied()).collect();
-    series.push(line("all of these together", &all, color(10)));
+    series.push(line("sum of all of these", &all, color(10)));
     vec![
         Block::Paragraph(format!(
-            "What the ground gave and what the stack lost in height equals what is stored and what is \
-             dissipated but for {} of {} kJ.",
+            "The energy supplied by the ground and by loss of height equals the energy stored and \
+             dissipated, except for a fraction of {} of {} kJ.",
             significant(balance.residual_ratio, 2),
             significant(1e-3 * balance.input, 3)
         )),
         history(
             run,
             "energy",
-            "Energy gained since the start. The balance holds where all of these together run along the \
-             shaded work of the ground: what falls gives up its height to motion, and that to friction \
+            "Energy gained since the start. The balance holds where the sum of all of these follows the edge of the \
+             shaded work of the ground: a falling body turns its height into motion, and the motion is lost to friction \
              and damping.",
             Axis::new("energy", "kJ"),
             series,

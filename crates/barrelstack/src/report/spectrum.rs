@@ -1,4 +1,4 @@
-//! The response spectrum of the ground motion, with the periods at which the stack rocked.
+//! Response spectrum of the ground motion, with the rocking periods of the stack.
 
 use barrelstack_motion::{GroundMotion, ResponseSpectrum, STANDARD_GRAVITY, standard_periods};
 use barrelstack_report::{
@@ -8,29 +8,30 @@ use barrelstack_report::{
 use crate::period::{Drift, RigidBlock, Swing, drift};
 use crate::run::Run;
 
-/// Damping ratio of the spectrum.
+/// Damping ratio of the response spectrum.
 const DAMPING: f64 = 0.05;
 
-/// Points of the curve of a rigid block.
+/// Number of intervals in the curve of the rigid block.
 const CURVE: u32 = 60;
 
-/// Rocking of a stack, and the equivalent rigid block.
+/// Rocking of a stack, and the rigid block equivalent to the stack.
 struct Rocking {
     drift: Drift,
     block: RigidBlock,
 }
 
 impl Rocking {
-    /// Returns the rocking of a run; `None` without drift.
+    /// Returns the rocking of a run; `None` for a free scene or without drift.
     fn of(run: &Run) -> Option<Self> {
         let block = RigidBlock::of(&run.assembly, run.scenario.run.gravity)?;
         let mut drift = drift(run).filter(|drift| drift.largest > 0.0)?;
-        // Figures are sorted by amplitude.
+        // The figures need the swings sorted by amplitude.
         drift.swings.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
         Some(Self { drift, block })
     }
 
-    /// Returns the period (s) of the block with a top displacement of `amplitude` (m), as that of the stack.
+    /// Returns the period (s) of the rigid block at the tilt that a top displacement of `amplitude`
+    /// (m) gives the stack.
     fn rigid(&self, amplitude: f64) -> f64 {
         self.block.period(amplitude / self.drift.height)
     }
@@ -39,14 +40,14 @@ impl Rocking {
         self.drift.swings.last()
     }
 
-    /// Returns the shortest and longest period (s) of the swings.
+    /// Returns the shortest and the longest period (s) of the swings.
     fn range(&self) -> (f64, f64) {
         let periods = || self.drift.swings.iter().map(|swing| swing.period);
         (periods().fold(f64::INFINITY, f64::min), periods().fold(0.0, f64::max))
     }
 }
 
-/// Plots the spectrum, and the periods of a rocking stack.
+/// Plots the response spectrum and, for a rocking stack, its periods.
 pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
     let rocking = Rocking::of(run);
     let mut blocks = Vec::new();
@@ -91,9 +92,9 @@ fn words(rocking: &Rocking) -> String {
         }
     };
     format!(
-        "A stack has no period of its own: the farther it rocks, the longer it takes, so the shaking \
-         that it answers to changes as it sways. While it stood, its top drifted by up to {reached} \
-         against its foot, and {measured}. A rigid block of the same mass and width at its foot {rigid} (Housner \
+        "A stack has no fixed natural period: the farther it rocks, the longer its period, so the shaking \
+         to which it responds changes as it sways. While it stood, its top drifted by up to {reached} \
+         relative to its foot, and {measured}. A rigid block of the same mass and width at its foot {rigid} (Housner \
          1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts \
          gives at every level and is slower.",
         significant(block.frequency, 3),
@@ -101,7 +102,8 @@ fn words(rocking: &Rocking) -> String {
     )
 }
 
-/// Plots the pseudo-acceleration spectrum of the horizontal component; `None` where it cannot be computed.
+/// Plots the pseudo-acceleration spectrum of the horizontal component; `None` if it cannot be
+/// computed.
 fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> {
     let step = motion.horizontal.natural_step();
     let sampled = motion.horizontal.sampled(step).ok()?;
@@ -127,20 +129,20 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
                 label: format!("rigid block at {}", centimeters(reached)),
             });
             caption.push_str(
-                " Dashed: the period of a rigid block of the shape of the stack at the largest drift \
-                 that it reached.",
+                " Dashed: the period of a rigid block with the shape of the stack, at the largest drift \
+                 that the stack reached.",
             );
         }
         match (&rocking.drift.swings[..], rocking.widest()) {
             ([one], _) => {
                 let label = format!("stack at {}", centimeters(one.amplitude));
                 plot.marks.push(Mark { at: one.period, label });
-                caption.push_str(" Dashed, too: the period of its one swing.");
+                caption.push_str(" Also dashed: the period of the only swing of the stack.");
             }
             (_, Some(_)) => {
                 let (from, to) = rocking.range();
                 plot.bands.push(Band { from, to, label: "swings of the stack".into() });
-                caption.push_str(" Shaded: the periods of its swings.");
+                caption.push_str(" Shaded: the periods of the swings of the stack.");
             }
             (_, None) => {}
         }
@@ -148,7 +150,7 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
     Some(Figure::new("spectrum", caption, plot))
 }
 
-/// Plots period against amplitude: every swing of the run, and the rigid block.
+/// Plots period against amplitude, for every swing of the run and for the rigid block.
 fn periods(rocking: &Rocking) -> Figure {
     let amplitudes: Vec<f64> = (0..=CURVE)
         .map(|k| 1.15 * rocking.drift.largest * f64::from(k) / f64::from(CURVE))
@@ -171,8 +173,8 @@ fn periods(rocking: &Rocking) -> Figure {
         interactive: true,
         ..Plot::default()
     };
-    let caption = "Period of rocking against its amplitude at the top: a rigid block of the same mass and \
-                   foot, and the swings of the drift while the stack stood, their periods twice the time \
-                   between zero crossings.";
+    let caption = "Rocking period against amplitude at the top: of a rigid block of the same mass and foot, and of the \
+                   swings of the drift while the stack stood. The period of a swing is twice the time between \
+                   zero crossings.";
     Figure::new("periods", caption, plot)
 }

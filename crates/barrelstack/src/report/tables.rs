@@ -1,4 +1,4 @@
-//! Tables of forces and demands on a stack and its devices, in a plane and in space.
+//! Tables of the forces and demands on a stack and its devices, for planar and spatial models.
 
 use barrelstack_report::{Block, Cell, Table};
 
@@ -13,7 +13,7 @@ fn kilonewtons(value: f64) -> Cell {
 /// Tabulates the demands on a stack until the first loss of seat, and over the whole run.
 pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     Table::of(
-        "Until the first loss of seat, and over the whole run, falls included.",
+        "Demands until the first loss of seat, and over the whole run, falls included.",
         DEMANDS.iter().filter_map(|demand| {
             Some((demand, demand.shown(until_loss)?, demand.shown(whole_run)))
         }),
@@ -28,7 +28,7 @@ pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     )
 }
 
-/// Returns the time (s) of the maximum of a force (N); empty for no force.
+/// Returns the time (s) at which a force (N) is largest; empty if the force is zero.
 fn at(force: f64, time: f64) -> Cell {
     Cell::measured((force != 0.0).then_some(time), 2)
 }
@@ -57,11 +57,11 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
     )
 }
 
-/// Tabulates the forces in the elements of a device; empty without any.
+/// Tabulates the forces in the elements of a device; empty without elements.
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(
-            "Largest {} of every {} until the first loss of seat, and over the whole run. Left and right are those of \
+            "Largest {} of every {} until the first loss of seat, and over the whole run. Left and right are as in \
              the picture.",
             words.force, words.one
         ),

@@ -1,14 +1,14 @@
-//! Reliability of a run, where repeats of it were made.
+//! Reliability of a run, from repeats with small changes.
 
 use barrelstack_report::{Block, Cell, Table};
 
 use crate::verify::{Repeat, Verification};
 
-/// Builds the section of a verification.
+/// Builds the report section of a verification.
 pub(super) fn trust(found: &Verification) -> Vec<Block> {
     let mut blocks: Vec<Block> = found.sentences().into_iter().map(Block::Paragraph).collect();
     let table = Table::of(
-        "Repeats of this run, each with one change. Falls are compared until the first repeat parts \
+        "Repeats of this run, each with one change. Falls are compared until the first repeat departs \
          from the run.",
         &found.repeats,
         &[
@@ -16,7 +16,7 @@ pub(super) fn trust(found: &Verification) -> Vec<Block> {
             ("outcome", "", &|repeat| Cell::text(outcome(repeat))),
             ("first body", "", &|repeat| Cell::maybe(repeat.outcome.first.as_ref())),
             ("gives way", "s", &|repeat| Cell::number(repeat.outcome.time, 4)),
-            ("parts from the run", "s", &|repeat| Cell::number(repeat.apart_at, 4)),
+            ("departs from the run", "s", &|repeat| Cell::number(repeat.apart_at, 4)),
             ("falls differ by", "ms", &|repeat| {
                 Cell::number(repeat.fall_difference.map(|seconds| 1e3 * seconds), 4)
             }),

@@ -1,4 +1,4 @@
-//! The sentences of a report.
+//! Sentences of a report.
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{capital, significant};
@@ -12,7 +12,8 @@ use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
 
-/// Returns the answer: of all variants where they were run, else of the single run, with its plane.
+/// Returns the verdict: over all variants if they were run, otherwise of the single run with its
+/// plane.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if spreads.is_empty() {
@@ -21,7 +22,7 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     variants::words::headline(&spreads)
 }
 
-/// Describes the result of the shown run in one sentence, without its plane.
+/// Describes the result of the shown run in one sentence, without naming the plane.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     single(run, summary, None)
 }
@@ -44,14 +45,16 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
             ));
             match crushed(summary) {
                 Some(load) => format!(
-                    "{stands}, but staves are crushed: they bear up to {load} of what they are stated to bear."
+                    "{stands}, but staves are crushed: they carry up to {load} of their stated capacity."
                 ),
                 None => stands + ".",
             }
         }
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
-        Outcome::Invalid { .. } => "The run broke down and says nothing about the stack.".into(),
+        Outcome::Invalid { .. } => {
+            "The computation failed, so the run says nothing about the stack.".into()
+        }
         Outcome::Collapse { mode: CollapseMode::Gravity, .. } => {
             let plane = plane.map_or_else(String::new, |plane| format!("{}, ", plane.words()));
             capital(&format!("{plane}the stack falls under its own weight, before it is shaken."))
@@ -75,7 +78,8 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
     }
 }
 
-/// Returns the largest utilization of staves until the first loss of seat; `None` up to 100 %.
+/// Returns the largest utilization of staves until the first loss of seat; `None` if that is at
+/// most 100 %.
 fn crushed(summary: &Summary) -> Option<String> {
     let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
     Some(format!("{:.0} %", 100.0 * load))
@@ -85,7 +89,7 @@ fn crushed(summary: &Summary) -> Option<String> {
 pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
     match variants {
         Some(Unfinished { done, of }) => format!(
-            "Stopped after {done} of {of} runs, of the stack as it is stated and its variants: there is no verdict."
+            "Stopped after {done} of {of} runs of the stack as stated and of its variants: there is no verdict."
         ),
         None => format!("Stopped at {time:.1} s, before the end of the run: there is no verdict."),
     }
@@ -100,7 +104,7 @@ fn levels(from: u32, to: u32) -> String {
     }
 }
 
-/// Describes the collapse.
+/// Describes the course of a collapse in one sentence.
 fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
     match mode {
@@ -114,7 +118,7 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
             "The part above, {part}, rocks on the barrels below and topples; rack {first} goes first."
         ),
         CollapseMode::RackSliding => format!(
-            "Rack {first} walks along the barrels below until it is off them, and takes {part} with \
+            "Rack {first} slides along the barrels below until it leaves them, and takes {part} with \
              it."
         ),
         CollapseMode::Overturning => "The whole stack turns over about its foot.".to_owned(),
@@ -124,7 +128,7 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     }
 }
 
-/// Describes the forces in a device; `None` without any elements.
+/// Describes the forces in a device; `None` if the device has no elements.
 pub fn device(Device { words, elements }: &Device) -> Option<String> {
     let strained = elements.iter().max_by(|a, b| a.peak.abs().total_cmp(&b.peak.abs()))?;
     let kilonewtons = significant(1e-3 * strained.peak.abs(), 2);
@@ -142,12 +146,14 @@ pub fn device(Device { words, elements }: &Device) -> Option<String> {
     let alone = elements.len() == 1;
     Some(match (broken.count(), first) {
         (0, _) | (_, None) if alone => {
-            format!("The {} holds; it bears up to {kilonewtons} kN{until}.", words.one)
+            format!("The {} holds; it carries up to {kilonewtons} kN{until}.", words.one)
         }
         (_, Some(time)) if alone => {
             format!("The {} {}, after {time:.1} s.", words.one, words.breaks)
         }
-        (0, _) | (_, None) => format!("All {all} hold; one bears up to {kilonewtons} kN{until}."),
+        (0, _) | (_, None) => {
+            format!("All {all} hold; the largest force in one of them is {kilonewtons} kN{until}.")
+        }
         (1, Some(time)) => format!("One of {all} {}, after {time:.1} s.", words.breaks),
         (count, Some(time)) => {
             format!("{count} of {all} {}, the first after {time:.1} s.", words.break_all)
@@ -157,7 +163,7 @@ pub fn device(Device { words, elements }: &Device) -> Option<String> {
 
 /// Describes the ground motion.
 fn shaking(motion: &MotionSummary) -> String {
-    // Formulas have common nouns as names: "a sine".
+    // Formulas have common nouns as names, such as "sine", and need an article.
     let formula = motion.name.chars().all(char::is_lowercase);
     let name = if formula { format!("a {}", motion.name) } else { motion.name.clone() };
     match (motion.pga == 0.0, motion.vertical) {
@@ -167,16 +173,17 @@ fn shaking(motion: &MotionSummary) -> String {
     }
 }
 
-/// Returns details behind the sentences: strength of the motion, number of the shown variant, differences of variants.
+/// Returns further details: strength of the motion, number of the shown variant, and how the
+/// variants differ.
 pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     let place =
         view.map_or_else(|| "The".to_owned(), |view| format!("{} the", capital(view.words())));
     let strength = |motion: &MotionSummary| {
-        // A run that ends before its motion may not have met the peaks.
+        // A run that ends before its motion may miss the peaks of the motion.
         let whole = run.cut().map_or_else(String::new, |_| {
             format!(
-                " in its {:.1} s, of which the run takes {:.1} s",
+                " in its {:.1} s, of which the run covers {:.1} s",
                 motion.duration, run.end_time
             )
         });
@@ -192,7 +199,8 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Returns the command that compares the remedy with the stack: of files their names, not their paths.
+/// Returns the command that compares the remedy with the stack; absolute paths are shortened to
+/// file names.
 pub(super) fn command(summary: &Summary) -> String {
     let command = summary.remedy.as_ref().and_then(|found| found.comparison.as_deref());
     let word = |word: &str| {
@@ -205,7 +213,8 @@ pub(super) fn command(summary: &Summary) -> String {
     command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
 }
 
-/// Returns words that identify the run of a sentence: "Along the barrels, in the run that is shown, ".
+/// Returns words that identify the run of a sentence, such as "Along the barrels, in the run that
+/// is shown, ".
 fn shown(run: &Run, summary: &Summary) -> String {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     match (view, summary.ensemble.is_some()) {
@@ -216,7 +225,7 @@ fn shown(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// Prefixes a sentence with introductory words.
+/// Prefixes a sentence with introductory words, and lowers its first letter.
 fn behind(begin: &str, sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().filter(|_| !begin.is_empty());
@@ -228,7 +237,7 @@ fn behind(begin: &str, sentence: &str) -> String {
 
 /// Returns the sentences that support the headline.
 ///
-/// Results of repeats replace the general warning.
+/// If the run was verified, the results of its repeats replace the general warning.
 pub(super) fn details(
     run: &Run,
     summary: &Summary,
@@ -260,12 +269,12 @@ pub(super) fn details(
     }
     if let Some(load) = crushed(summary) {
         let sentence = format!(
-            "Before any seat is lost staves bear up to {load} of what they are stated to bear, and are crushed."
+            "Before any seat is lost, staves carry up to {load} of their stated capacity and are crushed."
         );
         sentences.push(behind(&shown(run, summary), &sentence));
     }
     sentences.extend(summary.devices.0.iter().filter_map(device));
-    // Each plane, and half of the variants, have a component of their own.
+    // Each plane, and each half of the variants, has its own component of the motion.
     let shaken = summary.motion.as_ref().map(shaking);
     sentences.extend(shaken.map(|sentence| behind(&shown(run, summary), &sentence)));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
@@ -282,7 +291,7 @@ pub(super) fn details(
     sentences
 }
 
-/// Returns the provenance of the result, in pairs of name and value.
+/// Returns the provenance of the result, as pairs of name and value.
 pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));
@@ -292,28 +301,28 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     let step = 1e3 * time_step;
     pair("integration", format!("{method}, time step {step:.4} ms, {steps} steps"));
     let constants = match stiffness_basis {
-        "seat" => "stated per seat, however many contact nodes it is divided into",
+        "seat" => "stated per seat, independent of its number of contact nodes",
         "node" => "stated per contact node, as in the paper",
         "length" => "stated per meter of boundary",
-        "mixed" => "stated for some seats in one way and for some in another",
+        "mixed" => "stated on different bases for different seats",
         other => other,
     };
     pair("contact constants", constants.to_owned());
     let residual = |balance: &EnergyBalance| {
         format!(
-            "residual {} of the {} kJ that went through",
+            "residual {} of the {} kJ supplied",
             significant(balance.residual_ratio, 2),
             significant(1e-3 * balance.input, 3)
         )
     };
-    let lost = || "lost with the numbers".to_owned();
+    let lost = || "not available, because the computation failed".to_owned();
     pair("energy balance", summary.energy.as_ref().map_or_else(lost, residual));
     for (index, step) in summary.provenance.motion.iter().enumerate() {
         pair(&format!("motion, step {}", index + 1), step.clone());
     }
     let similitude = run.scenario.run.similitude;
     if similitude != 1.0 {
-        let scale = format!("length scale {similitude}, everything below at that scale");
+        let scale = format!("length scale {similitude}; all results are at that scale");
         pair("similitude", scale);
     }
     pairs

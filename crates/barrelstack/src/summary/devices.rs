@@ -1,4 +1,4 @@
-//! Forces in every device, under the names that it defines.
+//! Forces in the elements of every device, under the names that the device defines.
 
 use barrelstack_dynamics::{Element, Space};
 use barrelstack_report::described::{Described, Objects};
@@ -10,34 +10,35 @@ use crate::device::{DEVICES, FREE, Words};
 use crate::run::Run;
 use crate::watch::ElementFate;
 
-/// Every device with its force elements, and those of a free scene; an absent device has none.
+/// All devices with their force elements, including the elements of a free scene; an absent device
+/// has no elements.
 #[derive(Clone, Debug)]
 pub struct Devices(pub Vec<Device>);
 
-/// A device.
+/// A device and its force elements.
 #[derive(Clone, Debug)]
 pub struct Device {
-    /// Its display strings.
+    /// Display strings of the device.
     pub words: &'static Words,
-    /// Its elements.
+    /// Results of its force elements.
     pub elements: Vec<ElementSummary>,
 }
 
-/// One force element.
+/// Result of one force element.
 #[derive(Clone, Debug)]
 pub struct ElementSummary {
     words: &'static Words,
-    /// Such as "B5.1-R5 left".
+    /// Name of the element, such as "B5.1-R5 left".
     pub name: String,
-    /// The force (N) that is largest in size until the first loss of seat.
+    /// Force (N) with the largest magnitude until the first loss of seat.
     pub peak: f64,
-    /// Its time (s).
+    /// Time (s) of that force.
     pub peak_at: f64,
-    /// The force (N) that is largest in size over the whole run.
+    /// Force (N) with the largest magnitude over the whole run.
     pub peak_whole_run: f64,
-    /// Its time (s).
+    /// Time (s) of that force.
     pub peak_whole_run_at: f64,
-    /// Time (s) of its failure.
+    /// Time (s) at which the element failed; `None` if it did not.
     pub broken_at: Option<f64>,
 }
 
@@ -49,7 +50,8 @@ impl Devices {
         Self::borne(&assembly.model.elements().iter().zip(devices).zip(&run.elements))
     }
 
-    /// Returns the forces in the elements of a run, each given with the strings of its device.
+    /// Returns the forces in the elements of a run, each given with the display strings of its
+    /// device.
     pub fn borne<'a, S: Space + 'a>(
         elements: &(impl Iterator<Item = ((&'a Element<S>, &'static Words), &'a ElementFate)> + Clone),
     ) -> Self {
@@ -79,7 +81,7 @@ impl Devices {
     }
 }
 
-/// Serializes a list for every device, under its plural name.
+/// Serializes one list per device, under its plural name.
 impl Serialize for Devices {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let keyed = |device: &'_ Device| (key(device.words.many), device.elements.clone());
@@ -87,7 +89,7 @@ impl Serialize for Devices {
     }
 }
 
-/// Serializes its numbers under the names that its device defines.
+/// Serializes the forces under the names that the device defines.
 impl Serialize for ElementSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Words { force, broken, .. } = self.words;
@@ -107,17 +109,18 @@ impl Described for Devices {
         let number = |unit: &str, meaning: &str| json!({ "type": "number", "unit": unit, "description": meaning });
         let mut properties = Map::new();
         for Words { one, many, force, broken, .. } in all_words() {
-            let mut at = number("s", &format!("When it was {broken}."));
+            let mut at =
+                number("s", &format!("Time at which it was {broken}; null if it was not."));
             at["type"] = json!(["number", "null"]);
             let element = json!({
-                "name": { "type": "string", "description": "What it joins, and where." },
-                (format!("peak_{force}")): number("N", &format!("The {force} that is largest in size until the first loss of seat.")),
-                (format!("peak_{force}_at")): number("s", "When."),
-                (format!("peak_{force}_whole_run")): number("N", &format!("The {force} that is largest in size over the whole run.")),
-                (format!("peak_{force}_whole_run_at")): number("s", "When."),
+                "name": { "type": "string", "description": "The bodies that it joins, and its place." },
+                (format!("peak_{force}")): number("N", &format!("The {force} with the largest magnitude until the first loss of seat.")),
+                (format!("peak_{force}_at")): number("s", "Time of that force."),
+                (format!("peak_{force}_whole_run")): number("N", &format!("The {force} with the largest magnitude over the whole run.")),
+                (format!("peak_{force}_whole_run_at")): number("s", "Time of that force."),
                 (format!("{broken}_at")): at,
             });
-            objects.insert(key(one), closed(&format!("One {one}."), &element));
+            objects.insert(key(one), closed(&format!("Forces in one {one}."), &element));
             let list = json!({
                 "type": "array",
                 "items": { "$ref": format!("#/$defs/{}", key(one)) },
@@ -130,17 +133,17 @@ impl Described for Devices {
     }
 }
 
-/// Returns the strings of every device, and of the elements of free scenes.
+/// Returns the display strings of every device, and of the elements of free scenes.
 fn all_words() -> impl Iterator<Item = &'static Words> {
     DEVICES.iter().copied().chain([&FREE])
 }
 
-/// Converts words to a key of a document.
+/// Converts a name to a document key by replacing spaces with underscores.
 fn key(words: &str) -> String {
     words.replace(' ', "_")
 }
 
-/// Returns the schema of an object that has exactly these properties.
+/// Returns the schema of an object that has exactly the given properties.
 fn closed(meaning: &str, properties: &Value) -> Value {
     let required: Vec<&String> = properties.as_object().into_iter().flat_map(Map::keys).collect();
     json!({

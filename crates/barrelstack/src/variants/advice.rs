@@ -1,4 +1,4 @@
-//! The remedy in a sentence and as a table.
+//! The remedy as a sentence and as a table.
 
 use barrelstack_report::{Cell, Table, capital, listed};
 
@@ -7,7 +7,7 @@ use super::words::percent;
 use crate::scenario::title::{counted, number};
 
 impl Remedy {
-    /// Describes the remedy, or states that no tried change suffices.
+    /// Describes the remedy, or states that no change that was tried suffices.
     pub fn sentence(&self) -> String {
         let any = |kind: &str| self.tried.iter().any(|one| one.kind == kind);
         let straps = self.pretensions();
@@ -33,7 +33,7 @@ impl Remedy {
                 share(height)
             ),
             (None, Some(straps)) if any("height") => format!(
-                "{} would have stood in {}; fewer levels without them would not suffice",
+                "{} would have stood in {}; fewer levels without straps would not suffice",
                 name(straps),
                 share(straps)
             ),
@@ -41,7 +41,7 @@ impl Remedy {
                 format!("{} would have stood in {}", name(one), share(one))
             }
             (None, None) if !self.complete => {
-                return "What would have kept it up is not known: the search was stopped."
+                return "The changes that would have kept the stack up are not known, because the search was stopped."
                     .to_owned();
             }
             (None, None) => {
@@ -52,14 +52,18 @@ impl Remedy {
                     (true, false) => "fewer levels, down to one".to_owned(),
                     (false, _) => format!("straps tightened to {straps}"),
                 };
-                return format!("Nothing that was tried would have kept it up: {tried}.");
+                return format!(
+                    "None of the changes that were tried would have kept the stack up: {tried}."
+                );
             }
         };
-        let stopped = if self.complete { "" } else { " The search for more was stopped." };
+        let stopped =
+            if self.complete { "" } else { " The search for further changes was stopped." };
         format!("{}.{}{stopped}", capital(&sentence), self.confidence())
     }
 
-    /// States the confidence in sufficient changes, adjusted for the number of candidates.
+    /// States the upper confidence bound of the sufficient changes, adjusted for the number of
+    /// candidates.
     fn confidence(&self) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
@@ -78,26 +82,27 @@ impl Remedy {
         };
         let choice = match self.candidates {
             0 | 1 => String::new(),
-            many => format!(", the choice among {many} changes counted"),
+            many => format!(", allowing for the choice among {many} changes"),
         };
         format!(" At most {most} would fall (95 % confidence{choice}).")
     }
 
-    /// Returns the pretensions of the tried straps: "3, 4 and 5 kN".
+    /// Returns the pretensions of the straps that were tried, such as "3, 4 and 5 kN".
     fn pretensions(&self) -> String {
         let tried = self.tried.iter().filter_map(|one| one.pretension);
         format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
     }
 
-    /// Tabulates every change that was tried, in planes or in space.
+    /// Tabulates every change that was tried; `in_planes` selects the wording for planes rather
+    /// than for space.
     pub fn table(&self, in_planes: bool) -> Table {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
-            "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all \
-             stand{stand}. A change is given up at the end of a block of variants once too many have failed, so its share \
-             is not known. Intervals hold together, with 95 %, for all {} changes that may be tried{tried}. \
-             Straps do not slip on what they tie.",
+            "Changes that were tried, with the same variants; a change suffices if at least {:.0} % of all \
+             stand{stand}. A change is rejected at the end of a block of variants once too many have failed, so its share \
+             is not known. The intervals hold together with 95 % confidence for all {} changes that may be tried{tried}. \
+             Straps are assumed not to slip on what they tie.",
             100.0 * self.required_share,
             self.candidates
         );
@@ -123,7 +128,7 @@ impl Remedy {
     }
 }
 
-/// Names a change: "three levels", "five levels strapped together at 4 kN".
+/// Returns the name of a change, such as "three levels" or "five levels strapped together at 4 kN".
 pub(super) fn name(tried: &Tried) -> String {
     let levels = counted(tried.levels, "level");
     match tried.pretension {
@@ -137,7 +142,7 @@ pub(super) fn name(tried: &Tried) -> String {
     }
 }
 
-/// Describes the failures: "1 of 64 variants", "at least 4 of the first 8 variants".
+/// Describes the failures, such as "1 of 64 variants" or "at least 4 of the first 8 variants".
 fn falls(tried: &Tried) -> String {
     let Tried { variants, failed, share, suffices, .. } = tried;
     match share {
@@ -147,7 +152,7 @@ fn falls(tried: &Tried) -> String {
     }
 }
 
-/// Describes the share that stands: "63 of 64 variants".
+/// Describes the share that stands, such as "63 of 64 variants".
 fn share(tried: &Tried) -> String {
     let Tried { variants, failed, .. } = tried;
     if *failed == 0 {

@@ -1,4 +1,4 @@
-//! The answer to a scenario: statistics of its variants, and its most representative run.
+//! The answer to a scenario: statistics of its variants, and the run to show.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -15,24 +15,24 @@ use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{Scenario, View};
 use crate::summary::{Summary, Unfinished};
 
-/// Progress.
+/// Progress of an answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Advance {
-    /// Finished variants.
+    /// Number of finished variants.
     Variants {
         /// Number of finished variants.
         done: usize,
         /// Number of all variants.
         of: usize,
     },
-    /// Verdict of the first variants, in the order of their numbers, while the others are still to be run.
+    /// Verdict of the first variants by number, reported while the others are still to be run.
     First {
         /// Number of these variants, in each plane.
         variants: u32,
-        /// The sentence.
+        /// Verdict of these variants in one sentence.
         headline: String,
     },
-    /// Progress of the shown runs, in aggregate.
+    /// Combined progress of the runs that are to be shown.
     Run(Progress),
 }
 
@@ -43,23 +43,23 @@ pub enum RunChoice {
     Typical,
     /// The variant of this number; 0 is the nominal case.
     Number(u32),
-    /// The variant of this number, without running any others.
+    /// The variant of this number, without running any other variants.
     Alone(u32),
 }
 
-/// Results of a scenario.
+/// Results of a scenario, in one plane or in both.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The scenario.
     pub scenario: Scenario,
-    /// The governing plane: of both the one in which more variants collapse.
+    /// Results in the governing plane; with two planes, the plane in which more variants collapse.
     pub decides: Shown,
-    /// The other plane, where the scenario has both.
+    /// Results in the other plane, if the scenario has both planes.
     pub other: Option<Shown>,
 }
 
 impl Answer {
-    /// `true` if any of its work was interrupted.
+    /// `true` if any part of the work was interrupted.
     pub fn is_stopped(&self) -> bool {
         let mut planes = std::iter::once(&self.decides).chain(&self.other);
         planes.any(|shown| shown.run.interrupted || shown.summary.unfinished.is_some())
@@ -77,10 +77,11 @@ impl Answer {
         std::iter::once(&self.decides).chain(&self.other)
     }
 
-    /// Shows another variant instead, which is run with progress reported to an observer.
+    /// Returns the answer with another variant shown, which is run first; the observer receives the
+    /// progress and may cancel.
     ///
     /// # Errors
-    /// When it cannot be run.
+    /// When that variant cannot be run.
     pub(crate) fn with_variant(
         &self,
         number: u32,
@@ -95,8 +96,10 @@ impl Answer {
     }
 }
 
-/// Returns the medoid of the variants over all answers and planes, among those that the same component of the motion
-/// shakes in all of them; `None` where one of them has no variants.
+/// Returns the number of the medoid of the variants over all answers and planes; `None` if an
+/// answer has no variants.
+///
+/// Only variants that have the same component of the motion in all answers are eligible.
 pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundError> {
     let results = |shown: &'_ Shown| Some(shown.variants.as_ref()?.results.clone());
     let all: Option<Vec<Vec<CaseResult>>> =
@@ -106,7 +109,8 @@ pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundEr
     for answer in answers {
         found.push(planes(&answer.scenario)?);
     }
-    // The component by number and view, of the scenarios that include the plane.
+    // Components of the motion for a variant number and a plane, over the scenarios that have the
+    // plane.
     let components = |number: u32, view: Option<View>| {
         let planes = found.iter().flatten().filter(move |plane| plane.view() == view);
         planes.map(move |plane| plane.component(number).map(str::to_owned))
@@ -117,7 +121,7 @@ pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundEr
             all.next().is_none_or(|first| all.all(|other| other == first))
         })
     };
-    // If the comparison is of components, no number has the same in all.
+    // If the answers differ in the component of the motion, all numbers are eligible.
     let differ = !same(0);
     let allowed = |at: usize| differ || u32::try_from(at).is_ok_and(same);
     let all: Vec<&[CaseResult]> = all.iter().map(Vec::as_slice).collect();
@@ -129,17 +133,21 @@ pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundEr
 pub struct Shown {
     /// The run that is shown.
     pub run: Run,
-    /// Its summary, with the statistics of all variants; that of the governing plane includes the other's.
+    /// Summary of the run, with the statistics of all variants; the summary of the governing plane
+    /// includes that of the other plane.
     pub summary: Summary,
-    /// Results of all variants; `None` without variants, or if they were interrupted.
+    /// Results of all variants; `None` if there are none, or if they were interrupted.
     pub variants: Option<Variants>,
-    /// Results of the nominal case and of its variants, in the order of their numbers, if they were interrupted;
-    /// unfinished ones have the outcome `Interrupted`.
+    /// If the variants were interrupted, the results of the nominal case and of the variants, by
+    /// number; unfinished ones have the outcome `Interrupted`.
     pub stopped: Option<Vec<CaseResult>>,
 }
 
-/// Runs all variants of a scenario and then the run to be shown with all recordings, in one plane or in both;
-/// the observer receives progress and may cancel, which returns the results so far.
+/// Runs all variants of a scenario, then the run to show with all recordings, in one plane or in
+/// both.
+///
+/// The observer receives the progress and may cancel; a canceled answer has the results obtained so
+/// far.
 ///
 /// # Errors
 /// As [`Scenario::run`].
@@ -151,8 +159,10 @@ pub fn answer(
     answered(scenario, choice, None, observer)
 }
 
-/// Computes an [`answer`] that shows the medoid, from results of variants that were run elsewhere
-/// ([`run_some`](super::run_some)): those of all of them in each plane, in the order of their numbers.
+/// Builds an [`answer`] that shows the medoid, from results of variants that were run elsewhere.
+///
+/// `results` has, for each plane, the results of the nominal case and of all variants by number, as
+/// [`run_some`](super::run_some) returns them.
 ///
 /// # Errors
 /// As [`answer`].
@@ -180,7 +190,7 @@ fn answered(
     };
     let alone = matches!(choice, RunChoice::Alone(_));
     let varied = !alone && planes.iter().any(|plane| plane.count() > 0);
-    // Fail early: check the nominal case and its memory before running variants.
+    // Fail early: check that the nominal case can be run, and its memory, before running variants.
     for plane in planes.iter().filter(|_| varied) {
         check(&plane.scenario)?;
     }
@@ -219,7 +229,7 @@ fn answered(
         summary.ensemble = variants.as_ref().map(|variants| variants.spread.clone());
         shown.push(Shown { run, summary, variants, stopped });
     }
-    // Of equals the first, which is the plane across the barrels.
+    // Of two equal planes the first governs, which is the plane across the barrels.
     let worst = (1..shown.len())
         .fold(0, |worst, at| if weight(&shown[at]) > weight(&shown[worst]) { at } else { worst });
     let mut decides = shown.remove(worst);
@@ -231,10 +241,11 @@ fn answered(
 /// Number of variants after which a first verdict is reported.
 const FIRST: u32 = 8;
 
-/// Runs variants, the first ones and then the others, and reports the verdict of the first ones; those that are not
-/// finished when canceled are interrupted.
+/// Runs variants, first those of the first verdict, which is then reported, and then all others.
 ///
-/// The first to finish would be a biased sample, since runs that collapse end early.
+/// The first verdict uses the variants with the lowest numbers rather than those that finish first;
+/// these would be a biased sample, because runs that collapse end early. Variants that are not
+/// finished when canceled have the outcome `Interrupted`.
 fn in_order(
     planes: &[Plane],
     numbers: &[u32],
@@ -257,7 +268,7 @@ fn in_order(
             .collect();
         let of_views: Vec<(View, &Spread)> =
             spreads.iter().map(|(view, spread)| (*view, spread)).collect();
-        // A stop is noticed by the next variant.
+        // A request to stop is handled by the next variant.
         let _ = report(Advance::First { variants: FIRST, headline: words::headline(&of_views) });
     }
     let more = run_as_far(planes, others, &counted(planes.len() * first.len()))?;
@@ -267,8 +278,8 @@ fn in_order(
     Ok(results)
 }
 
-/// Returns the number of the run to show; the nominal case if that does not stand, so that the reason is
-/// reported.
+/// Returns the number of the run to show: the nominal case if it cannot be run, so that the reason
+/// is reported.
 fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     let stated = variants.and_then(|variants| variants.results.first());
     match (choice, variants) {
@@ -280,7 +291,7 @@ fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     }
 }
 
-/// Runs the selected variants of a scenario, each on a core of its own.
+/// Runs the selected variants of a scenario, each on its own core.
 fn run_selected(
     scenario: &Scenario,
     tasks: &[(&Plane, u32)],
@@ -288,13 +299,15 @@ fn run_selected(
 ) -> Result<Vec<Run>, RunFailure> {
     let scenarios: Vec<Scenario> =
         tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
-    // As it was given, both planes together.
+    // The scenario as given, with both planes.
     let stated = |_, run| Run { stated: Box::new(scenario.clone()), ..run };
     run_together(&scenarios, 0.0, &mut |now| report(Advance::Run(now)), &stated)
 }
 
-/// Runs scenarios on all cores and maps each result by `finish`, given its index. The observer receives the progress in
-/// aggregate; runs that have not begun count with an expected end (s).
+/// Runs scenarios on all cores and maps each result by `finish`, which receives its index.
+///
+/// The observer receives the combined progress; a run that has not begun counts with the expected
+/// end `end_time` (s).
 pub(crate) fn run_together<T: Send>(
     scenarios: &[Scenario],
     end_time: f64,
@@ -317,7 +330,8 @@ pub(crate) fn run_together<T: Send>(
     pool::map(&tasks, run, &|_| ()).into_iter().collect()
 }
 
-/// Returns the severity of a plane: the share that collapses, or 1 for a single collapse, then the share that falls.
+/// Returns the severity of a plane: the share of variants that collapse (1 for a single run that
+/// collapses), then the share of barrels that fall.
 fn weight(shown: &Shown) -> (f64, f64) {
     let outcome = &shown.summary.outcome;
     let barrels = outcome.barrels.max(1) as f64;

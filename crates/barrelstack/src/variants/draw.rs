@@ -1,4 +1,4 @@
-//! Draws one variant of a stack: the scenario with all uncertain parameters drawn.
+//! Draws a variant of a stack: the scenario with all its uncertain parameters drawn at random.
 
 use barrelstack_fragility::{normal_quantile, sobol};
 
@@ -7,10 +7,12 @@ use crate::scenario::{
     StackInterfaces, StackSpec,
 };
 
-/// Quantities that a whole stack shares, in the order of their axes.
+/// Random quantities that the whole stack shares, in the order of their axes in the sequence of
+/// points.
 ///
-/// The bodies follow with two axes each. In space their places along the barrels come after all of these, so that the
-/// first row of the stack draws the same values as in the plane across the barrels.
+/// Two axes per body follow. In space, one more axis per body, for its position along the barrels,
+/// comes last, so the first row of the stack draws the same values as in the plane across the
+/// barrels.
 #[derive(Clone, Copy)]
 pub(super) enum Shared {
     FrictionGround,
@@ -28,7 +30,7 @@ pub(super) enum Shared {
 /// Truncation of normal deviates, in standard deviations.
 const FARTHEST: f64 = 3.0;
 
-/// A point of the unit cube of all drawn quantities.
+/// A point in the unit cube whose axes are the drawn quantities.
 struct Point {
     number: u32,
     seed: u64,
@@ -47,7 +49,7 @@ impl Point {
         normal_quantile(self.uniform(axis)).clamp(-FARTHEST, FARTHEST)
     }
 
-    /// Returns a lognormal factor with median 1 and a dispersion.
+    /// Returns a lognormal factor with median 1 and the given dispersion.
     fn lognormal(&self, axis: Shared, dispersion: f64) -> f64 {
         libm::exp(dispersion * self.normal(axis as usize))
     }
@@ -58,7 +60,8 @@ pub(super) fn deviate(imperfections: &Imperfections, axis: Shared, number: u32) 
     Point::of(imperfections, number).normal(axis as usize)
 }
 
-/// Returns a variant by its number, from 1; a free scene has none and stays as it is.
+/// Returns a variant by its number, starting from 1; a free scene has no variants and is returned
+/// unchanged.
 pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     let mut changed = scenario.clone();
     let Scene::Stack { stack, imperfections, .. } = &mut changed.scene else { return changed };
@@ -75,7 +78,7 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     changed
 }
 
-/// Draws friction and contact constants: one draw for all pairs of the same materials.
+/// Draws friction and contact constants, with one draw for all pairs of the same materials.
 fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, dispersion);
@@ -113,7 +116,7 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
     }
 }
 
-/// Draws place and mass of every rack and barrel.
+/// Draws position and mass of every rack and barrel.
 fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
     let rows = |body: StackBody| {
         let many = match (body, stack.space) {
@@ -133,7 +136,7 @@ fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
             }
         }
     }
-    // The first row of all bodies has the axes of a stack in the plane.
+    // The first row of all bodies uses the same axes as a stack in the plane.
     places.sort_by_key(|(.., row)| row.unwrap_or(1));
     let first = Shared::Count as usize;
     let aside = |axis: usize| spread.placement * (2.0 * point.uniform(axis) - 1.0);
@@ -155,7 +158,7 @@ fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
     stack.overrides.extend(drawn);
 }
 
-/// Returns the mass (kg) that the scenario states for a body.
+/// Returns the mass (kg) of a body as stated in the scenario.
 fn mass(stack: &StackSpec, body: StackBody, level: u32, column: u32, row: Option<u32>) -> f64 {
     let here = |change: &&BodyOverride| change.row.is_none() || change.row == row;
     let changes = stack.changes_of(body, level, column).filter(here);
@@ -202,7 +205,7 @@ mod tests {
             assert_eq!(stack.overrides.len(), 12);
             assert!(stack.overrides.iter().all(|body| body.offset_x.abs() <= 1e-3));
             let off = stack.overrides[4].mass.unwrap() / stack.barrel.mass - 1.0;
-            // Three standard deviations, and the rounding of their sum.
+            // Three standard deviations; the small addend covers rounding.
             assert!(off.abs() < 0.03 + 1e-12, "{off}");
         }
         let places: Vec<f64> =

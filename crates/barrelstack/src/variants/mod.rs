@@ -1,8 +1,9 @@
-//! Variants of a stack, run together: every answer is a distribution.
+//! Variants of a stack, run together, so that every answer is a distribution.
 //!
-//! Collapse is chaotic, and friction is poorly known, so that a single run is an anecdote.
-//! A stack is therefore run as stated (number 0) and in variants (from number 1) that differ in unavoidable
-//! imperfections and unknown parameters ([`Imperfections`](crate::scenario::Imperfections)), in one plane or in both.
+//! Collapse is chaotic and friction is poorly known, so a single run proves little. A stack is
+//! therefore run as stated (number 0) and in variants (numbered from 1) that differ in unavoidable
+//! imperfections and in uncertain parameters ([`Imperfections`](crate::scenario::Imperfections)),
+//! in one plane or in both.
 //!
 //! ```
 //! use std::ops::ControlFlow;
@@ -48,15 +49,16 @@ pub use spread::{LEVEL, Range, Spread, fails};
 pub struct Plane {
     /// The nominal case.
     pub scenario: Scenario,
-    /// The motion with the other horizontal component, for the second half of the variants of a stack in both
-    /// planes.
+    /// The motion with the other horizontal component, for the second half of the variants of a
+    /// stack in both planes.
     exchanged: Option<MotionSpec>,
 }
 
-/// Returns a scenario in each plane that its stack has: across the barrels first.
+/// Returns a scenario in each plane of its stack, the plane across the barrels first.
 ///
-/// With both planes each has its own horizontal component of the record, across the barrels that of the
-/// scenario; in the second half of the variants they are exchanged, as in a stack turned by a right angle.
+/// With both planes, each has its own horizontal component of the record; the plane across the
+/// barrels has the component that the scenario states. In the second half of the variants the
+/// components are exchanged, as in a stack turned by a right angle.
 ///
 /// # Errors
 /// When the motion cannot be read.
@@ -89,17 +91,17 @@ impl Plane {
         self.scenario.stack().map(|stack| stack.view)
     }
 
-    /// Returns the number of variants besides the nominal case.
+    /// Returns the number of variants, not counting the nominal case.
     pub fn count(&self) -> u32 {
         self.scenario.imperfections().map_or(0, |imperfections| imperfections.variants)
     }
 
-    /// Returns the numbers of the nominal case and of all variants.
+    /// Returns the numbers of the nominal case (0) and of all variants.
     pub fn numbers(&self) -> Vec<u32> {
         (0..=self.count()).collect()
     }
 
-    /// Returns a variant by its number; the nominal case for 0.
+    /// Returns a variant by its number; 0 is the nominal case.
     pub fn variant(&self, number: u32) -> Scenario {
         if number == 0 {
             return self.scenario.clone();
@@ -109,7 +111,8 @@ impl Plane {
         variant
     }
 
-    /// Returns a variant by its number as it is run for its verdict, which may end before all has come to rest.
+    /// Returns a variant by its number as it is run for the verdict; it may end before everything
+    /// has come to rest.
     pub fn trial(&self, number: u32) -> Scenario {
         let mut trial = self.variant(number);
         if let (Until::Rest, Some(imperfections)) = (trial.run.until, trial.imperfections()) {
@@ -118,18 +121,20 @@ impl Plane {
         trial
     }
 
-    /// Returns the time (s) after the first loss of a seat at which trials end; `None` if they are followed to rest.
+    /// Returns the time (s) after the first loss of a seat at which trials end; `None` if they are
+    /// followed to rest.
     pub fn counted_for(&self) -> Option<f64> {
         Some(after_collapse(&self.trial(0))).filter(|time| time.is_finite())
     }
 
-    /// Returns the motion of a variant.
+    /// Returns the motion of a variant by its number.
     fn motion(&self, number: u32) -> &MotionSpec {
         let exchanged = self.exchanged.as_ref().filter(|_| self.is_exchanged(number));
         exchanged.unwrap_or(&self.scenario.motion)
     }
 
-    /// Returns the stated horizontal component of the record of a variant; `None` for the default and for formulas.
+    /// Returns the horizontal component of the record that a variant states; `None` for the default
+    /// component and for motions without a record.
     fn component(&self, number: u32) -> Option<&str> {
         match &self.motion(number).source {
             MotionSource::Record(record) => record.component.as_deref(),
@@ -137,12 +142,12 @@ impl Plane {
         }
     }
 
-    /// `true` if a variant is in the second half, whose components are exchanged.
+    /// `true` if a variant belongs to the second half, in which the components are exchanged.
     fn is_exchanged(&self, number: u32) -> bool {
         number > self.count().div_ceil(2)
     }
 
-    /// Returns a caveat on its motion for the reader of a result.
+    /// Returns a caveat about the motion of this plane.
     fn warning(&self, planes: usize) -> Option<String> {
         let recorded = matches!(self.scenario.motion.source, MotionSource::Record(_));
         (planes > 1 && recorded && self.exchanged.is_none()).then(|| {
@@ -152,7 +157,7 @@ impl Plane {
         })
     }
 
-    /// Prepares variants to run, by their numbers.
+    /// Prepares variants, given by number, for an ensemble.
     fn prepared(&self, numbers: &[u32]) -> Result<Vec<Prepared>, GroundError> {
         let own = Arc::new(self.scenario.ground()?);
         let exchanged = match &self.exchanged {
@@ -181,12 +186,14 @@ pub struct Variants {
     pub view: Option<View>,
     /// Results of the nominal case, which comes first, and of its variants.
     pub results: Vec<CaseResult>,
-    /// Their statistics.
+    /// Statistics of the variants.
     pub spread: Spread,
 }
 
-/// Runs the nominal case and all variants in all planes on all cores; the observer receives the numbers of
-/// finished and of all cases, from several threads, and may cancel, which returns `None`.
+/// Runs the nominal case and all variants in all planes, on all cores.
+///
+/// The observer receives the number of finished cases and the number of all cases, from several
+/// threads. It may cancel, which returns `None`.
 ///
 /// # Errors
 /// When a motion cannot be read.
@@ -194,14 +201,16 @@ pub fn run(
     planes: &[Plane],
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Option<Vec<Variants>>, GroundError> {
-    // All planes of one scenario have the same number.
+    // All planes of a scenario have the same number of variants.
     let numbers = planes.first().map(Plane::numbers).unwrap_or_default();
     let results = run_some(planes, &numbers, observer)?;
     Ok(results.map(|results| together(planes, &numbers, results)))
 }
 
-/// Runs only variants of these numbers, as [`run`] does, 0 for the nominal case: returns their results in each
-/// plane, in the order of their numbers, for use with results computed elsewhere ([`together`]).
+/// Runs only the variants with the given numbers, like [`run`]; number 0 is the nominal case.
+///
+/// Returns their results in each plane, in the order of the numbers, to be combined with results
+/// computed elsewhere ([`together`]). Returns `None` if canceled.
 ///
 /// # Errors
 /// As [`run`].
@@ -215,7 +224,8 @@ pub fn run_some(
     Ok(whole.then_some(results))
 }
 
-/// Runs variants as [`run_some`], but keeps finished results when canceled: all others are interrupted.
+/// Runs variants like [`run_some`], but keeps finished results when canceled; all others have the
+/// outcome `Interrupted`.
 ///
 /// # Errors
 /// As [`run`].
@@ -240,8 +250,8 @@ pub(crate) fn run_as_far(
     Ok(results.chunks(numbers.len().max(1)).map(<[CaseResult]>::to_vec).collect())
 }
 
-/// Combines the results in each plane: of the nominal case, which comes first, and of variants, all with their
-/// numbers.
+/// Combines results into statistics for each plane; the results are those of the nominal case,
+/// which comes first, and of variants with the given numbers.
 pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>) -> Vec<Variants> {
     let mut found = Vec::new();
     for (plane, results) in planes.iter().zip(results) {

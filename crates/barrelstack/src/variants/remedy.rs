@@ -1,8 +1,9 @@
-//! Remedy of a stack that falls: the smallest sufficient change among fewer levels and straps.
+//! Remedy for a stack that falls: the smallest change of height, or the loosest straps, that
+//! suffices.
 //!
-//! A change suffices when enough of its variants stand in every plane, of as many as the verdict has; these are the
-//! same variants by their numbers.
-//! The order and the statistics of the search are in `remedy/search.rs`; this module runs it.
+//! A change suffices if enough variants of the changed stack stand in every plane. The changed
+//! stack has the same number of variants as the original stack, with the same numbers. The module
+//! `search` defines the order and the statistics of the search; this module runs it.
 
 mod search;
 
@@ -22,78 +23,87 @@ use crate::scenario::{Scenario, Scene, Setting, Source};
 
 pub use self::search::{ENOUGH, Failed};
 
-/// Pretensions (N) of straps that are tried; a manual ratchet for webbing of 50 mm reaches no more than 5 kN,
-/// an assumption: labels of long-handled ratchets state about 500 daN (their STF, EN 12195-2).
+/// Pretensions (N) of the straps that are tried.
+///
+/// A manual ratchet for webbing of 50 mm is assumed to reach at most 5 kN: labels of long-handled
+/// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Variants that a thread takes at once: those of one bundle of lanes.
+/// Number of variants that a thread takes at a time, which fill one bundle of lanes.
 const BATCH: usize = 8;
 
 described! {
-    /// Changes that would have kept the stack up, as far as they were searched.
+    /// Changes that would have kept the stack up, as far as the search went.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
-        /// Share of variants that has to stand in every plane.
+        /// Share of variants that must stand in every plane.
         pub required_share: f64 as "1",
-        /// As many levels as suffice; null where none of those tried does.
+        /// The largest number of levels that suffices; null if no tried number does.
         pub height: Option<Tried>,
-        /// The loosest straps that suffice; null where none of those tried does.
+        /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
-        /// Changes that may have been tried, each in every plane: intervals hold for all of them together.
+        /// Number of changes that may be tried, each in every plane; the intervals hold for all of
+        /// them together.
         pub candidates: u32,
-        /// Every change that was tried, changes of height first.
+        /// Every change that was tried; changes of height come first.
         pub tried: Vec<Tried>,
-        /// True if all changes were tried; false if the search was stopped.
+        /// True if the search is complete; false if it was stopped.
         pub complete: bool,
-        /// The command that sets what suffices beside the stack as it is; null where nothing does, or no command
-        /// can say it.
+        /// Command that compares the sufficient changes with the stack as it is; null if no change
+        /// suffices, or if no command can express it.
         pub comparison: Option<String>,
     }
 
-    /// One change of the stack.
+    /// A change of the stack that was tried.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Tried {
         /// Kind of the change.
         pub kind: &'static str ["height", "straps"],
-        /// Levels of the stack.
+        /// Number of levels of the changed stack.
         pub levels: u32,
-        /// Pretension of the straps, which tie all levels; null for a change of height.
+        /// Pretension of the straps, which tie all levels together; null for a change of height.
         pub pretension: Option<f64> as "N",
         /// The change as overrides of the scenario.
         pub changes: Vec<String>,
         /// True if enough variants stand.
         pub suffices: bool,
-        /// Variants that were counted: all of them, or the first so many by their numbers where these have rejected it.
+        /// Number of variants counted: all, or only the first ones, by number, if the change was
+        /// rejected early.
         pub variants: u32,
-        /// Number of them that collapse, or have no verdict, in the plane in which most do.
+        /// Number of counted variants that collapse or have no verdict, in the plane with the most
+        /// of them.
         pub failed: u32,
-        /// The share that fails; null where the change was rejected, or the search stopped, before all variants were
-        /// counted.
+        /// Share of variants that fail; null if not all variants were counted, because the change
+        /// was rejected or the search was stopped.
         pub share: Option<f64> as "1",
-        /// Interval of that share which holds for all changes and planes of the search together with 95 % (Clopper and
-        /// Pearson, Bonferroni); null as the share.
+        /// Interval of that share (Clopper and Pearson, with Bonferroni's correction); the
+        /// intervals of all changes and planes of the search hold together with 95 %. Null if the
+        /// share is null.
         pub interval: Option<[f64; 2]> as "1",
     }
 }
 
-/// Progress callback: called from several threads with the count of finished runs of the change at hand; may cancel.
+/// Progress callback: receives the number of finished runs of the current change, from several
+/// threads; may cancel.
 pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// The variants of a changed stack, ready to run for their verdicts.
 pub trait Trial {
-    /// Runs a block of variants, counted from zero, in every plane: returns the number that fails in each, or breaks
-    /// when the observer cancels.
+    /// Runs a block of variants, numbered from zero, in every plane.
+    ///
+    /// Returns the number of failures in each plane, or `Break` if the observer cancels.
     fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Failed;
 }
 
-/// Prepares the variants of a changed stack.
+/// Function that prepares the variants of a changed stack.
 type Prepare<'a> = dyn Fn(&Scenario) -> Result<Box<dyn Trial>, GroundError> + 'a;
 
-/// Searches the smallest change of height, and of straps, that brings the failure rate of a stack below the limit.
+/// Searches for the largest number of levels, and for the loosest straps, with which the failure
+/// rate of a stack stays below the limit.
 ///
-/// `observer` is called from several threads with the count of finished runs of the change at hand, and may cancel.
-///
-/// `None` where the stack stands, has no variants, or its runs end before the motion.
+/// `observer` receives the number of finished runs of the current change, from several threads, and
+/// may cancel. Returns `None` if the stack stands, has no variants, or is run for less than the
+/// whole motion.
 ///
 /// # Errors
 /// When a motion cannot be read.
@@ -108,7 +118,8 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, spreads.iter().map(|(_, spread)| *spread), &prepare, observer)
 }
 
-/// Searches a remedy as [`remedy`], with variants that are run elsewhere; `spreads` are those of the stack as it is.
+/// Searches for a remedy like [`remedy`], with runs made by `prepare`; `spreads` are the statistics
+/// of the stack as it is.
 ///
 /// # Errors
 /// As [`remedy`].
@@ -121,7 +132,7 @@ pub fn remedy_by<'a>(
     if spreads.filter_map(Spread::largest_share).reduce(f64::max).is_none_or(enough) {
         return Ok(None);
     }
-    // Read once, not for every change.
+    // The records are read once rather than for every change.
     let scenario = &scenario.with_records(&mut from_disk)?;
     let end = scenario.ground()?.end();
     if scenario.stack().is_none() || scenario.run.duration.is_some_and(|run| run + CUT < end) {
@@ -132,12 +143,12 @@ pub fn remedy_by<'a>(
     Ok(Some(found))
 }
 
-/// `true` if the share that fails is low enough.
+/// `true` if a share of failures is low enough.
 fn enough(share: f64) -> bool {
     100.0 * share <= f64::from(100 - ENOUGH)
 }
 
-/// Tries the changes of a scenario.
+/// Tries all changes of a scenario, and stores the results in `found`.
 fn look(
     scenario: &Scenario,
     prepare: &Prepare<'_>,
@@ -162,7 +173,7 @@ fn look(
             Some(trial) => trial,
             none => {
                 let mut scenario = changes[change].scenario.clone();
-                // The course after a collapse does not matter here.
+                // The motion after a collapse does not matter here.
                 scenario.run.stop_after_collapse = Some(0.0);
                 none.insert(prepare(&scenario)?)
             }
@@ -184,7 +195,7 @@ fn look(
     Ok(())
 }
 
-/// A change, with its scenario.
+/// A change of the stack, with the changed scenario.
 struct Change {
     kind: &'static str,
     levels: u32,
@@ -193,7 +204,7 @@ struct Change {
     scenario: Scenario,
 }
 
-/// Returns the scenario with fewer levels, and straps on no more than those.
+/// Returns the change to fewer levels; straps on levels that no longer exist are removed.
 fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -212,7 +223,8 @@ fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     Some(Change { kind: "height", levels, pretension: None, changes, scenario })
 }
 
-/// Returns the scenario with all levels strapped together; `None` if its own straps are as tight, or would tear.
+/// Returns the change that straps all levels together; `None` if the stack has straps at least as
+/// tight, or if the straps would tear.
 fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -231,7 +243,7 @@ fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     Some(Change { kind: "straps", levels, pretension: Some(pretension), changes, scenario })
 }
 
-/// Returns the fields of a table that differ from their defaults.
+/// Returns the fields of a table that the scenario states, as TOML.
 fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     let settings = scenario.settings();
     let own = settings.iter().filter(|one| one.source == Source::Given);
@@ -248,7 +260,7 @@ fn given(scenario: &Scenario, table: &str) -> Vec<String> {
 }
 
 impl Change {
-    /// Summarizes its counts.
+    /// Summarizes the counts of the change.
     fn summarize(&self, counts: &Counts, plan: &Plan) -> Tried {
         let Self { kind, levels, pretension, changes, .. } = self;
         let whole = counts.whole(plan);
@@ -266,9 +278,9 @@ impl Change {
     }
 }
 
-/// Variants in planes, which run side by side.
+/// The variants of a stack in every plane, run on all cores.
 struct InPlanes {
-    /// The stack and its variants in every plane; the nominal case comes first.
+    /// For each plane the nominal case, followed by its variants.
     cases: Vec<Vec<Prepared>>,
     /// Number of finished runs.
     done: AtomicUsize,
@@ -312,7 +324,7 @@ impl Trial for InPlanes {
                 }
                 self.done.fetch_add(1, Ordering::Relaxed);
             };
-            // If it is canceled, no variant of the block counts.
+            // If the run was canceled, no variant of the block counts.
             let _ = simulate(cases, &mut Audience { on_case: &mut on_case, stop: &canceled });
         };
         pool::map(&batches, work, &|_| ());

@@ -1,4 +1,4 @@
-//! Statistics of all variants of a stack.
+//! Statistics of the variants of a stack.
 
 use std::collections::BTreeMap;
 
@@ -12,24 +12,25 @@ use crate::ensemble::CaseResult;
 use crate::outcome::Outcome;
 use crate::scenario::field::Named as _;
 
-/// Confidence level of all intervals.
+/// Confidence level of all intervals of single shares.
 pub const LEVEL: f64 = 0.95;
 
 described! {
-    /// Statistics of all variants; the nominal case is not among them.
+    /// Statistics of all variants, without the nominal case.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Spread {
-        /// Source of their differences.
+        /// Kind of the imperfections by which the variants differ.
         pub kind: &'static str ["hair", "ignorance", "both"],
-        /// Seed that they were drawn by.
+        /// Seed of the drawn imperfections.
         pub seed: u32,
-        /// Variants that have a verdict.
+        /// Number of variants with a verdict.
         pub variants: u32,
-        /// Number of variants that collapse: while they are shaken, or under their own weight before.
+        /// Number of variants that collapse, either while shaken or under their own weight before.
         pub collapsed: u32,
-        /// The share of those; null where no variant has a verdict.
+        /// Share of variants with a verdict that collapse; null if no variant has a verdict.
         pub share: Option<f64> as "1",
-        /// Wilson's interval of that share, 95 %; it spans what variants without a verdict could make of it.
+        /// Wilson's 95 % interval of that share, widened so that it holds whether the variants
+        /// without a verdict stand or collapse.
         pub interval: [f64; 2] as "1",
         /// Range of the share of stacks that collapse over the constants that nobody has measured: 95 % of the shares
         /// under constants drawn from their distributions, sampling included; null with fewer than 16 variants, if
@@ -39,63 +40,66 @@ described! {
         pub share_as_stated: Option<f64> as "1",
         /// The constants that nobody has measured, the most influential first; empty where `range` is null.
         pub decides: Vec<Unknown>,
-        /// When the first body lost its seat, of the variants that collapse while they are shaken.
+        /// Time of the first loss of a seat, over the variants that collapse while shaken.
         pub first_loss: Option<Range> as "s",
-        /// When the first barrel had fallen, of the variants in which one falls while they are shaken, until these
-        /// end.
+        /// Time of the first fall of a barrel, over the variants in which one falls while shaken
+        /// and before the run ends.
         pub first_fall: Option<Range> as "s",
-        /// Barrels that fall in variants that collapse while they are shaken, until these end.
+        /// Number of barrels fallen by the end of the run, over the variants that collapse while
+        /// shaken.
         pub barrels_fallen: Option<Range> as "1",
-        /// Time after the first loss of a seat until which falls are counted in every variant; null where all are
-        /// followed until nothing moves.
+        /// Time after the first loss of a seat during which falls are counted in every variant;
+        /// null if all variants are followed until nothing moves.
         pub counted_for: Option<f64> as "s",
-        /// Barrels in all.
+        /// Total number of barrels.
         pub barrels: usize,
-        /// The earliest end of a variant that stood while some of the motion was left; null where none was cut
-        /// short so.
+        /// Earliest time at which a standing variant ended before its motion did; null if none was
+        /// cut short.
         pub standing_until: Option<f64> as "s",
-        /// Variants in which staves bear more than they are stated to bear before any seat is lost.
+        /// Number of variants in which the load on staves exceeds their stated capacity before any
+        /// seat is lost.
         pub staves_overloaded: u32,
-        /// The largest load on staves before any seat is lost, over what they are stated to bear, of all variants;
-        /// null where none is known.
+        /// Largest load on staves before any seat is lost, as a share of their stated capacity,
+        /// over all variants; null if unknown.
         pub stave_utilization: Option<f64> as "1",
-        /// Variants by the mode of their collapse.
+        /// Number of variants per mode of collapse.
         pub modes: BTreeMap<&'static str, u32>,
-        /// Variants of those that collapse which fall under their own weight, before they are shaken.
+        /// Number of collapsing variants that fall under their own weight, before they are shaken.
         pub cannot_stand: u32,
-        /// Variants without a verdict: they could not be built, or their numbers broke down.
+        /// Number of variants without a verdict, because they could not be built or their
+        /// computation failed.
         pub broken: u32,
-        /// Why the first of those that fall before they are shaken, or have no verdict, does.
+        /// Reason of the first variant that falls before it is shaken or has no verdict.
         pub reason: Option<String>,
         /// Outcome of the nominal case.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
-        /// The number of the run that is most like all others, by outcome, mode, time and what falls, in all
-        /// planes together; 0 is the case as it is stated.
+        /// Number of the run that is most like all others in outcome, mode, time and fallen
+        /// barrels, over all planes; 0 is the nominal case.
         pub typical: u32,
-        /// The number of the run in which least happens.
+        /// Number of the least severe run.
         pub gentlest: u32,
-        /// The number of the run in which most happens.
+        /// Number of the most severe run.
         pub worst: u32,
     }
 
-    /// Distribution of values: their 5, 50 and 95 % fractiles, and the extremes.
+    /// Distribution of values: the 5, 50 and 95 % fractiles, and the extremes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Range {
-        /// A share of 5 % lies below.
+        /// 5 % fractile.
         pub p05: f64 as "that of the field",
-        /// Half lies below.
+        /// Median.
         pub p50: f64 as "that of the field",
-        /// A share of 95 % lies below.
+        /// 95 % fractile.
         pub p95: f64 as "that of the field",
-        /// The least.
+        /// Smallest value.
         pub least: f64 as "that of the field",
-        /// The greatest.
+        /// Largest value.
         pub most: f64 as "that of the field",
     }
 }
 
 impl Range {
-    /// Summarizes values; `None` without any.
+    /// Summarizes values; `None` without values.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
@@ -106,8 +110,8 @@ impl Range {
 }
 
 impl Spread {
-    /// Summarizes the results of the nominal case of a plane and of its variants, in this order; `None` for a scene
-    /// without variants.
+    /// Summarizes the results of the nominal case of a plane, which comes first, and of its
+    /// variants; `None` for a scene without variants.
     pub fn of(plane: &Plane, results: &[CaseResult]) -> Option<Self> {
         let imperfections = plane.scenario.imperfections()?;
         let variants = results.get(1..).unwrap_or_default();
@@ -126,7 +130,8 @@ impl Spread {
         let staves = || judged().filter_map(|result| result.demands.stave_utilization);
         let order = Order::of(results);
         let unknowns = decides::range(plane, results);
-        // The duration may end a variant sooner; differences of times have rounding errors.
+        // The duration of a run may end a variant sooner; the tolerance covers the rounding of time
+        // differences.
         let after = plane.counted_for();
         let cut = shaken().filter(|result| result.cut.is_some_and(|left| left > 0.0));
         let cut = cut.filter_map(|result| Some(result.end_time? - loss(result)?));
@@ -175,7 +180,8 @@ impl Spread {
         })
     }
 
-    /// Describes until when falls are counted: " within 2 s of" a loss of a seat; empty if until rest.
+    /// Returns a phrase for the time during which falls are counted, such as " within 2 s of
+    /// {loss}"; empty if they are counted until rest.
     pub fn counted(&self, loss: &str) -> String {
         let within = |time: f64| format!(" within {} s of {loss}", (10.0 * time).round() / 10.0);
         self.counted_for.map_or_else(String::new, within)
@@ -186,7 +192,8 @@ impl Spread {
         self.variants + self.broken
     }
 
-    /// Returns the share that collapses if every variant without a verdict does; `None` if none was run.
+    /// Returns the share that collapses if every variant without a verdict is counted as collapsed;
+    /// `None` if none was run.
     pub fn largest_share(&self) -> Option<f64> {
         let run = self.run();
         (run > 0).then(|| f64::from(self.collapsed + self.broken) / f64::from(run))
@@ -198,7 +205,7 @@ pub(super) fn judged(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }))
 }
 
-/// `true` if a case collapses, or has no verdict, which counts against a change.
+/// `true` if a case collapses or has no verdict; both count against a change.
 pub fn fails(result: &CaseResult) -> bool {
     collapsed(result) || !judged(result)
 }
@@ -208,7 +215,7 @@ pub(super) fn shown(result: &CaseResult) -> bool {
     judged(result) && !result.fell_at_rest()
 }
 
-/// `true` if it collapsed.
+/// `true` if a case collapsed.
 pub(super) fn collapsed(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Collapse { .. }))
 }

@@ -1,4 +1,4 @@
-//! Selection of runs to show: the medoid, the gentlest and the worst.
+//! Selection of the runs to show: the most typical (the medoid), the gentlest and the worst.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use super::spread::{collapsed, fallen, shown};
 use crate::ensemble::CaseResult;
 use crate::outcome::{CollapseMode, Outcome};
 
-/// The runs to show, by their numbers.
+/// Numbers of the runs to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Order {
     pub(super) typical: u32,
@@ -15,21 +15,23 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Selects among results, the nominal case first; returns that one if no case was shaken with a verdict.
+    /// Selects among results, of which the first is the nominal case; selects the nominal case if
+    /// no case was shaken with a verdict.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
         let severity = |a: &&usize, b: &&usize| severity(&results[**a], &results[**b]);
         Self {
             typical: typical(&[results], &|_| true),
-            // Of equals the first.
+            // Among equals, the first is chosen.
             gentlest: number(shown.iter().min_by(severity)),
             worst: number(shown.iter().rev().max_by(severity)),
         }
     }
 }
 
-/// Orders by collapse, fallen barrels and earlier time; standing stacks by drift.
+/// Compares two results by severity: collapse, number of fallen barrels, earlier collapse; for
+/// standing stacks, drift.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);
@@ -40,8 +42,10 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
         .then(drift(a).total_cmp(&drift(b)))
 }
 
-/// Returns the number of the run with the smallest sum of distances to all others (the medoid) over all planes, since a
-/// variant is one stack in all of them; of equals the first, and 0 if no allowed one has a verdict in all planes.
+/// Returns the number of the medoid: the run with the smallest sum of distances to all others.
+///
+/// The distances are added over all planes, because a variant is one stack in all planes. Among
+/// equals, the first is chosen; the result is 0 if no allowed run has a verdict in all planes.
 pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);
@@ -51,7 +55,8 @@ pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool)
     least.and_then(|(at, _)| u32::try_from(at).ok()).unwrap_or(0)
 }
 
-/// Returns the sum of the distances of each run to all others; `None` without a verdict.
+/// Returns, for each run, the sum of its distances to all others; `None` for a run without a
+/// verdict.
 fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
     let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
     let times = extent(shown.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));
@@ -65,8 +70,11 @@ fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
     results.iter().map(sum).collect()
 }
 
-/// Returns the distance of two runs: 4 for another outcome, 1 for another mode, 1 for the whole extent of times of
-/// collapse or of drifts, 1 for each barrel that falls in only one of them over all barrels.
+/// Returns the distance between two runs.
+///
+/// It is 4 if only one of them collapses. Otherwise a different mode adds 1, the difference of the
+/// collapse times (or of the drifts) adds its share of the extent `times` (or `drifts`), and
+/// barrels that fall in only one of the runs add their share of all barrels.
 fn distance(a: &CaseResult, b: &CaseResult, times: f64, drifts: f64) -> f64 {
     let apart = |a: f64, b: f64, all: f64| if all > 0.0 { (a - b).abs() / all } else { 0.0 };
     match (collapse(a), collapse(b)) {
@@ -95,7 +103,7 @@ fn drift(result: &CaseResult) -> Option<f64> {
     result.demands.top_drift_ratio
 }
 
-/// Returns the difference of the largest and the smallest value; zero without values.
+/// Returns the difference between the largest and the smallest value; zero without values.
 fn extent(values: impl Iterator<Item = f64>) -> f64 {
     let ends = values.fold(None, |ends: Option<(f64, f64)>, value| {
         Some(ends.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
@@ -142,7 +150,7 @@ mod tests {
         assert_eq!(Order::of(&results), Order { typical: 3, gentlest: 6, worst: 2 });
         let standing = [stands(0.1), stands(0.2), stands(0.35), CaseResult::failed("no".into())];
         assert_eq!(Order::of(&standing), Order { typical: 1, gentlest: 0, worst: 2 });
-        // Combined with another plane, in which the third has no verdict.
+        // Combined with another plane, in which the run at index 3 has no verdict.
         let mut other = vec![stands(0.1); 7];
         other[3] = CaseResult::failed("no".into());
         assert_eq!(typical(&[&results, &other], &|_| true), 2);

@@ -1,4 +1,4 @@
-//! Sentences on the results of variants.
+//! Sentences about the results of variants.
 
 use barrelstack_report::{Tone, capital};
 
@@ -6,31 +6,32 @@ use super::{Range, Spread};
 use crate::scenario::{Imperfection, Imperfections, View};
 use crate::summary::Summary;
 
-/// Share of collapsing variants from which a stack is said to fall.
+/// Share of collapsing variants at and above which the verdict is "Falls".
 const FALLS: f64 = 0.9;
 
-/// Share up to which it is said to stand.
+/// Share of collapsing variants up to which the verdict is "Stands".
 const STANDS: f64 = 0.05;
 
-/// Number of variants from which it may be said to stand: where none of seven falls, 35 % of such stacks may.
+/// Number of variants needed for the verdict "Stands"; if none of seven falls, up to 35 % of such
+/// stacks may fall.
 const ENOUGH: u32 = 8;
 
-/// What the variants of a stack show in a plane, or in space, the worse the later.
+/// Verdict on a stack in one plane or in space, ordered from best to worst.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Judgment {
     Stands,
-    /// None falls, but [`ENOUGH`] were not tried.
+    /// None falls, but fewer than [`ENOUGH`] variants have a verdict.
     TooFew,
-    /// None falls, or hardly any, until this time (s), where the runs end and the motion does not.
+    /// None or hardly any falls until this time (s), at which the runs end before the motion does.
     Cut(f64),
-    /// None could be judged.
+    /// No variant could be judged.
     None,
     NotSafe,
     Falls,
 }
 
 impl Judgment {
-    /// Judges by the share that collapses, with variants without a verdict as collapsed.
+    /// Judges by the share that collapses; variants without a verdict count as collapsed.
     fn of(spread: &Spread) -> Self {
         match (judged_share(spread), spread.standing_until) {
             (None, _) => Self::None,
@@ -42,7 +43,7 @@ impl Judgment {
         }
     }
 
-    /// Returns the worst of planes; `None` without any.
+    /// Returns the worst verdict of all planes; `None` without planes.
     fn worst<'a>(spreads: impl IntoIterator<Item = &'a Spread>) -> Option<Self> {
         let worse = |a, b| match (a, b) {
             (Self::Cut(one), Self::Cut(other)) => Self::Cut(one.min(other)),
@@ -56,9 +57,11 @@ impl Judgment {
     fn words(self) -> String {
         match self {
             Self::Stands => "Stands.".to_owned(),
-            Self::TooFew => "Too few variants to say that it stands.".to_owned(),
+            Self::TooFew => "Too few variants to conclude that the stack stands.".to_owned(),
             Self::Cut(until) => {
-                format!("Not decided, since the runs end at {until:.1} s and the motion does not.")
+                format!(
+                    "Not decided, because the runs end at {until:.1} s, before the motion does."
+                )
             }
             Self::None => "No verdict.".to_owned(),
             Self::NotSafe => "Not safe.".to_owned(),
@@ -67,23 +70,23 @@ impl Judgment {
     }
 }
 
-/// Plane of a spread; `None` in space.
+/// Statistics of variants, with their plane; `None` in space.
 type Placed<'a> = (Option<View>, &'a Spread);
 
-/// Returns the answer: of one plane, or of both, the one across the barrels first.
+/// Returns the answer for one plane or for both, given with the plane across the barrels first.
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
     answer(&placed)
 }
 
-/// Returns the answer of a stack in space.
+/// Returns the answer for a stack in space.
 pub fn headline_in_space(spread: &Spread) -> String {
     answer(&[(None, spread)])
 }
 
-/// Returns first what precedes the verdict, then the verdict, which is that of the worst plane, with the counts of all
-/// planes, those of the worst first, and what belongs to it.
+/// Builds the answer: events before the shaking, the verdict of the worst plane with the counts of
+/// all planes, and the course of the collapse.
 fn answer(planes: &[Placed<'_>]) -> String {
     let mut sentences: Vec<String> = planes.iter().flat_map(|plane| before(*plane)).collect();
     sentences.extend(verdict(planes));
@@ -149,11 +152,11 @@ pub fn measure(spread: &Spread) -> Option<String> {
     ))
 }
 
-/// Returns the verdict and the counts that it rests on.
+/// Returns the verdict and the counts that support it, those of the worst plane first.
 fn verdict(planes: &[Placed<'_>]) -> Option<String> {
     let judgment = Judgment::worst(planes.iter().map(|(_, spread)| *spread))?;
     let worst_first = worst_first(planes);
-    // Some may fall before they are shaken.
+    // "Shaken" is omitted if some variants fall before they are shaken.
     let shaken = planes.iter().all(|(_, spread)| spread.cannot_stand == 0);
     let clause = |(number, &(view, spread)): (usize, &Placed<'_>)| {
         // The first clause names the barrels and the variants.
@@ -175,15 +178,15 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     let load = spread.stave_utilization.filter(|_| spread.staves_overloaded > 0)?;
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     Some(capital(&format!(
-        "{place}in {} of {} variants staves are crushed before any seat is lost: they bear up to {:.0} % of what they \
-         are stated to bear.",
+        "{place}in {} of {} variants staves are crushed before any seat is lost: they carry up to {:.0} % of \
+         their stated capacity.",
         spread.staves_overloaded,
         spread.variants,
         100.0 * load
     )))
 }
 
-/// Returns the kind of the verdict, of planes that of the worst.
+/// Returns the tone of the verdict; that of the worst plane decides.
 pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     match Judgment::worst(planes.iter().map(|(_, spread)| *spread)) {
         None | Some(Judgment::None) => Tone::Invalid,
@@ -193,7 +196,7 @@ pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     }
 }
 
-/// Returns words for all of a number of variants.
+/// Returns a phrase for all of a number of variants.
 fn all_of(variants: u32) -> String {
     match variants {
         1 => "the one variant".to_owned(),
@@ -202,13 +205,14 @@ fn all_of(variants: u32) -> String {
     }
 }
 
-/// Returns the share by which a stack is judged, with variants without a verdict as collapsed; `None` if none has one.
+/// Returns the share by which a stack is judged; variants without a verdict count as collapsed.
+/// `None` if no variant has a verdict.
 fn judged_share(spread: &Spread) -> Option<f64> {
     spread.share.and(spread.largest_share())
 }
 
-/// Describes how many variants fall, with the 95 % interval of their share: "53 of 64 variants fall (72–90 %)"; `None`
-/// without any verdict.
+/// Describes how many variants fall, with the 95 % interval of their share, such as "53 of 64
+/// variants fall (72–90 %)"; `None` without any verdict.
 fn counts(spread: &Spread, noun: &str) -> Option<String> {
     let Spread { variants, collapsed, interval, .. } = spread;
     let [low, high] = interval.map(percent);
@@ -240,7 +244,7 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Describes the shown run, and the differences of variants, in the governing plane.
+/// Describes the shown run and how the variants differ, for the governing plane.
 pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> Vec<String> {
     let (Some(spread), Some(imperfections)) = (&summary.ensemble, imperfections) else {
         return Vec::new();
@@ -249,13 +253,13 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
     let planes = summary.spreads();
     let typical = if summary.variant == spread.typical { ", the most typical of all" } else { "" };
     let named = |number: u32| match number {
-        0 => "the stack as it is stated".to_owned(),
+        0 => "the stack as stated".to_owned(),
         number => format!("variant {number}"),
     };
     let decides = planes.iter().find(|(view, _)| Some(view.name()) == summary.view);
     let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!("{} ", view.words()));
     sentences.push(format!(
-        "Shown is {}{typical}; {}the gentlest is {}, the worst {}.",
+        "The run that is shown is {}{typical}; {}the gentlest is {}, the worst {}.",
         named(summary.variant),
         plane.unwrap_or_default(),
         named(spread.gentlest),
@@ -268,13 +272,13 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
         _ => "has no verdict".to_owned(),
     };
     let places = format!(
-        "in places by up to {} mm, in masses by {} %",
+        "in position by up to {} mm and in mass by {} %",
         tenths(1e3 * imperfections.placement),
         tenths(100.0 * imperfections.mass)
     );
-    let constants = "in friction and contact constants as far as those are not known";
+    let constants = "in friction and contact constants within their uncertainty";
     sentences.push(format!(
-        "As it is stated the stack {stated}; the variants differ from that {}.",
+        "The stack as stated {stated}; the variants differ from it {}.",
         match imperfections.kind {
             Imperfection::Hair => places,
             Imperfection::Ignorance => constants.to_owned(),
@@ -284,12 +288,13 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
     sentences
 }
 
-/// Returns `true` if no more variants fall than a stack that is said to stand may have, however few were tried.
+/// Returns `true` if the share that falls is at most that of the verdict "Stands", however few
+/// variants were run.
 pub(crate) fn stands(spread: &Spread) -> bool {
     judged_share(spread).is_some_and(|share| share <= STANDS)
 }
 
-/// Describes the result of a stack: "falls in 97 % of variants".
+/// Describes the result of a stack, such as "falls in 97 % of variants".
 pub fn fate(spread: &Spread) -> String {
     let variants = spread.variants;
     match (spread.share, spread.collapsed) {
@@ -301,7 +306,8 @@ pub fn fate(spread: &Spread) -> String {
     }
 }
 
-/// Describes time and extent of the fall: "the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall".
+/// Describes the time and the extent of the fall, such as "the first seat is lost between 5.6 and
+/// 6.4 s; 4 to 8 of 10 barrels fall".
 pub fn course(spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
         return "before it is shaken".to_owned();
@@ -324,9 +330,9 @@ pub fn course(spread: &Spread) -> String {
     format!("{when}{fallen}{}", spread.counted("that"))
 }
 
-/// Describes the number of fallen barrels: "4 to 8 of 10 barrels".
+/// Describes the number of fallen barrels, such as "4 to 8 of 10 barrels".
 fn barrels(fallen: Range, all: usize) -> String {
-    // As for times and in the table: 5 to 95 % of the variants.
+    // The range spans 5 to 95 % of the variants, like the times and the tables.
     let [from, to] = [fallen.p05, fallen.p95].map(|count| format!("{count:.0}"));
     if from != to {
         format!("{from} to {to} of {all} barrels")
@@ -337,8 +343,8 @@ fn barrels(fallen: Range, all: usize) -> String {
     }
 }
 
-/// Describes variants that fall under their own weight, and those without a verdict, in sentences that precede the
-/// verdict.
+/// Returns the sentences that precede the verdict: on variants that fall under their own weight,
+/// and on those without a verdict.
 fn before((view, spread): Placed<'_>) -> Vec<String> {
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     let (fallen, broken, all) = (spread.cannot_stand, spread.broken, spread.run());
@@ -357,7 +363,7 @@ fn before((view, spread): Placed<'_>) -> Vec<String> {
     if broken > 0 {
         let has = if broken == 1 { "has" } else { "have" };
         sentences.push(format!(
-            "{place}{} {has} no verdict: they could not be built or their numbers broke down; the verdict counts them \
+            "{place}{} {has} no verdict: they could not be built or their computation failed; the verdict counts them \
              as falling.",
             counted(broken)
         ));
@@ -370,7 +376,8 @@ fn tenths(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
-/// Formats a share in whole percent, or with one digit that counts where that would give none or all: "0.3 %", "99.7 %".
+/// Formats a share in whole percent; a share near 0 or 100 % gets one significant digit of the
+/// remainder: "0.3 %", "99.7 %".
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rest = percent.min(100.0 - percent);
@@ -448,7 +455,7 @@ mod tests {
         assert_eq!(of(64, 0), format!("Stands. {none} 64 variants falls (at most 6 %)."));
         assert_eq!(of(8, 0), format!("Stands. {none} 8 variants falls (at most 32 %)."));
         let few = format!(
-            "Too few variants to say that it stands. {none} 7 variants falls (at most 35 %)."
+            "Too few variants to conclude that the stack stands. {none} 7 variants falls (at most 35 %)."
         );
         assert_eq!(of(7, 0), few);
         let one = "Shaken across the barrels the one variant";
@@ -486,7 +493,7 @@ mod tests {
         assert_eq!(
             said,
             "Across the barrels, 2 of 65 variants fall under their own weight, before they are shaken. Across the \
-             barrels, 4 of 65 variants have no verdict: they could not be built or their numbers broke down; the verdict \
+             barrels, 4 of 65 variants have no verdict: they could not be built or their computation failed; the verdict \
              counts them as falling. Not safe. Across the barrels 2 of 61 variants fall (1–11 %)."
         );
         // The same counts in both planes.
@@ -495,7 +502,7 @@ mod tests {
             both.starts_with("Along the barrels, 2 of 65 variants fall under their own weight"),
             "{both}"
         );
-        // Of those that fall before they are shaken it is not said that they fall when shaken.
+        // Variants that fall before they are shaken are not reported as falling when shaken.
         assert!(both.contains("Not safe. Along the barrels 2 of 61 variants fall"), "{both}");
         // Variants without a verdict do not count as standing.
         (one.cannot_stand, one.collapsed, one.share) = (0, 0, Some(0.0));
@@ -510,11 +517,12 @@ mod tests {
     fn a_motion_that_is_cut_has_not_been_stood() {
         let [mut one, mut later] = [spread(64, 0), spread(64, 0)];
         (one.standing_until, later.standing_until) = (Some(1.0), Some(2.0));
-        let cut = "Not decided, since the runs end at 1.0 s and the motion does not. Shaken ";
+        let cut = "Not decided, because the runs end at 1.0 s, before the motion does. Shaken ";
         for planes in [
             vec![(View::Transverse, &one)],
             vec![(View::Transverse, &one), (View::Longitudinal, &later)],
-            // What stands in the other plane, in more variants, does not decide.
+            // A plane in which more variants fall, but few enough to stand, does not change the
+            // verdict.
             vec![(View::Transverse, &one), (View::Longitudinal, &spread(64, 1))],
         ] {
             assert!(headline(&planes).starts_with(cut), "{}", headline(&planes));
@@ -573,8 +581,8 @@ mod tests {
         one.stave_utilization = Some(0.97);
         assert!(!headline(&[(View::Transverse, &one)]).contains("staves"));
         (one.staves_overloaded, one.stave_utilization) = (5, Some(1.308));
-        let crushed = "5 of 64 variants staves are crushed before any seat is lost: they bear up to 131 % of what they \
-                       are stated to bear.";
+        let crushed = "5 of 64 variants staves are crushed before any seat is lost: they carry up to 131 % of \
+                       their stated capacity.";
         let said = headline(&[(View::Transverse, &one)]);
         assert!(
             said.ends_with(&format!("(at most 6 %). Across the barrels, in {crushed}")),

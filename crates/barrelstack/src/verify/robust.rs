@@ -1,4 +1,4 @@
-//! Robustness of an outcome.
+//! Robustness of an outcome against small changes.
 
 use barrelstack_report::described;
 
@@ -6,24 +6,25 @@ use super::Repeat;
 use crate::summary::OutcomeSummary;
 
 described! {
-    /// Properties of the run that all repeats share; none without repeats.
+    /// Properties of the run that all repeats share; all false without repeats.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Robust {
-        /// True if all agree that it stands or that it collapses.
+        /// True if all agree on whether the stack stands or collapses.
         pub kind: bool,
-        /// The mode of the collapse.
+        /// True if all agree on the mode of the collapse.
         pub mode: bool,
-        /// The first body that leaves its seat.
+        /// True if all agree on the first body that leaves its seat.
         pub first: bool,
-        /// Largest difference of the first fall; none where in some of them no barrel falls.
+        /// Largest difference of the time of the first fall; null if no barrel falls in some of the
+        /// runs.
         pub first_fall_within: Option<f64> as "s",
-        /// The least and the most barrels that fall in the run or a repeat.
+        /// Smallest and largest number of barrels that fall, over the run and its repeats.
         pub barrels_fallen: [usize; 2],
     }
 }
 
 impl Robust {
-    /// `true` if kind, mode and first body are the same everywhere.
+    /// `true` if kind, mode and first body agree in the run and all repeats.
     pub fn outcome(&self) -> bool {
         self.kind && self.mode && self.first
     }

@@ -1,5 +1,5 @@
 //! Helpers shared by several suites.
-#![allow(dead_code, reason = "every suite uses its own share")]
+#![allow(dead_code, reason = "each suite uses some of these")]
 
 use std::io::Write as _;
 

@@ -1,4 +1,4 @@
-//! `barrelstack calibrate`: contact parameters with their uncertainty, from a user's tests.
+//! `barrelstack calibrate`: contact parameters with their uncertainty, from the user's tests.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,50 +28,51 @@ Files are CSV with a header whose columns carry their unit, such as
   penetration (mm),force (kN)
 Lines that start with # are skipped; the decimal mark is a point.
 
-Intervals are of 95 % and hold what scatters in the file.
+Intervals are 95 % intervals and include only the scatter in the file.
 A mass or a stiffness given as an option, and the model itself, are taken as exact.";
 
 /// Arguments of `calibrate`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct CalibrateArgs {
-    /// The test.
+    /// Kind of test.
     #[command(subcommand)]
     test: Test,
 }
 
-/// The test.
+/// Kinds of tests, and their arguments.
 #[derive(Debug, Subcommand)]
 enum Test {
-    /// Stiffness k from a press test: columns `penetration (mm),force (kN)`; from the sag of a loaded rack: columns
-    /// `load (kg),sag (mm)` and, for a cradle, `angle (deg)`; or from a tap test: column `period (s)`, and --scenario.
+    /// Stiffness k from a press test (columns `penetration (mm),force (kN)`), from the sag of a
+    /// loaded rack (columns `load (kg),sag (mm)` and, for a cradle, `angle (deg)`), or from a tap
+    /// test (column `period (s)`, with --scenario).
     Stiffness(StiffnessArgs),
-    /// Restitution and damping c from drops: columns `drop height (mm),rebound height (mm)`, or
-    /// `time (s)` of the impacts of one bounce sequence.
+    /// Restitution and damping c from drop tests: columns `drop height (mm),rebound height (mm)`,
+    /// or the impact times `time (s)` of one bounce sequence.
     Drop(DropArgs),
-    /// Friction from pulls: columns `normal force (N),breakaway force (N)` and, if measured,
-    /// `sliding force (N)`; or from tilts: `angle (deg)` of first slip and, if measured,
-    /// `sliding distance (m),sliding time (s)` from rest at that angle.
+    /// Friction from pull tests (columns `normal force (N),breakaway force (N)` and, if measured,
+    /// `sliding force (N)`), or from tilt tests (`angle (deg)` of first slip and, if measured,
+    /// `sliding distance (m),sliding time (s)` from rest at that angle).
     Friction(FrictionArgs),
-    /// Stiffness, damping and friction together from the recorded response of a shaken stack.
+    /// Stiffness, damping and friction together, from the recorded response of a shaken stack.
     ///
-    /// The file has a column `time (s)` from the start of the scenario's motion, and columns named as
-    /// in histories.csv, such as `B1.1_displacement_x (mm)`.
-    /// Simulations are fitted to it from the values of the scenario on, to the minimum next to them.
+    /// The file has a column `time (s)`, counted from the start of the scenario's motion, and
+    /// columns named as in histories.csv, such as `B1.1_displacement_x (mm)`. The fit starts from
+    /// the values of the scenario and finds the nearest minimum.
     ///
-    /// Impacts, slips and falls make responses chaotic within seconds: take a short window of mild
-    /// shaking in which things still slide a little (--until), and no collapse.
+    /// Impacts, slips and falls make responses chaotic within seconds. Use a short window of mild
+    /// shaking (--until) in which bodies slide a little but nothing collapses.
     Response(ResponseArgs),
-    /// Stiffness, damping and friction together from observed collapses, on video or by eye.
+    /// Stiffness, damping and friction together, from collapses observed on video or by eye.
     ///
-    /// Each row of the file is a test: `mode` (ejection, rocking, rack-sliding, overturning or stands),
-    /// when barrels had fallen (`B4.1 fell (s)` and so on, or `first fall (s)` and `first barrel`),
-    /// `loss of seat (s)`, how long it was watched (`until (s)`), and `scenario` where tests differ.
-    /// Times count from the start of the motion; `stands` marks what had not fallen; an empty cell was
-    /// not observed.
+    /// Each row of the file is a test: `mode` (ejection, rocking, rack-sliding, overturning or
+    /// stands), the times of falls (`B4.1 fell (s)` and so on, or `first fall (s)` and `first
+    /// barrel`), `loss of seat (s)`, the end of the observation (`until (s)`), and `scenario` if
+    /// tests differ in it. Times count from the start of the motion. `stands` marks a body that did
+    /// not fall; an empty cell was not observed.
     ///
-    /// Many stacks are simulated, each built a little differently, with parameters spread around those
-    /// of the scenario; what made them go as observed is found by weighing them.
+    /// Many stacks are simulated, each built slightly differently, with parameters spread around
+    /// those of the scenario. Each simulation is weighted by its agreement with the observations.
     Collapse(CollapseArgs),
 }
 
@@ -81,11 +82,11 @@ struct ResultArgs {
     /// Print one JSON document, in SI units, in place of the table.
     #[arg(long)]
     json: bool,
-    /// Write a page that draws the measurements beside the fit into this folder, which must be new or
+    /// Write a page that plots the measurements and the fit into this folder, which must be new or
     /// empty.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Let the folder hold files, and replace those of an earlier page.
+    /// Allow a folder that is not empty, and replace the files of an earlier page.
     #[arg(long, requires = "out")]
     overwrite: bool,
 }
@@ -100,27 +101,27 @@ enum Pair {
     RackRack,
 }
 
-/// For which pair the result is.
+/// The pair of bodies to which the result applies.
 #[derive(Debug, clap::Args)]
 struct PairArgs {
-    /// The pair that was tested, for the lines to paste.
+    /// Pair of bodies that was tested, for the lines to paste into a scenario.
     #[arg(long, value_enum, default_value = "barrel-rack")]
     interface: Pair,
 }
 
-/// Changes of scenarios.
+/// Changes to the scenarios of the tests.
 #[derive(Debug, clap::Args)]
 struct ChangeArgs {
     /// Change a value of the scenario, such as stack.levels=2; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// The file of the ground motion, in place of the scenario's.
+    /// File of the ground motion, in place of the scenario's.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 }
 
 impl ChangeArgs {
-    /// Returns a scenario of this name with the changes.
+    /// Returns a scenario, given by name, with the changes.
     fn of(&self, name: &str) -> ScenarioArgs {
         let (set, record) = (self.set.clone(), self.record.clone());
         ScenarioArgs { scenario: name.to_owned(), set, record }
@@ -131,10 +132,11 @@ impl ChangeArgs {
 struct StiffnessArgs {
     /// The measurements (CSV).
     file: PathBuf,
-    /// Seats or contact nodes that share the force; k is that of one.
+    /// Number of seats or contact nodes that share the force; k is that of one.
     #[arg(long, visible_alias = "seats", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
-    /// The stack that was tapped, in the plane in which it swayed: a file (TOML), or the name of a built-in scenario.
+    /// Stack that was tapped, in the plane in which it swayed: a scenario file (TOML), or the name
+    /// of a built-in scenario.
     #[arg(long)]
     scenario: Option<String>,
     /// Change a value of that scenario, such as stack.levels=2; may be repeated.
@@ -150,13 +152,13 @@ struct StiffnessArgs {
 struct DropArgs {
     /// The measurements (CSV).
     file: PathBuf,
-    /// Mass that falls, such as "275 kg".
+    /// Mass that is dropped, such as "275 kg".
     #[arg(long, requires = "stiffness", value_name = "MASS")]
     mass: Option<String>,
     /// Stiffness k of one contact node, such as "9.8 kN/cm".
     #[arg(long, requires = "mass", value_name = "K")]
     stiffness: Option<String>,
-    /// Contact nodes that it falls on at once; k and c are those of one.
+    /// Number of contact nodes that meet at once; k and c are those of one.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
     #[command(flatten)]
@@ -177,15 +179,15 @@ struct FrictionArgs {
 
 #[derive(Debug, clap::Args)]
 struct ResponseArgs {
-    /// The scenario of the test: a file (TOML), or the name of a built-in scenario.
+    /// Scenario of the test: a file (TOML), or the name of a built-in scenario.
     scenario: String,
     /// The recorded histories (CSV).
     file: PathBuf,
-    /// Parameters to fit: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
-    /// (barrel-rack), mu-rg (rack-ground).
+    /// Parameters to fit: k and c (of barrel-rack; those of rack-ground keep their ratio to these),
+    /// mu-br (friction barrel-rack), mu-rg (friction rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
-    /// Leave out rows after this time, such as "1.5 s".
+    /// Ignore rows after this time, such as "1.5 s".
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
     #[command(flatten)]
@@ -196,27 +198,27 @@ struct ResponseArgs {
 
 #[derive(Debug, clap::Args)]
 struct CollapseArgs {
-    /// The scenario of the tests: a file (TOML), or the name of a built-in scenario.
+    /// Scenario of the tests: a file (TOML), or the name of a built-in scenario.
     scenario: String,
     /// Observations (CSV).
     file: PathBuf,
-    /// Parameters to find: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
-    /// (barrel-rack), mu-rg (rack-ground).
+    /// Parameters to find: k and c (of barrel-rack; those of rack-ground keep their ratio to
+    /// these), mu-br (friction barrel-rack), mu-rg (friction rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
-    /// Parameters lie within this factor of those of the scenario.
+    /// Range of the parameters: within this factor of those of the scenario.
     #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR")]
     within: f64,
-    /// Error of observed times, such as "0.05 s" (standard deviation).
+    /// Standard deviation of observed times, such as "0.05 s".
     #[arg(long, default_value = "0.05 s", value_name = "TIME")]
     timing: String,
-    /// Error of the placement of racks and barrels, such as "1 mm" (standard deviation).
+    /// Standard deviation of the positions of racks and barrels, such as "1 mm".
     #[arg(long, default_value = "1 mm", value_name = "LENGTH")]
     placement: String,
-    /// Sets of parameters to simulate, each once for every test.
+    /// Number of parameter sets to simulate, each once per test.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(50..=1_000_000))]
     simulations: u32,
-    /// Start of the random numbers; the same seed gives the same result.
+    /// Seed of the random numbers; the same seed gives the same result.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
@@ -228,7 +230,7 @@ struct CollapseArgs {
 }
 
 typed! {
-    /// A parameter, by its word.
+    /// A parameter by its name on the command line.
     enum Fitted of Parameter {
         K = Self::Stiffness,
         C = Self::Damping,
@@ -237,7 +239,7 @@ typed! {
     }
 }
 
-/// Reads the test, fits, prints, draws.
+/// Reads the test, fits the parameters, and prints and plots the result.
 pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     let result = match &args.test {
         Test::Stiffness(args) => &args.result,
@@ -279,7 +281,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Stiffness from a press, a sag or a tap test, by the columns of the file.
+/// Returns the stiffness from a press, sag or tap test, as determined by the columns of the file.
 fn pressed(args: &StiffnessArgs) -> anyhow::Result<Calibration> {
     let table = Table::load(&args.file)?;
     let interface = word(args.pair.interface);

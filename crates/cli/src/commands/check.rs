@@ -1,4 +1,4 @@
-//! `barrelstack check`: validates a scenario and tests that the stack stands before it is shaken.
+//! `barrelstack check`: validates a scenario and tests that the stack stands before the motion.
 
 use std::process::ExitCode;
 
@@ -13,10 +13,10 @@ use barrelstack::variants;
 use crate::args::{CheckArgs, ScenarioArgs};
 use crate::printer;
 
-/// Levels of the table.
+/// Numbers of levels in the table.
 const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
 
-/// Reads, builds and settles, and prints the findings.
+/// Reads the scenario, builds the stack, lets it settle, and prints the findings.
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     if args.table {
@@ -33,7 +33,7 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let one = if scenario.is_spatial() { barrelstack_space::check } else { barrelstack::check };
     let found: Result<Vec<_>, _> = planes.iter().map(|plane| one(&plane.scenario)).collect();
     let mut found = found.map_err(placed)?;
-    // As a run states it: that of the scenario as it was given, which both planes share.
+    // The fingerprint is that of the scenario as given, which both planes share.
     let given = scenario.with_records(&mut from_disk).map_err(|error| placed(error.into()))?;
     for one in &mut found {
         one.scenario_hash = format!("{:016x}", given.fingerprint());
@@ -53,10 +53,11 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Tabulates the stability of the stack of a scenario at every height, on its own rack and on those of the catalog.
+/// Tabulates the static stability of the stack of a scenario at every height, on its own rack and
+/// on those of the catalog.
 fn table(scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Result<StabilityTable> {
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).with_context(|| {
-        "--table is about a stack in its planes: take a scenario with a stack, and stack.view = \"both\", \"transverse\" or \
+        "--table needs a stack in a plane: use a scenario with a stack, and set stack.view to \"both\", \"transverse\" or \
          \"longitudinal\""
     })?;
     let known = catalog::RACKS.iter().map(|known| &known.rack);

@@ -29,25 +29,27 @@ pub(crate) struct CompareArgs {
     /// Scenario files (TOML) or names of built-in scenarios.
     #[arg(value_name = "SCENARIO", required = true)]
     scenarios: Vec<String>,
-    /// One more run: the first scenario with this value changed; may be repeated.
+    /// Further run: the first scenario with this value changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// The file of the ground motion of all runs, in place of the scenarios' own.
+    /// File of the ground motion of all runs, in place of those of the scenarios.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Variants of each stack to run beside it, in place of imperfections.variants; 0 for one run.
+    /// Number of variants of each stack to run, in place of imperfections.variants; 0 runs only the
+    /// stacks as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     variants: Option<u32>,
-    /// Name of a run, in the order of the runs, in place of a description of its differences; may be repeated.
+    /// Name of a run, in the order of the runs, in place of a description of the differences; may
+    /// be repeated.
     #[arg(long, value_name = "WORDS")]
     label: Vec<String>,
-    /// Where to write report.html, report.md and figures/; must be new or empty.
+    /// Folder for report.html, report.md and figures/; must be new or empty.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-compare")]
     out: PathBuf,
-    /// Let the folder hold files, and replace those of an earlier comparison.
+    /// Allow a folder that is not empty, and replace the files of an earlier comparison.
     #[arg(long)]
     overwrite: bool,
     /// Print one JSON document in place of the sentences.
@@ -63,7 +65,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let requested = requested(args);
     if requested.iter().filter(|(_, one)| one.scenario == "-").count() > 1 {
         bail!(
-            "standard input can be read for one run only: write the scenario to a file and name it"
+            "standard input can be read for one run only: write the scenario to a file and give its name"
         );
     }
     let mut scenarios = Vec::new();
@@ -113,13 +115,13 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         let (done, all) = (answers.len(), scenarios.len());
         printer::note(&format!("stopped; {done} of {all} runs are compared"));
     }
-    // A stop in this last part keeps the runs shown so far.
+    // If this last part is stopped, the runs shown so far are kept.
     let interrupt = Interrupt::listen();
     let answers = compare::aligned(answers, &mut |_| interrupt.flow())?;
     let sides = compare::sides(answers);
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());
-    // Print the verdict even if the files cannot be written.
+    // The verdict is printed even if the files cannot be written.
     let written = folder.write_page(&document);
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
     if args.json {
@@ -140,7 +142,8 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     Ok(super::status(broken))
 }
 
-/// Writes the one run that was finished, or begun, when the comparison was stopped, as its own report.
+/// Writes the report of the only run that was finished, or started, when the comparison was
+/// stopped.
 fn alone(
     args: &CompareArgs,
     folder: &Folder,
@@ -172,7 +175,7 @@ fn alone(
 fn requested(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
         scenario: scenario.clone(),
-        // Changes of one run apply on top of those of all runs.
+        // The changes of a single run apply after those of all runs.
         set: args
             .set
             .iter()
@@ -189,18 +192,18 @@ fn requested(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     files.chain(changed).collect()
 }
 
-/// Returns the name of a file without its folders and its extension.
+/// Returns the name of a file without folders and extension.
 fn short(name: &str) -> String {
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     stem.unwrap_or_else(|| name.to_owned())
 }
 
-/// Returns the path of a change.
+/// Returns the path in a change such as `path=value`.
 fn path(change: &str) -> &str {
     change.split_once('=').map_or(change, |(path, _)| path).trim()
 }
 
-/// Formats a change for reading: `stack.levels = 4`.
+/// Formats a change with spaces: `stack.levels = 4`.
 fn spaced(change: &str) -> String {
     change.split_once('=').map_or_else(
         || change.to_owned(),
@@ -208,7 +211,7 @@ fn spaced(change: &str) -> String {
     )
 }
 
-/// Lists the differences: the input, then its value in each run.
+/// Lists the differences, each with the input and its value in every run.
 fn table(differing: &[Difference]) -> Vec<String> {
     let mut lines = vec![String::new()];
     for one in differing {

@@ -10,7 +10,7 @@ use crate::args::{DemoArgs, ScenarioArgs};
 use crate::comparison::Command;
 use crate::printer;
 
-/// The scenario.
+/// Name of the scenario.
 const NAME: &str = "demo-napa";
 
 /// Runs the demo scenario and summarizes the result in a few sentences.
@@ -27,7 +27,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
         super::run::remedied(&mut answer, &command, true).map_err(placed)?;
     }
     crate::interrupt::finished();
-    // Print the verdict even if the files cannot be written.
+    // The verdict is printed even if the files cannot be written.
     let written = folder.write(&answer, None);
     let Shown { run, summary, .. } = &answer.decides;
     printer::lines(barrelstack::report::sentences(run, summary))?;

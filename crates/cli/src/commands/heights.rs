@@ -14,32 +14,32 @@ use crate::interrupt::Stopped;
 /// Arguments of `heights`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct HeightsArgs {
-    /// Rack of the catalog.
+    /// Name of the rack in the catalog.
     #[arg(long, value_name = "NAME", default_value = "two-barrel")]
     rack: String,
-    /// Barrel of the catalog.
+    /// Name of the barrel in the catalog.
     #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
     barrel: String,
-    /// Levels of the highest stack.
+    /// Number of levels of the highest stack.
     #[arg(long, value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
     highest: u32,
-    /// File of a further motion, such as that of your own site; may be repeated.
+    /// File of an additional motion, such as that of your own site; may be repeated.
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
-    /// Synthetic motions beside the bundled record.
+    /// Number of synthetic motions in addition to the bundled record.
     #[arg(long, value_name = "NUMBER", default_value_t = 22, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     synthetic: u32,
     /// Seed of motions and friction.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u32,
-    /// Where to write the page and the studies behind it; run again to go on after a stop.
+    /// Folder for the page and its studies; run the command again to continue after a stop.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]
     out: PathBuf,
     #[command(flatten)]
     page: PageArgs,
 }
 
-/// Runs every height in both directions, writes the page, prints the table.
+/// Runs every height in both directions, writes the page, and prints the table.
 pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let request = Request {
         rack: args.rack.clone(),

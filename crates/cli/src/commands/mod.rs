@@ -29,7 +29,7 @@ use barrelstack::{RunFailure, Scenario};
 
 use crate::args::{Args, Command, ScenarioArgs};
 
-/// Largest scenario (bytes) read from standard input.
+/// Maximum size (bytes) of a scenario read from standard input.
 const INPUT_LIMIT: u64 = 16 << 20;
 
 /// Runs the given subcommand.
@@ -54,14 +54,15 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Loads a scenario file, standard input (`-`), or a built-in scenario, with its changes.
+/// Loads a scenario file, standard input (`-`) or a built-in scenario, and applies the changes.
 ///
-/// An existing file takes precedence; any other name without a dot or a separator is a built-in scenario.
+/// An existing file takes precedence. A name without a dot or a separator that is not a file refers
+/// to a built-in scenario.
 fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     let mut overrides = args.set.clone();
     if let Some(record) = &args.record {
         let path = std::path::absolute(record)
-            .with_context(|| format!("cannot make sense of the path {}", record.display()))?;
+            .with_context(|| format!("cannot interpret the path {}", record.display()))?;
         let quoted = serde_json::to_string(&path.display().to_string())?;
         overrides.push(format!("motion.record={quoted}"));
     }
@@ -80,7 +81,7 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
         Scenario::load(path, &overrides)?
     } else {
         Scenario::builtin(&args.scenario, &overrides).map_err(|error| {
-            // A mistyped name may be meant for a file, which the library cannot know.
+            // A mistyped name may be meant as a file, which the library does not consider.
             if builtin::get(&args.scenario).is_none() {
                 no_such(&args.scenario, &error)
             } else {
@@ -91,7 +92,8 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// Returns the error for a name that is neither a file nor a built-in scenario, with the most similar name.
+/// Returns the error for a name that is neither a file nor a built-in scenario, with a hint about the
+/// most similar name.
 fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     let next = if let Problem::UnknownName { nearest: Some(nearest), .. } = error.problem() {
         format!("did you mean `{nearest}`?")
@@ -101,13 +103,14 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
 
-/// Returns the exit status of runs, as listed in the help; that of stopped work is set where the program ends.
+/// Returns the exit status of a run, as listed in the help; the status of interrupted work is set
+/// at the end of the program.
 fn status(broken: bool) -> ExitCode {
     if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-/// Adds the place in the scenario, or the scenario, to an error of a run; a record named on the command line has no
-/// place there.
+/// Adds the position in the scenario, or the name of the scenario, to an error of a run; a record
+/// given on the command line has no position in the scenario.
 fn placed(error: RunFailure, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     if args.record.is_some()
         && let RunFailure::Ground(error) = error

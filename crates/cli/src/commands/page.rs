@@ -1,4 +1,4 @@
-//! Helpers of commands that present the results of studies on a page.
+//! Shared parts of the commands that present study results on a page.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use crate::printer;
 use crate::progress::Progress;
 use crate::store::{folder_below, store_all, writable};
 
-/// Execution of studies, and contents of the page.
+/// Options of the commands that run studies and write a page.
 #[derive(Debug, clap::Args)]
 pub(super) struct PageArgs {
     #[command(flatten)]
@@ -27,11 +27,11 @@ pub(super) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Checks the folder, and registers a note that results are kept there.
+    /// Checks the folder, and registers the note that results are kept there.
     pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
         writable(out)?;
         keeps(format!(
-            "what was run is kept in {}, the same command goes on from there",
+            "finished runs are kept in {}; the same command continues from there",
             out.display()
         ));
         let options = RunOptions { lanes: self.lanes.lanes, ..RunOptions::default() };
@@ -47,7 +47,7 @@ impl PageArgs {
         mut lines: Vec<String>,
         warnings: &[String],
     ) -> anyhow::Result<ExitCode> {
-        // Print the answer even if the files cannot be written.
+        // The answer is printed even if the files cannot be written.
         let written = write_both(out, name, page, document);
         if self.json {
             printer::document(document)?;
@@ -63,7 +63,7 @@ impl PageArgs {
     }
 }
 
-/// Writes a page, and the document for programs under its name.
+/// Writes a page, and the JSON document under its name.
 pub(super) fn write_both(
     out: &Path,
     name: &str,
@@ -74,7 +74,8 @@ pub(super) fn write_both(
     write(out, page, &[(name, json.as_bytes())])
 }
 
-/// Writes a page as HTML and as Markdown with its figures beside it, and further files, all or none of them.
+/// Writes a page as HTML and as Markdown with its figures, and further files; either all files are
+/// written or none.
 pub(super) fn write(out: &Path, page: &Document, further: &[(&str, &[u8])]) -> anyhow::Result<()> {
     let figures = folder_below(out, "figures")?;
     let (html, bundle) = (html(page), markdown(page, "figures"));
@@ -85,7 +86,7 @@ pub(super) fn write(out: &Path, page: &Document, further: &[(&str, &[u8])]) -> a
     store_all(out, &texts.chain(files))
 }
 
-/// Returns the path of the page, to be printed below the findings.
+/// Returns lines that state the path of the page, to be printed below the findings.
 pub(super) fn place(out: &Path) -> [String; 2] {
     [String::new(), format!("page: {}", out.join("index.html").display())]
 }

@@ -23,35 +23,37 @@ use crate::progress::Progress;
 pub(crate) struct ProtectArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Hazard curve of the site: a CSV of `pgv (cm/s)` and `rate (1/year)`.
+    /// Hazard curve of the site: a CSV file with `pgv (cm/s)` and `rate (1/year)`.
     #[arg(long, value_name = "FILE", conflicts_with = "pgv")]
     site: Option<PathBuf>,
     /// Peak ground velocity to which motions are scaled, such as "50 cm/s"; may be repeated.
     #[arg(long, value_name = "VELOCITY")]
     pgv: Vec<String>,
-    /// A folder of recorded motions, all of which are used, in place of the bundled and synthetic ones.
+    /// Folder of recorded motions, all of which are used, in place of the bundled record and
+    /// synthetic motions.
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
-    /// Most that a protection may cost for a stack (US$).
+    /// Maximum cost of a protection for a stack (US$).
     #[arg(long, value_name = "NUMBER")]
     budget: Option<f64>,
-    /// Motions of a round, where none are named.
+    /// Number of motions per round, if no folder of motions is given.
     #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
     count: u32,
-    /// Rounds: everything is tried in the first, half of it in each that follows.
+    /// Number of rounds: the first tries all protections, each further round the better half of
+    /// them.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
     /// Seed of motions and friction.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u32,
-    /// Where to write the page and the studies behind it; run again to go on after a stop.
+    /// Folder for the page and its studies; run the command again to continue after a stop.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-protect")]
     out: PathBuf,
     #[command(flatten)]
     page: PageArgs,
 }
 
-/// Tries everything, writes the page, prints the table.
+/// Tries all protections, writes the page, and prints the table.
 pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     let request = request(args)?;
     let (options, progress) = args.page.begin(&args.out)?;
@@ -66,7 +68,7 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
         }
         other => other?,
     };
-    // The ranking is finished, and is kept if these two runs are stopped.
+    // The ranking is finished, and is kept if the two following runs are stopped.
     before_and_after(args, &mut found)?;
     crate::interrupt::finished();
     let file = (args.out.as_path(), "protect.json");
@@ -88,12 +90,12 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
     };
     if let Some(folder) = args.motions.as_ref().filter(|folder| !folder.is_dir()) {
         bail!(
-            "--motions {}: there is no such folder; give one with the files of records, or leave it out",
+            "--motions {}: there is no such folder; give a folder with record files, or leave the option out",
             folder.display()
         );
     }
     if let Some(budget) = args.budget.filter(|budget| !(*budget >= 0.0 && budget.is_finite())) {
-        bail!("--budget {budget}: expected a sum of US$ of zero or more");
+        bail!("--budget {budget}: expected an amount in US$ of zero or more");
     }
     Ok(Request {
         scenario,
@@ -107,7 +109,7 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
     })
 }
 
-/// Parses velocities (m/s), ascending, each once.
+/// Parses velocities (m/s), sorted and without duplicates.
 fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
     let read = |text: &String| {
         let said =
@@ -122,7 +124,8 @@ fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
     Ok(all)
 }
 
-/// Shows the stack as it is and with the best protection side by side, under the motion of the scenario.
+/// Adds a comparison of the stack as it is and with the best protection, under the motion of the
+/// scenario.
 fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<()> {
     let progress = Progress::new(!args.page.quiet);
     let shown = found.show_before_and_after(&mut |reached| progress.advance(reached));
@@ -154,6 +157,8 @@ fn lines(found: &Ranking) -> Vec<String> {
             significant(one.fallen.mean, 2)
         ));
     }
-    lines.push("* nothing that was tried costs no more and loses less".to_owned());
+    lines.push(
+        "* no other protection that was tried loses less at the same or a lower cost".to_owned(),
+    );
     lines
 }

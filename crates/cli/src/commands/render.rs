@@ -1,4 +1,4 @@
-//! `barrelstack render`: a run as figures, a printed report, films and a ParaView series.
+//! `barrelstack render`: a run as figures, a report for printing, animations and a ParaView series.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,30 +20,31 @@ pub(crate) struct RenderArgs {
     pub(super) scenario: ScenarioArgs,
     #[command(flatten)]
     variants: VariantArgs,
-    /// Where to write: figures/ with report.md beside it, report.pdf, animation/, frames/, paraview/.
+    /// Folder to write to: figures/ with report.md beside it, report.pdf, animation/, frames/,
+    /// paraview/.
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
-    /// Write only this part; may be repeated. Of runs in space there is `paraview` alone.
+    /// Part to write; may be repeated. Runs in space have `paraview` only.
     #[arg(long, value_enum, value_name = "PART")]
     only: Vec<PartName>,
     #[command(flatten)]
     figures: FigureArgs,
-    /// Paper of report.pdf.
+    /// Paper size of report.pdf.
     #[arg(long, value_enum, value_name = "PAPER", default_value = "a4")]
     paper: PaperName,
-    /// Pictures, and ParaView times, for every second of the run; animations show at most 50.
+    /// Pictures and ParaView time steps per second of the run; animations show at most 50.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
     pub(super) rate: f64,
-    /// Film the run from this time on (s).
+    /// Start of the film (s).
     #[arg(long, value_name = "SECONDS")]
     from: Option<f64>,
-    /// Film the run up to this time (s).
+    /// End of the film (s).
     #[arg(long, value_name = "SECONDS")]
     to: Option<f64>,
     /// Longer side of animations (pixels).
     #[arg(long, value_name = "PIXELS", default_value = "480", value_parser = clap::value_parser!(u32).range(64..=4096))]
     size: u32,
-    /// Remove what an earlier rendering wrote in the places of these parts.
+    /// Replace what an earlier rendering wrote for these parts.
     #[arg(long)]
     pub(super) overwrite: bool,
     /// Show no progress.
@@ -52,16 +53,16 @@ pub(crate) struct RenderArgs {
 }
 
 typed! {
-    /// The parts, as typed.
+    /// The parts, by their names on the command line.
     enum PartName of Part {
         /// Every figure of the report, with its numbers as CSV.
         Figures = Self::Figures,
-        /// The report on paper, as PDF.
+        /// The report for printing, as PDF.
         Report = Self::Report,
-        /// The stack as GIF and as animated PNG, which play in any browser.
+        /// The stack as GIF and as animated PNG, which play in every browser.
         Animation = Self::Animation,
-        /// Numbered pictures of one size, from which any encoder makes a video, such as
-        /// `ffmpeg -framerate 20 -i frame-%04d.png -pix_fmt yuv420p stack.mp4`.
+        /// Numbered pictures of equal size, from which an encoder makes a video, such as `ffmpeg
+        /// -framerate 20 -i frame-%04d.png -pix_fmt yuv420p stack.mp4`.
         Frames = Self::Frames,
         /// Bodies and contact forces over time.
         Paraview = Self::Paraview,
@@ -71,12 +72,12 @@ typed! {
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
-        _ => Err("expected a number of pictures a second above zero, such as 20".into()),
+        _ => Err("expected a number of pictures per second above zero, such as 20".into()),
     }
 }
 
 impl RenderArgs {
-    /// Returns the parts, each once, in the order of the help.
+    /// Returns the parts to write, each once, in the order of the help.
     fn parts(&self) -> Vec<Part> {
         let requested = |part: &Part| {
             self.only.is_empty() || self.only.iter().any(|name| Part::from(*name) == *part)
@@ -84,7 +85,7 @@ impl RenderArgs {
         Part::ALL.into_iter().filter(requested).collect()
     }
 
-    /// Returns the first part requested by name that runs in space do not have.
+    /// Returns the first requested part that runs in space do not have.
     pub(super) fn lacking_in_space(&self) -> Option<Part> {
         let requested = self.only.iter().map(|name| Part::from(*name));
         requested.into_iter().find(|part| *part != Part::Paraview)
@@ -94,14 +95,14 @@ impl RenderArgs {
         let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY));
         if !(from >= 0.0 && to > from) {
             bail!(
-                "--from {from} --to {to}: expected two times (s), the first from 0 on, the second later"
+                "--from {from} --to {to}: expected two times (s), the first not negative and the second later"
             );
         }
         Ok((self.from.is_some() || self.to.is_some()).then_some([from, to]))
     }
 }
 
-/// Runs the scenario and writes its parts.
+/// Runs the scenario and writes the requested parts.
 pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
     let selection = super::run::selected(&mut scenario, args.variants)?;
@@ -116,7 +117,7 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         between: args.between()?,
         largest: args.size,
     };
-    // Check the folder before the work is done.
+    // The folder is checked before the computation starts.
     let folder = RenderFolder::prepare(&args.out, &args.parts(), args.overwrite)?;
     for part in args.parts() {
         crate::interrupt::writes_to(&args.out.join(part.place()));
@@ -126,7 +127,7 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
     let Shown { run, summary, .. } = &answer.decides;
     how.check(run).map_err(anyhow::Error::msg)?;
-    keeps(format!("the parts that are whole are in {}", args.out.display()));
+    keeps(format!("the finished parts are in {}", args.out.display()));
     let written = folder.write(run, summary, &how)?;
     printer::lines(written.iter().map(|part| match part.files {
         1 => part.place.display().to_string(),

@@ -1,4 +1,4 @@
-//! `barrelstack reproduce`: numbers and figures of the paper beside ours.
+//! `barrelstack reproduce`: numbers and figures of the paper compared with those of the program.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -42,7 +42,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Creates the folder before the work is done, and checks that it is writable.
+/// Creates the folder before the computation starts, and checks that it is writable.
 fn prepare(out: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
     writable(out)

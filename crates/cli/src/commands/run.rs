@@ -19,14 +19,14 @@ use crate::comparison::Command;
 use crate::printer;
 use crate::progress::Progress;
 
-/// Largest page (bytes) that is read.
+/// Maximum size (bytes) of the page that contains the program.
 const PAGE_LIMIT: usize = 64 << 20;
 
-/// Runs and reports.
+/// Runs the scenario and prints and writes the result.
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
     let selection = selected(&mut scenario, args.variants)?;
-    // Check the folder before the work is done.
+    // The folder is checked before the computation starts.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() {
         return super::space::run(args, &scenario, selection, folder.as_ref());
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let verification =
         args.verify.then(|| repeated(run, !args.quiet)).transpose().map_err(placed)?;
     crate::interrupt::finished();
-    // Print the verdict even if the files cannot be written.
+    // The verdict is printed even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
         folder.write(&answer, verification.as_ref())?;
@@ -72,21 +72,21 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     Ok(status(&answer))
 }
 
-/// Reads the page that holds the program.
+/// Reads the page that contains the program.
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = system::read(path, PAGE_LIMIT)
-        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is no text".to_owned()))
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not a text".to_owned()))
         .map_err(|reason| anyhow!("cannot read the page {}: {reason}", path.display()))?;
     if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
         bail!(
-            "{} holds no engine: take barrelstack.html of a release, or make one with `cargo xtask web`",
+            "{} does not contain the program: use barrelstack.html of a release, or make one with `cargo xtask web`",
             path.display()
         );
     }
     Ok(page)
 }
 
-/// Returns the run to show; sets the number of variants as requested.
+/// Returns the run to show, and sets the number of variants as requested.
 pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<RunChoice> {
     let count = match &mut scenario.scene {
         Scene::Stack { imperfections, .. } => {
@@ -96,13 +96,13 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
         Scene::Free(_) | Scene::Spatial(_)
             if args.variants.is_some_and(|variants| variants > 0) =>
         {
-            bail!("--variants: a free scene has no variants, since nothing says how it may differ");
+            bail!("--variants: a free scene has no variants, because it states no imperfections");
         }
         Scene::Free(_) | Scene::Spatial(_) => 0,
     };
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated; \
+            "--variant {number}: there are variants 1 to {count}, and 0 is the stack as stated; \
              --variants {number} makes more"
         ),
         Some(number) => Ok(RunChoice::Number(number)),
@@ -110,7 +110,7 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
     }
 }
 
-/// Runs a scenario and its variants with a progress bar and Ctrl-C.
+/// Runs a scenario and its variants with a progress bar; Ctrl-C stops the work.
 pub(super) fn answered(
     scenario: &Scenario,
     selection: RunChoice,
@@ -124,16 +124,15 @@ pub(super) fn answered(
     Ok(answer)
 }
 
-/// Searches a remedy, with a progress bar and Ctrl-C.
+/// Searches for a remedy with a progress bar; Ctrl-C stops the search.
 pub(super) fn remedied(
     answer: &mut Answer,
     command: &Command<'_>,
     show: bool,
 ) -> Result<(), RunFailure> {
     let progress = Progress::new(show);
-    let mut found = variants::remedy(answer, &|done| {
-        progress.searched(done as u64, "runs of what would have helped")
-    })?;
+    let mut found =
+        variants::remedy(answer, &|done| progress.searched(done as u64, "runs of changed stacks"))?;
     if let Some(found) = &mut found {
         found.comparison = command.against(found);
     }
@@ -141,13 +140,13 @@ pub(super) fn remedied(
     Ok(())
 }
 
-/// Repeats a run with a progress bar and Ctrl-C.
+/// Repeats a run with a progress bar; Ctrl-C stops the repeats.
 fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
     let progress = Progress::new(show);
     verify(run, &mut |reached| progress.at(reached))
 }
 
-/// Returns the exit status of runs, as listed in the help.
+/// Returns the exit status of a run, as listed in the help.
 pub(super) fn status(answer: &Answer) -> ExitCode {
     let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
     super::status(runs.any(|run| matches!(run.outcome, Outcome::Invalid { .. })))

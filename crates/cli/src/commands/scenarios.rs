@@ -10,14 +10,14 @@ use barrelstack_report::described;
 use crate::args::{ScenariosAction, ScenariosArgs};
 use crate::printer;
 
-/// Lists, shows, explains.
+/// Lists the scenarios, prints one, or explains the fields.
 pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None => list(args.json)?,
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
         Some(_) if args.json => bail!("--json is for the list of scenarios; leave it out"),
         Some(ScenariosAction::Show { name, resolved: false }) => {
-            // Loading it gives the error, with the nearest name, if there is none of this name.
+            // If there is no such scenario, loading it gives an error with the nearest name.
             Scenario::builtin(name, &[])?;
             printer::text(builtin::get(name).unwrap_or_default())?;
         }
@@ -40,15 +40,15 @@ described! {
     pub(crate) struct ScenarioList {
         /// Name and version of this layout.
         schema: &'static str ["scenarios/1"],
-        /// All of them.
+        /// The built-in scenarios.
         scenarios: Vec<Listed>,
     }
 
     /// A built-in scenario.
     pub(crate) struct Listed {
-        /// Its name.
+        /// Name of the scenario.
         name: &'static str,
-        /// Its title.
+        /// Title of the scenario.
         title: String,
     }
 }
@@ -64,7 +64,7 @@ fn list(json: bool) -> anyhow::Result<()> {
     printer::lines(scenarios.iter().map(|one| format!("{:widest$}  {}", one.name, one.title)))
 }
 
-/// Returns the rows of the reference that contain a text, under the headings of their tables.
+/// Returns the rows of the reference that contain a text, below the headings of their tables.
 fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
     let wanted = filter.to_lowercase();
     let (mut lines, mut head, mut named) = (Vec::new(), Vec::new(), false);
@@ -85,7 +85,7 @@ fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
     }
     if lines.is_empty() {
         bail!(
-            "no field has \"{filter}\" in its name, its table or its meaning; without it all are listed"
+            "no field has \"{filter}\" in its name, its table or its meaning; leave the filter out to list all fields"
         );
     }
     Ok(lines)

@@ -1,4 +1,4 @@
-//! `barrelstack schema`: the schemas of the documents for programs.
+//! `barrelstack schema`: JSON schemas of the documents that the commands print.
 
 use std::process::ExitCode;
 
@@ -21,21 +21,21 @@ use crate::printer::{self, ErrorDocument};
 /// Arguments of `schema`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// Name of the document; without it, all are listed.
+    /// Name of the document; without a name, all documents are listed.
     name: Option<String>,
     /// Print a table of key, unit and meaning in place of the JSON Schema.
     #[arg(long, requires = "name")]
     dictionary: bool,
 }
 
-/// A document: its name, the command that prints it, its schema.
+/// A document: its name, the command that prints it, and its schema.
 struct Known {
     name: &'static str,
     of: &'static str,
     schema: fn() -> Value,
 }
 
-/// Lists the documents: name, type, command.
+/// Declares the documents by name, type and command.
 macro_rules! documents {
     ($($name:literal $type:ty: $of:literal;)*) => {
         const DOCUMENTS: &[Known] = &[$(Known {
@@ -62,21 +62,21 @@ documents! {
     "decision" DecisionDocument: "study report --json, and decision.json of --out";
     "calibration" CalibrationDocument: "calibrate --json";
     "motion-info" MotionInfo: "motion info --json";
-    "error" ErrorDocument: "any command with --json that has no result";
+    "error" ErrorDocument: "any command with --json that fails";
 }
 
-/// Prints one, or lists all.
+/// Prints the schema of one document, or lists all documents.
 pub(crate) fn schema(args: &SchemaArgs) -> anyhow::Result<ExitCode> {
     let Some(name) = &args.name else {
         let lines = DOCUMENTS.iter().map(|known| format!("{:14}{}", known.name, known.of));
         printer::lines(lines)?;
         return Ok(ExitCode::SUCCESS);
     };
-    // The name in a document has its version appended.
+    // The name inside a document ends in its version.
     let wanted = name.split('/').next().unwrap_or(name);
     let Some(known) = DOCUMENTS.iter().find(|known| known.name == wanted) else {
         let names: Vec<&str> = DOCUMENTS.iter().map(|known| known.name).collect();
-        bail!("there is no document \"{name}\"; those are {}", names.join(", "));
+        bail!("there is no document \"{name}\"; there are: {}", names.join(", "));
     };
     let schema = (known.schema)();
     if args.dictionary {

@@ -17,19 +17,19 @@ use crate::printer;
 pub(crate) struct ScoreArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Where to write the sheet and the studies behind it; run again to go on after a stop.
+    /// Folder for the sheet and its studies; run the command again to continue after a stop.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-score")]
     out: PathBuf,
     #[command(flatten)]
     page: PageArgs,
 }
 
-/// Runs the protocol, writes the sheet, prints it.
+/// Runs the protocol, writes the sheet, and prints it.
 pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     if args.scenario.record.is_some() {
         bail!(
-            "--record: a score comes from the motions of its protocol, the same for all racks, and no other would count; \
+            "--record: a score uses only the motions of its protocol, which are the same for all racks; \
              leave it out"
         );
     }

@@ -1,4 +1,4 @@
-//! `barrelstack completions` and `barrelstack man`: output for shells and manuals.
+//! `barrelstack completions` and `barrelstack man`: shell completions and manual pages.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use crate::store::{folder, store, writable};
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct CompletionsArgs {
-    /// The shell.
+    /// Name of the shell.
     #[arg(value_enum)]
     shell: Shell,
 }
@@ -21,7 +21,8 @@ pub(crate) struct CompletionsArgs {
 /// Arguments of `man`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ManArgs {
-    /// Folder for the pages, such as ~/.local/share/man/man1; pages of the same names are replaced.
+    /// Folder for the pages, such as ~/.local/share/man/man1; pages with the same names are
+    /// replaced.
     dir: PathBuf,
 }
 
@@ -33,7 +34,7 @@ pub(crate) fn completions(args: &CompletionsArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a page for the program and one for every subcommand.
+/// Writes one page for the program and one per subcommand.
 pub(crate) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
     folder(&args.dir)?;
     writable(&args.dir)?;

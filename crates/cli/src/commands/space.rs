@@ -1,4 +1,4 @@
-//! Bodies in space, from file to verdict: `run` and `render` for a stack or a free scene in space.
+//! Stacks and free scenes in space: the commands `run` and `render`.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -18,7 +18,7 @@ use crate::args::RunArgs;
 use crate::printer;
 use crate::progress::Progress;
 
-/// Runs and reports.
+/// Runs the scenario and prints and writes the result.
 pub(super) fn run(
     args: &RunArgs,
     scenario: &Scenario,
@@ -32,7 +32,7 @@ pub(super) fn run(
     ] {
         if given {
             bail!(
-                "{option} is known in a plane, not yet in space: leave it out{}",
+                "{option} is available in a plane, but not yet in space: leave it out{}",
                 in_a_plane(scenario)
             );
         }
@@ -42,12 +42,12 @@ pub(super) fn run(
     if !args.no_remedy {
         let progress = Progress::new(!args.quiet);
         let found = variants::remedy(&answer, &|done| {
-            progress.searched(done as u64, "runs of what would have helped")
+            progress.searched(done as u64, "runs of changed stacks")
         });
         answer.summary.remedy = found.map_err(|error| placed(error.into()))?;
     }
     crate::interrupt::finished();
-    // Print the verdict even if the files cannot be written.
+    // The verdict is printed even if the files cannot be written.
     let written = folder.map_or(Ok(()), |folder| {
         crate::interrupt::writes_to(folder.path());
         let files = export::files(&answer, &scenario.to_resolved_toml());
@@ -66,7 +66,7 @@ pub(super) fn run(
     Ok(status(&answer))
 }
 
-/// Runs the scenario and writes it as a series for `ParaView`.
+/// Runs the scenario and writes the ParaView series.
 pub(super) fn render(
     args: &RenderArgs,
     scenario: &Scenario,
@@ -74,7 +74,7 @@ pub(super) fn render(
 ) -> anyhow::Result<ExitCode> {
     if let Some(part) = args.lacking_in_space() {
         bail!(
-            "--only {}: of runs in space there is the ParaView series, and `run --out` has their page; take --only \
+            "--only {}: runs in space have only the ParaView series, and `run --out` writes their page; use --only \
              paraview{}",
             part.name(),
             in_a_plane(scenario)
@@ -88,7 +88,7 @@ pub(super) fn render(
         .map_err(|error| super::placed(error, scenario, &args.scenario))?;
     let end = answer.run.end_time;
     if between[0] > end {
-        bail!("the run ends at {end:.2} s, and there is nothing to film from {} s on", between[0]);
+        bail!("the run ends at {end:.2} s, so there is nothing to film from {} s on", between[0]);
     }
     let solids = solids(&answer.run, between);
     let written = folder.write_paraview(|put| paraview_of_solids(&solids, args.rate, put))?;
@@ -97,7 +97,7 @@ pub(super) fn render(
     Ok(status(&answer))
 }
 
-/// Runs a scenario and its variants with a progress bar and Ctrl-C.
+/// Runs a scenario and its variants with a progress bar; Ctrl-C stops the work.
 fn answered(scenario: &Scenario, selection: RunChoice, show: bool) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
@@ -107,12 +107,12 @@ fn answered(scenario: &Scenario, selection: RunChoice, show: bool) -> Result<Ans
     Ok(answer)
 }
 
-/// Returns the exit status of runs, as listed in the help.
+/// Returns the exit status of a run, as listed in the help.
 fn status(answer: &Answer) -> ExitCode {
     super::status(matches!(answer.run.outcome, Outcome::Invalid { .. }))
 }
 
-/// Returns a hint on plane analysis, to be appended to refusals in space.
+/// Returns a hint about the planar analysis, to be appended to a refusal in space.
 fn in_a_plane(scenario: &Scenario) -> &'static str {
     if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
 }

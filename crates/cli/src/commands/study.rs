@@ -1,4 +1,4 @@
-//! `barrelstack study`: one scenario run many times, on this machine or chunk by chunk on others.
+//! `barrelstack study`: one scenario run many times, on this machine or in chunks on others.
 
 mod answer;
 mod emit;
@@ -29,13 +29,13 @@ const AFTER_HELP: &str = "\
 Start with:
   barrelstack study example > mine.toml           a commented study to change
   barrelstack study plan mine.toml                how many cases and chunks it has
-  barrelstack study mine.toml --out mine          run it; run it again to go on after a stop
-  barrelstack study fields                        all that a study file can hold
+  barrelstack study mine.toml --out mine          run it; run it again to continue after a stop
+  barrelstack study fields                        all fields of a study file
 
 Results are in the folder: table.csv and table.parquet, whose columns columns.csv explains, provenance.json, and
-one Parquet file a chunk in shards.";
+one Parquet file per chunk in shards.";
 
-/// Exit status of `study collect` where chunks are missing.
+/// Exit status of `study collect` if chunks are missing.
 const UNFINISHED: u8 = 4;
 
 /// Arguments of `study`.
@@ -66,10 +66,10 @@ struct RunArgs {
     /// A study file (TOML), or the name of a built-in study.
     #[arg(value_name = "STUDY", required = true)]
     study: Option<String>,
-    /// Folder of the results: new, empty, or one of the same study, which then goes on.
+    /// Folder for the results: new, empty, or with results of the same study, which then continues.
     #[arg(long, value_name = "DIR", required = true)]
     out: Option<PathBuf>,
-    /// Threads; all cores without. The table does not depend on it.
+    /// Number of threads; by default all cores. Results do not depend on it.
     #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
@@ -86,10 +86,10 @@ struct RunArgs {
 struct ChunkArgs {
     #[command(flatten)]
     which: Which,
-    /// The chunk, from 0.
+    /// Number of the chunk, counted from 0.
     #[arg(long, value_name = "NUMBER")]
     chunk: usize,
-    /// Folder of the results, shared by all chunks.
+    /// Folder for the results, shared by all chunks.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
@@ -109,7 +109,7 @@ struct FolderArgs {
 /// Actions on a study.
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Run what is missing and collect the table (the same as without `run`).
+    /// Run the missing chunks and collect the table (the same as without `run`).
     Run(RunArgs),
     /// List the chunks, without running anything.
     Plan {
@@ -119,30 +119,30 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Run one chunk and write its shard; does nothing when the shard is there.
+    /// Run one chunk and write its shard; does nothing if the shard exists.
     RunChunk(ChunkArgs),
-    /// Say how far a study is.
+    /// Report the progress of a study.
     Status(FolderArgs),
-    /// Write table.csv, table.parquet and provenance.json from the shards that are there; exit status 4 where chunks are
-    /// missing.
+    /// Write table.csv, table.parquet and provenance.json from the finished shards; the exit status
+    /// is 4 if chunks are missing.
     Collect(FolderArgs),
-    /// Write the page: fragility, losses, what matters, and with a hazard curve annual rates.
+    /// Write the page: fragility, losses, sensitivities and, with a hazard curve, annual rates.
     Report(report::ReportArgs),
-    /// Write fragility and loss for OpenQuake and Pelicun.
+    /// Export fragility and loss for OpenQuake and Pelicun.
     Export(export::ExportArgs),
-    /// Write job files with which another engine runs all chunks.
+    /// Write job files that run all chunks with a scheduler.
     Emit(emit::EmitArgs),
-    /// Print a built-in study, with its comments, as a starting point.
+    /// Print a built-in study with its comments, as a starting point.
     Example {
-        /// Its name; without it the first.
+        /// Name of the study; by default the first.
         name: Option<String>,
-        /// List the names instead.
+        /// List the names of the built-in studies instead.
         #[arg(long)]
         list: bool,
     },
-    /// List every field of a study file, with its default and what it means.
+    /// List every field of a study file, with its default and its meaning.
     Fields,
-    /// Print the JSON schema for editors.
+    /// Print the JSON schema of study files, for editors.
     Schema,
 }
 
@@ -178,13 +178,13 @@ fn load(study: &str) -> Result<Study, StudyError> {
 }
 
 fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    // The parser requires both.
+    // The argument parser requires both.
     let (Some(study), Some(out)) = (&args.study, &args.out) else {
         anyhow::bail!("name a study and a folder: barrelstack study STUDY --out DIR");
     };
     let study = load(study)?;
     keeps(format!(
-        "every chunk that was done is in {}: run the same command again to go on from there",
+        "finished chunks are in {}: run the same command again to continue from there",
         out.display()
     ));
     let live = live::Live::new(!args.quiet, study.design.is_sample(), out);
@@ -196,7 +196,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     warn_of_damaged(damaged, out);
     if healed {
         printer::warning(&format!(
-            "{} was damaged: written anew from the study",
+            "{} was damaged and has been rewritten from the study",
             out.join("study.json").display()
         ));
     }
@@ -216,17 +216,17 @@ described! {
     pub(crate) struct StudyPlan of plan: &(&Study, Following) {
         /// Name and version of this layout.
         schema: &'static str ["study-plan/1"] = "study-plan/1",
-        /// The title of the study.
+        /// Title of the study.
         title: String = plan.0.title.clone(),
-        /// The design, as study files name it.
+        /// Name of the design, as in study files.
         design: &'static str = plan.0.design.name(),
         /// Fingerprint of the study.
         study_hash: String = format!("{:016x}", plan.0.hash()),
-        /// Cases in all.
+        /// Number of cases.
         cases: u64 = plan.0.cases(),
-        /// `true` if there may be fewer, because results decide.
+        /// `true` if there may be fewer cases, because the number depends on results.
         at_most: bool = plan.0.is_adaptive(),
-        /// Motions.
+        /// Number of motions.
         motions: usize = plan.0.motions(),
         /// End conditions of the cases.
         following: Following = plan.1.clone(),
@@ -236,13 +236,13 @@ described! {
 
     /// Cases that are computed together.
     pub(crate) struct PlannedChunk of chunk: &study::Chunk {
-        /// Its number, from 0.
+        /// Number of the chunk, counted from 0.
         chunk: usize = chunk.number,
-        /// Its cases.
+        /// Number of cases in the chunk.
         cases: usize = chunk.cases,
-        /// The first of them.
+        /// Number of the first case.
         first: u64 = chunk.first,
-        /// The last of them.
+        /// Number of the last case.
         last: u64 = chunk.last,
     }
 
@@ -254,7 +254,7 @@ described! {
         provenance: study::Provenance = status.provenance.clone(),
         /// Outcomes of the finished cases.
         tally: answer::TallyRow = answer::TallyRow::of(&(status.tally, status.provenance.is_sample())),
-        /// Chunks that are still to be run.
+        /// Numbers of the chunks that are still to be run.
         missing: Vec<usize> = status.missing.clone(),
     }
 }
@@ -264,7 +264,7 @@ fn warn_of_damaged(shards: usize, out: &Path) {
         return;
     }
     printer::warning(&format!(
-        "{} found in {}: set aside there with the ending .damaged, and made anew",
+        "{} found in {}: renamed with the extension .damaged, and computed again",
         printer::counted(shards as u64, "damaged shard"),
         out.join("shards").display()
     ));
@@ -302,7 +302,7 @@ fn plan(which: &Which, json: bool) -> anyhow::Result<()> {
 
 fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     let study = load(&args.which.study)?;
-    keeps(format!("chunk {} is to be run again", args.chunk));
+    keeps(format!("chunk {} must be run again", args.chunk));
     let interrupt = Interrupt::listen();
     let lanes = args.lanes.lanes.unwrap_or_else(Width::widest);
     let waiting = live::Waiting::new(&args.out);
@@ -312,7 +312,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     };
     match study.run_chunk(&args.out, args.chunk, lanes, &stop) {
         Ok(ChunkRun::Before) => {
-            printer::lines([format!("chunk {} was done before", args.chunk)])?;
+            printer::lines([format!("chunk {} is already finished", args.chunk)])?;
         }
         Ok(ran) => {
             warn_of_damaged(usize::from(ran == ChunkRun::Again), &args.out);
@@ -323,7 +323,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Converts an error of a study, or its cancellation.
+/// Converts an error of a study; a canceled study becomes a stop.
 fn stopped(error: StudyError) -> anyhow::Error {
     if let StudyError::Stopped = error { Stopped.into() } else { error.into() }
 }
@@ -336,7 +336,7 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
     printer::lines(answer::status(&status))
 }
 
-/// Reads the results of the shards of a folder, and their provenance; writes the table.
+/// Reads the results in the shards of a folder and their provenance, and writes the table.
 fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), StudyError> {
     let mut answer = answer::Answer::default();
     let made = study::collect(folder, &mut |_, rows| {
@@ -346,8 +346,8 @@ fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), Study
     Ok((answer, made))
 }
 
-/// Writes the table of the finished chunks, and fails if any are missing: later commands of a script must not mistake a
-/// part for the whole.
+/// Writes the table of the finished chunks, and fails if any are missing, so that later commands of
+/// a script do not mistake a part for the whole.
 fn collect(args: &FolderArgs) -> anyhow::Result<ExitCode> {
     let (answer, made) = collected(&args.folder)?;
     if args.json {
@@ -359,7 +359,7 @@ fn collect(args: &FolderArgs) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     printer::warning(&format!(
-        "the study is unfinished, with {} of {} chunks done: the table holds what is there; `barrelstack study status {}` lists \
+        "the study is unfinished, with {} of {} chunks done: the table contains the finished chunks; `barrelstack study status {}` lists \
          the chunks to run",
         made.chunks_done,
         made.chunks,

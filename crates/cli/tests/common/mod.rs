@@ -1,6 +1,6 @@
 //! Runs the built program as a user does.
 
-#![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
+#![allow(clippy::print_stdout, reason = "messages are shown with --nocapture")]
 
 use std::ffi::OsStr;
 use std::io::Write as _;

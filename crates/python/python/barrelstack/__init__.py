@@ -9,8 +9,8 @@
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
     Scene    ── run ──▶ Run          any planar bodies
     read_folder ── select ─▶ Selection       many records; a set of them for a target
-    compare, heights, protect, score ─▶ Page runs side by side; safe heights; best protections; a score
-    Calibration.friction, …  ──▶ Page        contact parameters from one's own tests
+    compare, heights, protect, score ─▶ Page comparison of runs; safe heights; best protections; a score
+    Calibration.friction, …  ──▶ Page        contact parameters from your own tests
 
 All numbers are SI: m, s, kg, N, rad; z is up. Quantities as input carry their unit as text (``"60 cm/s"``).
 """
@@ -124,7 +124,7 @@ __all__ = [
 
 
 def scenarios() -> dict[str, str]:
-    """Returns the scenarios that come with the library.
+    """Returns the bundled scenarios.
 
     Returns
     -------
@@ -151,7 +151,7 @@ def schema(of: str = "scenario") -> dict[str, Any]:
 
 
 def studies() -> dict[str, str]:
-    """Returns the studies that come with the library.
+    """Returns the bundled studies.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Contact parameters, with their uncertainty, from one's own tests."""
+"""Contact parameters, with their uncertainty, from your own tests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._store import contents
 
 __all__ = ["Calibration", "Estimate"]
 
-#: Names of all parameters that a response or a collapse may determine.
+#: Names of all parameters that can be fitted to a response or to collapses.
 _ALL = ("k", "c", "mu-br", "mu-rg")
 
 
@@ -23,18 +23,18 @@ class Estimate(NamedTuple):
     """A parameter with its 95 % interval."""
 
     name: str
-    #: SI.
+    #: Best estimate in SI units.
     value: float
-    #: Lower end of the interval (SI); None where the test does not bound it.
+    #: Lower end of the interval (SI units); None if the test does not bound it.
     low: float | None
-    #: Upper end of the interval (SI); None where the test does not bound it.
+    #: Upper end of the interval (SI units); None if the test does not bound it.
     high: float | None
-    #: SI unit.
+    #: SI unit of the parameter.
     unit: str
 
 
 def _text(measured: Any) -> tuple[str, str]:
-    """Returns the name of a test in errors, and its measurements as CSV."""
+    """Returns a name of the measurements for error messages, and the measurements as CSV."""
     if isinstance(measured, (str, os.PathLike)):
         name = os.fspath(cast("str | os.PathLike[str]", measured))
         return name, contents(name).decode("utf-8-sig")
@@ -49,8 +49,8 @@ class Calibration(Page):
     """Contact parameters from tests.
 
     Measurements are a CSV file, a mapping of columns to values, or any table that supports Arrow; headings carry the
-    unit, such as ``"angle (deg)"``. Intervals are of 95 % and include the scatter of the measurements; a given mass or
-    stiffness, and the model itself, are taken as exact.
+    unit, such as ``"angle (deg)"``. Intervals are 95 % intervals and include the scatter of the measurements; a given
+    mass or stiffness, and the model itself, are taken as exact.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class Calibration(Page):
 
     @property
     def correlation(self) -> list[list[float]]:
-        """Correlations between the estimates (1), in their order; empty where they are not fitted jointly."""
+        """Correlations between the estimates (1), in their order; empty if they were not fitted jointly."""
         found: list[list[float]] = self.document["correlation"]
         return found
 
@@ -78,16 +78,16 @@ class Calibration(Page):
 
     @classmethod
     def stiffness(cls, measured: Any, *, nodes: int = 1, interface: str = "barrel-rack") -> Calibration:
-        """Stiffness from a press test.
+        """Fits the stiffness of a press test.
 
         Parameters
         ----------
         measured
-            Columns ``penetration`` and ``force``, as above.
+            Columns ``penetration`` and ``force``, in a form described above.
         nodes
-            Contact nodes that share the force; k is that of one.
+            Number of contact nodes that share the force; k is that of one node.
         interface
-            The pair that was tested, for the lines to paste.
+            The pair of bodies that was tested, for the lines to paste into a scenario.
 
         Returns
         -------
@@ -110,18 +110,18 @@ class Calibration(Page):
         nodes: int = 1,
         interface: str = "barrel-rack",
     ) -> Calibration:
-        """Restitution and damping from drops.
+        """Fits restitution and damping of drop tests.
 
         Parameters
         ----------
         measured
             Columns ``drop height`` and ``rebound height``, or ``time`` of the impacts of one bounce sequence.
         mass, stiffness
-            Of the falling body, and of one contact node, with their units; both also give the damping.
+            Mass of the falling body, and stiffness of one contact node, with units; together they give the damping.
         nodes
-            Number of contact nodes that it falls on at once.
+            Number of contact nodes that meet at once.
         interface
-            The pair that was tested.
+            The pair of bodies that was tested.
 
         Returns
         -------
@@ -132,16 +132,16 @@ class Calibration(Page):
         Error
             When a column or a row is missing, or a rebound does not fit its drop.
         ValueError
-            When one of mass and stiffness is given alone.
+            When only one of mass and stiffness is given.
         """
         if (mass is None) != (stiffness is None):
-            raise ValueError("damping needs mass and stiffness: give both or none")
+            raise ValueError("damping needs mass and stiffness: give both or neither")
         striker = None if mass is None else (plain(mass), plain(stiffness))
         return cls(_native.calibrate_drop(*_text(measured), striker, nodes, interface))
 
     @classmethod
     def friction(cls, measured: Any, *, interface: str = "barrel-rack") -> Calibration:
-        """Friction from pulls or from tilts.
+        """Fits the friction of pull or tilt tests.
 
         Parameters
         ----------
@@ -149,7 +149,7 @@ class Calibration(Page):
             Columns ``normal force``, ``breakaway force`` and, if measured, ``sliding force``; or ``angle`` of first
             slip and, if measured, ``sliding distance`` and ``sliding time`` from rest at that angle.
         interface
-            The pair that was tested.
+            The pair of bodies that was tested.
 
         Returns
         -------
@@ -172,19 +172,19 @@ class Calibration(Page):
         until: Any = None,
         progress: Progress = None,
     ) -> Calibration:
-        """Stiffness, damping and friction jointly from the recorded response of a shaken stack.
+        """Fits stiffness, damping and friction jointly to the recorded response of a shaken stack.
 
         Parameters
         ----------
         scenario
-            The scenario of the test; fits start from its values.
+            The scenario of the test; the fit starts from its values.
         measured
-            A column ``time`` from the start of the motion, and columns named as histories,
+            A column ``time``, counted from the start of the motion, and columns named like histories, such as
             ``"B1.1_displacement_x (mm)"``.
         fit
             Among ``"k"`` and ``"c"`` of barrel-rack, ``"mu-br"`` and ``"mu-rg"``.
         until
-            Time with its unit after which rows are left out: use short windows of mild shaking, without collapse.
+            Time with its unit after which rows are ignored; use a short window of mild shaking, without collapse.
         progress
             As for :meth:`Scenario.run`.
 
@@ -197,7 +197,7 @@ class Calibration(Page):
         Error
             When the measurements do not match the scenario.
         RunError
-            When it cannot be simulated.
+            When the scenario cannot be simulated.
         KeyboardInterrupt
             Within a second of Ctrl-C.
         """
@@ -220,25 +220,25 @@ class Calibration(Page):
         seed: int = 1,
         progress: Progress = None,
     ) -> Calibration:
-        """Stiffness, damping and friction jointly from observed collapses, on video or by eye.
+        """Fits stiffness, damping and friction jointly to collapses observed on video or by eye.
 
         Parameters
         ----------
         scenario
-            The scenario of the tests that name none.
+            The scenario of tests that do not name one.
         measured
             One row per test: ``mode``, ``first fall (s)``, ``first barrel``, ``B4.1 fell (s)``, ``loss of seat (s)``,
             ``until (s)``, ``scenario``.
         others
-            Scenarios that the tests name.
+            Scenarios named by the tests.
         fit
             As for :meth:`response`.
         within
-            Parameters lie within this factor of those of the scenario.
+            Range of the parameters: within this factor of those of the scenario.
         timing, placement
-            Accuracy of observed times, and of the placement of bodies: standard deviations with their units.
+            Standard deviations, with units, of observed times and of the positions of bodies.
         simulations
-            Number of simulated parameter sets, each simulated once for every test.
+            Number of parameter sets, each simulated once per test.
         seed
             Seed of all random numbers.
         progress

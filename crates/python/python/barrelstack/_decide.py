@@ -19,13 +19,13 @@ Path = str | os.PathLike[str]
 
 
 class Difference(NamedTuple):
-    """One input that is not the same in all runs."""
+    """An input that is not equal in all runs."""
 
-    #: Its path, as in :meth:`Scenario.set`.
+    #: Path of the input, as in :meth:`Scenario.set`.
     path: str
-    #: The value in each run; None where a run has no such field.
+    #: Value in each run; None if a run has no such field.
     values: list[str | None]
-    #: What the field means.
+    #: Meaning of the field.
     help: str
 
 
@@ -34,12 +34,12 @@ class Comparison(Page):
 
     @property
     def runs(self) -> dict[str, dict[str, Any]]:
-        """The summary of each run by its name, as :attr:`Run.summary`."""
+        """The summary of each run by name, like :attr:`Run.summary`."""
         return {run["name"]: run["summary"] for run in self.document["runs"]}
 
     @property
     def differences(self) -> list[Difference]:
-        """The inputs that differ, in the order of the file."""
+        """The inputs that differ, in the order of scenario files."""
         return [Difference(one["path"], one["values"], one["help"]) for one in self.document["differences"]]
 
 
@@ -49,12 +49,12 @@ def compare(
     variants: int | None = None,
     progress: Progress = None,
 ) -> Comparison:
-    """Runs scenarios with their variants and compares them, on one clock.
+    """Runs scenarios with their variants and compares them.
 
     Parameters
     ----------
     runs
-        Two to six scenarios; the keys of a mapping are their names, by default words for their differences.
+        Two to six scenarios; the keys of a mapping are their names. By default, runs are named by their differences.
     variants
         As for :meth:`Scenario.run`.
     progress
@@ -67,9 +67,9 @@ def compare(
     Raises
     ------
     Error
-        When there are too few or too many, or two of them are the same run.
+        When there are too few or too many scenarios, or two of them are equal.
     RunError
-        When one cannot be built or does not stand.
+        When a stack cannot be built or does not stand.
     KeyboardInterrupt
         Within a second of Ctrl-C.
 
@@ -91,7 +91,7 @@ class Heights(Page):
     @property
     def table(self) -> Table:
         """One row for every height, direction and level of shaking: cases, collapses, Wilson's 95 % interval (1) of the
-        probability of collapse, mean share of the barrels that fall (1)."""
+        probability of collapse, and mean share of the barrels that fall (1)."""
         rows = [
             {**one, "levels": height["levels"], "direction": height["direction"], "low": low, "high": high}
             for height in self.document["heights"]
@@ -122,13 +122,13 @@ def heights(
     rack, barrel
         Names from the catalog.
     records
-        Files of further motions, such as that of one's own site.
+        Files of additional motions, such as that of your own site.
     synthetic
-        Synthetic motions beside the bundled record.
+        Number of synthetic motions in addition to the bundled record.
     seed
         Seed of motions and friction.
     highest
-        Levels of the highest stack, from 2 to 6.
+        Number of levels of the highest stack, from 2 to 6.
     progress
         As for :meth:`Scenario.run`.
 
@@ -139,7 +139,7 @@ def heights(
     Raises
     ------
     StudyError
-        When the catalog has no such rack or barrel, or the folder belongs to something else.
+        When the catalog has no such rack or barrel, or the folder belongs to another study.
     RecordError
         When a record cannot be read.
     KeyboardInterrupt
@@ -159,13 +159,13 @@ class Protections(Page):
 
     @property
     def best(self) -> str | None:
-        """The one that saves most barrels for its cost; None where no benefit is significant."""
+        """Name of the protection that saves most barrels for its cost; None if no benefit is significant."""
         best: str | None = self.document["best"]
         return best
 
     @property
     def table(self) -> Table:
-        """One row for every tried protection, in the order of the page: cost for a stack (US$, lower and upper),
+        """One row for every protection tried, in the order of the page: cost for a stack (US$, lower and upper),
         probability of collapse (1, or 1/year at a site), barrels fallen and saved, each with its 95 % interval.
         """
         rows: list[dict[str, Any]] = []
@@ -180,7 +180,7 @@ class Protections(Page):
         return table_of(rows, {name: units.get(name, name) for name in rows[0]})
 
     def changes(self, name: str) -> list[str]:
-        """Returns the changes of a protection.
+        """Returns the changes that a protection makes to the scenario.
 
         Parameters
         ----------
@@ -190,12 +190,12 @@ class Protections(Page):
         Returns
         -------
         list of str
-            Overrides, ``path=value``, as for the command.
+            Overrides in the form ``path=value``, as for the command.
 
         Raises
         ------
         NoItemError
-            When none of that name was tried.
+            When no protection with that name was tried.
         """
         for one in self.document["protections"]:
             if one["name"] == name:
@@ -223,22 +223,22 @@ def protect(
     Parameters
     ----------
     scenario
-        The stack, or the name of one.
+        The scenario of the stack, or its name.
     folder
         Folder of the underlying studies; finished cases of the same request are not run again.
     site
-        Hazard curve of the site: a CSV of ``pgv (cm/s)`` and ``rate (1/year)``.
+        Hazard curve of the site: a CSV file with ``pgv (cm/s)`` and ``rate (1/year)``.
     pgv
         Peak ground velocities to which motions are scaled, texts or quantities such as ``"50 cm/s"``; by default 25, 50
         and 75 cm/s. Excludes ``site``.
     records
-        Files of the motions, in place of the bundled and synthetic ones.
+        Files of motions, used in place of the bundled and synthetic ones.
     motions
         A folder of such files.
     count
-        Number of motions of a round, where none are named.
+        Number of motions per round, if no motions are given.
     rounds
-        Number of rounds: everything is tried in the first, half of it in each later one.
+        Number of rounds: the first tries all protections, each later round the better half of them.
     budget
         Upper limit of the cost of a protection for a stack (US$).
     seed
@@ -253,7 +253,7 @@ def protect(
     Raises
     ------
     StudyError
-        When the scenario is no stack, the hazard is over another measure, or the folder belongs to something else.
+        When the scenario is not a stack, the hazard uses another measure, or the folder belongs to another study.
     RunError
         When the stack does not stand.
     KeyboardInterrupt
@@ -264,7 +264,7 @@ def protect(
     The numbers are those of ``barrelstack protect``, bit for bit.
     """
     if site is not None and pgv is not None:
-        raise ValueError("a site says how hard it is shaken: give site or pgv")
+        raise ValueError("a hazard curve already states the intensities: give either site or pgv")
     stack = scenario if isinstance(scenario, Scenario) else Scenario.load(scenario)
     levels = None if pgv is None else sorted({_native.measured("pgv", plain(one)) for one in pgv})
     with reporting(progress, f"protections of {stack.title!r}") as report:
@@ -297,7 +297,7 @@ class RockScore(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every state in every direction: the velocity (m/s) that counts, its derivation, its 95 %
+        """One row for every state in every direction: the decisive velocity (m/s), its derivation, its 95 %
         interval, and the share (1) that collapsed at each level of shaking."""
         rows: list[dict[str, Any]] = []
         for one in self.document["states"]:
@@ -316,7 +316,7 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
     Parameters
     ----------
     scenario
-        A stack with the scored rack and devices, or the name of one; height and motion are those of the protocol.
+        A stack with the rack and devices to be scored, or its name; height and motion are those of the protocol.
     folder
         Folder of the underlying studies; finished cases of the same request are not run again.
     progress
@@ -329,7 +329,7 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
     Raises
     ------
     StudyError
-        When the scenario is no stack, or the folder belongs to something else.
+        When the scenario is not a stack, or the folder belongs to another study.
     RunError
         When the stack does not stand.
     KeyboardInterrupt
@@ -345,26 +345,26 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
 
 
 class Reproduction(Page):
-    """The paper's numbers beside ours, made by :func:`reproduce`."""
+    """Comparison with the numbers of the paper, made by :func:`reproduce`."""
 
     @property
     def table(self) -> Table:
-        """One row for every number and every finding that the paper states: place, quantity, published and ours
+        """One row for every number and every finding that the paper states: place, quantity, published value and ours
         with units, the relative difference (1), the verdict and its reason."""
         names = ("place", "quantity", "published", "ours", "difference", "band", "verdict", "why")
         return table_of(self.document, {name: name for name in names})
 
 
 def reproduce(record: Path | None = None, *, studies: bool = True, progress: Progress = None) -> Reproduction:
-    """Runs every case of the paper behind the model and compares its numbers with ours.
+    """Runs every case of the paper behind the model and compares the paper's numbers with ours.
 
     Parameters
     ----------
     record
-        The file of the Hollywood Storage record of Northridge, north-south, which cannot come with the package;
+        The file of the Hollywood Storage record of Northridge, north-south, which cannot be bundled;
         without it the six barrels are shaken by South Napa, and results that depend on the motion are not compared.
     studies
-        Whether to run also the studies around each case, which are most of the work.
+        Whether to also run the studies around each case, which are most of the work.
     progress
         As for :meth:`Scenario.run`.
 

@@ -1,4 +1,4 @@
-"""Many cases at once, in the lanes of the machine's vector unit."""
+"""Ensembles: many cases at once, in the lanes of the vector unit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def ensemble(
     records: Mapping[str, Record] | None = None,
     progress: Progress = None,
 ) -> Table:
-    """Runs many cases, each with the bits of a single run, and returns their results.
+    """Runs many cases, each bit-identical to a single run, and returns their results.
 
     Parameters
     ----------
@@ -32,30 +32,30 @@ def ensemble(
         ``"motion.scale.pgv (cm/s)"``; texts are values as on the command line, ``"60 cm/s"``. Empty cells set nothing.
         A column ``"record"`` sets the motion of the case: a name among ``records``, or, in a list of dicts, a record.
     base
-        A scenario, or the name of one.
+        The scenario that the cases change, or its name.
     records
-        The records that the table names.
+        The records to which the table refers, by name.
     progress
         True for a bar, or a function that is called with (done, of, what).
 
     Returns
     -------
     Table
-        One row per case, in their order: its changes, then outcome, demands and data of the computation.
+        One row per case, in order: its changes, then its outcome, demands and data of the computation.
 
     Raises
     ------
     ScenarioError
         At the first invalid case, before anything is run; ``row`` is its number.
     RecordError
-        When a record cannot be used, or the motion of the first case cannot be read. One of a later case is a row with
-        the reason in ``error``.
+        When a record cannot be used, or the motion of the first case cannot be read. A later case whose motion cannot
+        be read becomes a row with the reason in ``error``.
     KeyboardInterrupt
         Within a second of Ctrl-C.
 
     Notes
     -----
-    All cores are used, the interpreter's lock is free, and memory holds the motions of one batch a core.
+    All cores are used, the interpreter lock is released, and memory contains the motions of one batch per core.
     A case runs in one plane.
 
     Examples
@@ -71,10 +71,10 @@ def ensemble(
         rows = [dict(case) for case in cases]
         columns = dict.fromkeys(name for row in rows for name in row)
         if rows and not columns:
-            raise ValueError("no case sets anything, so all are the base: run that")
+            raise ValueError("no case changes the base: run the base itself")
         for number, row in enumerate(rows):
             if isinstance(row.get("record"), Record):
-                # The same record is read once, however many cases it shakes.
+                # A record that is used in several rows is passed once.
                 record = row["record"]
                 name = next((name for name, other in known.items() if other is record), f"record of row {number}")
                 known[name] = record

@@ -9,12 +9,12 @@
     ├── StudyError      a folder, a shard, a study without a verdict
     ├── ArgumentError   an argument of the wrong type or out of range; also a ValueError, TypeError and OverflowError
     ├── FileError       a file or folder that cannot be opened or written; also an OSError
-    └── NoItemError     a name or number of which a table, histories or a record hold nothing; also a KeyError and
+    └── NoItemError     a name or number that a table, histories or a record does not have; also a KeyError and
         │               IndexError
         └── NoFieldError    a field that a scenario does not have; also an AttributeError
 
-What a callback of the caller raises is passed on, and dicts, lists and arrays that the package returns raise what they
-always raise.
+Exceptions of the caller's callbacks are passed on, and dicts, lists and arrays that the package returns raise their
+usual exceptions.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ __all__ = [
     "StudyError",
 ]
 
-#: Methods whose names begin with an underscore and that users call by a notation.
+#: Methods with a leading underscore that users call through a notation, and that are guarded too.
 GUARDED = ("__init__", "__getitem__", "__getattr__")
 
 #: The folder of the package.
@@ -53,14 +53,14 @@ class Error(Exception):
     Parameters
     ----------
     message
-        The library's message: place, expectation, finding, remedy.
+        The message of the library: position, expectation, finding, remedy.
     path, line, column
-        The place, where it is in a file; lines and columns count from 1.
+        The position, if it is in a file; lines and columns count from 1.
     value
-        The given value, as ``field=value``, if it is not in a file.
+        The wrong value as ``field=value``, if it is not in a file.
     """
 
-    #: The row of a table of cases that caused it, from 0.
+    #: Row of a table of cases that caused the error, counted from 0.
     row: int | None = None
 
     def __init__(
@@ -78,12 +78,12 @@ class Error(Exception):
         self.value = value
 
     def __reduce__(self) -> tuple[type[Error], tuple[object, ...]]:
-        """Keeps its place when it is pickled between processes."""
+        """Keeps the position when the exception is pickled between processes."""
         return type(self), (str(self), self.path, self.line, self.column, self.value)
 
 
 class ScenarioError(Error, ValueError):
-    """A scenario or a study is invalid, at a place."""
+    """A scenario or a study is invalid at a known position."""
 
 
 class RecordError(Error, ValueError):
@@ -111,10 +111,10 @@ class MissingFileError(FileError, FileNotFoundError):
 
 
 class NoItemError(Error, KeyError, IndexError):
-    """There is no item of this name or number."""
+    """There is no item with this name or number."""
 
     def __str__(self) -> str:
-        """Returns the message; a KeyError shows it in quotation marks."""
+        """Returns the message without the quotation marks that a KeyError adds."""
         return Exception.__str__(self)
 
 
@@ -135,7 +135,7 @@ def _of_package(error: BaseException) -> bool:
 
 
 def _converted(error: Exception) -> Error:
-    """The exception of the package for one of Python's."""
+    """Converts an exception of Python to one of the package."""
     if isinstance(error, OSError):
         path = None if error.filename is None else os.fsdecode(error.filename)
         kind = MissingFileError if isinstance(error, FileNotFoundError) else FileError
@@ -148,7 +148,7 @@ def _converted(error: Exception) -> Error:
 
 
 def _guard(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function that raises exceptions of the package where it raised those of Python."""
+    """Wraps a function such that it raises exceptions of the package in place of those of Python."""
 
     @functools.wraps(function)
     def guarded(*args: Any, **kwargs: Any) -> Any:
@@ -170,9 +170,9 @@ def guard(module: dict[str, Any], names: list[str]) -> None:
     Parameters
     ----------
     module
-        The names of the package; functions are replaced here and where they are defined, so that they can be pickled.
+        Namespace of the package; functions are replaced here and in their own modules, so that they can be pickled.
     names
-        The public ones.
+        Public names of the package.
     """
     for name in names:
         thing = module[name]
@@ -192,7 +192,7 @@ def guard(module: dict[str, Any], names: list[str]) -> None:
 
 
 def outside() -> int:
-    """The ``stacklevel`` at which a warning of the calling function is shown in code of the caller of the package."""
+    """Returns the ``stacklevel`` at which a warning refers to the code that called the package."""
     level, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
         level, frame = level + 1, frame.f_back

@@ -1,4 +1,4 @@
-"""Pickled run: everything that was read from it."""
+"""Pickled runs, which keep their numbers and their page."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ __all__ = ["Kept"]
 
 
 class Kept:
-    """The answers of a native run without the run, under the same names.
+    """Stand-in for a native run that was pickled, with the same attributes and functions.
 
-    Its page and all its numbers are there. What is made of the run itself, such as pictures, needs the run.
+    It has the page and all numbers of the run. Functions that need the run itself, such as pictures, raise an error.
 
     Parameters
     ----------
     native
-        The run, or what was kept of it.
+        The run, or its stand-in.
     properties
         Names of attributes.
     answers
         Names of functions without arguments.
     rows
-        Names of functions of an index, each with how many there are.
+        Names of functions of an index, each with the number of indices.
     """
 
     def __init__(
@@ -46,8 +46,8 @@ class Kept:
 
         def lost(*_: object) -> Any:
             raise RunError(
-                "this run was pickled, which keeps its numbers and its page; run its scenario again to write files and "
-                "pictures of it"
+                "this run was pickled, which keeps only its numbers and its page; run its scenario again to write "
+                "files and pictures"
             )
 
         return lost

@@ -1,4 +1,4 @@
-"""Results with numbers for programs and a page for people."""
+"""Results with their numbers and their page."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Page:
 
     @property
     def headline(self) -> str:
-        """The answer in a sentence."""
+        """The result in one sentence."""
         return self._native.headline
 
     @property
@@ -102,7 +102,7 @@ class Page:
         folder
             A folder that is new or empty.
         overwrite
-            Whether to write into one that holds an earlier page.
+            Whether to write into a folder that contains an earlier page.
         """
         self._native.write(os.fspath(folder), overwrite)
 

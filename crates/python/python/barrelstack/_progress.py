@@ -1,4 +1,4 @@
-"""Progress of work: a bar in terminals and notebooks, or a user's function."""
+"""Progress of work: a bar in terminals and notebooks, or a callback."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ __all__ = ["Progress", "reporting"]
 
 logger = logging.getLogger("barrelstack")
 
-#: Progress callback: amount done, total (not a number where unknown), and unit.
+#: Progress callback: amount done, total (NaN if unknown), and unit.
 Report = Callable[[float, float, str], object]
 
-#: True for a bar, False or None for silence, or a progress callback.
+#: True for a bar, False or None for no display, or a progress callback.
 Progress = bool | Report | None
 
 
 class _Plain:
-    """A bar of one line, where tqdm is not installed."""
+    """A one-line bar, used if tqdm is not installed."""
 
     def __init__(self, out: TextIO) -> None:
         self.out = out
@@ -40,7 +40,7 @@ class _Plain:
 
 
 class _Tqdm:
-    """tqdm's bar, in a notebook as in a terminal."""
+    """A bar of tqdm, for notebooks and terminals."""
 
     def __init__(self, make: Any) -> None:
         self.make = make
@@ -52,7 +52,7 @@ class _Tqdm:
             self.close()
             self.bar = self.make(total=of if math.isfinite(of) else None, unit=f" {what}")
             self.what = what
-        # A run may end before its time: do not complete the bar.
+        # A run may end early, so the bar is not completed.
         self.bar.n = round(done, 2)
         self.bar.refresh()
 
@@ -71,12 +71,12 @@ def _bar() -> _Plain | _Tqdm:
 
 
 class reporting:
-    """Runs named work whose progress is shown, passed on or ignored; also logs it to :mod:`logging`.
+    """Context of named work: shows its progress, passes it to a callback or ignores it, and logs it to :mod:`logging`.
 
     Parameters
     ----------
     progress
-        True for a bar, a function of the user, False or None for silence.
+        True for a bar, a progress callback, False or None for no display.
     name
         Name of the work in the log.
     """

@@ -59,7 +59,7 @@ def _of_astropy(quantity: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Converts a value for the library: quantities to texts with units, also inside of containers.
+    """Converts a value for the library: quantities become texts with units, also inside containers.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def plain(value: Any) -> Any:
     Returns
     -------
     object
-        The value without any type of another package.
+        The value without types of other packages.
 
     Raises
     ------
@@ -122,4 +122,4 @@ def literal(value: Any) -> str:
         given = cast("dict[str, object]", value)
         pairs = (f"{json.dumps(key)} = {literal(item)}" for key, item in given.items())
         return "{ " + ", ".join(pairs) + " }"
-    raise TypeError(f"a scenario holds texts, numbers, truths, lists and dicts, not a {type(value).__name__}")
+    raise TypeError(f"a scenario contains texts, numbers, booleans, lists and dicts, not a {type(value).__name__}")

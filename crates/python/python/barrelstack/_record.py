@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Channel", "Intensity", "Record"]
 
-#: The default measures.
+#: Names of the default measures.
 USUAL = ("pga", "pgv", "pgd", "pgv/pga", "arias", "cav", "d5-75", "d5-95", "bracketed", "tm")
 
 
@@ -30,14 +30,15 @@ class Channel(NamedTuple):
     """One component of a record."""
 
     name: str
-    #: Degrees clockwise from north; None where unknown, and for a vertical component.
+    #: Degrees clockwise from north; None if unknown, and for a vertical component.
     azimuth: float | None
     vertical: bool
     #: Time between samples (s).
     time_step: float
-    #: Instant of the first sample (UTC, ISO 8601); None where the file does not state it.
+    #: Instant of the first sample (UTC, ISO 8601); None if the file does not state it.
     start: str | None
-    #: Acceleration (m/s²), shape (samples,): a read-only view; vertical ones are positive upward.
+    #: Acceleration (m/s²), shape (samples,): a read-only view; vertical components are positive
+    #: upward.
     acceleration: NDArray[np.float64]
 
 
@@ -46,7 +47,7 @@ class Intensity(NamedTuple):
 
     measure: str
     unit: str
-    #: Values by component.
+    #: Values by name of the component.
     values: dict[str, float]
 
 
@@ -80,17 +81,17 @@ class Record:
         Parameters
         ----------
         source
-            A path, the bytes of a file, or several paths whose components make one record. An archive of
-            ``numpy.savez(file, acceleration=…, dt=0.01)`` is one, too: names go on with the component
-            (``acceleration_UP``).
+            A path, the bytes of a file, or several paths whose components form one record. Archives of
+            ``numpy.savez(file, acceleration=…, dt=0.01)`` are accepted too; the name of an array may end in that of the
+            component (``acceleration_UP``).
         unit
             Unit of acceleration for files that state none: ``"g"``, ``"m/s2"``, ``"cm/s2"``, ``"gal"``.
         time_step
             Time between samples (s) for files that state none.
         sensitivity
-            Counts per m/s² for files that hold counts.
+            Counts per m/s², for files in counts.
         name
-            Name of bytes in errors.
+            Name of the bytes in error messages.
 
         Returns
         -------
@@ -99,7 +100,7 @@ class Record:
         Raises
         ------
         RecordError
-            With path, line and column, expectation and finding.
+            When the file cannot be read; with path, line and column.
 
         Notes
         -----
@@ -117,7 +118,7 @@ class Record:
 
     @classmethod
     def bundled(cls, name: str = "napa-college-2014") -> Record:
-        """Returns a record that comes with the library.
+        """Returns a bundled record.
 
         Parameters
         ----------
@@ -130,12 +131,12 @@ class Record:
         """
         found = _native.Record.bundled(name)
         if found is None:
-            raise ValueError(f'no record {name!r} comes with the library; "napa-college-2014" does')
+            raise ValueError(f'there is no bundled record {name!r}; there is "napa-college-2014"')
         return cls(found)
 
     @classmethod
     def made(cls, **motion: Any) -> Record:
-        """Makes a motion from a formula, or from random numbers of a seed.
+        """Makes a motion from a formula, or from random numbers with a seed.
 
         Parameters
         ----------
@@ -148,16 +149,16 @@ class Record:
         Returns
         -------
         Record
-            At the step of its samples, or a 400th of the period of a formula; its notes state its origin.
+            Sampled at its own step, or at 1/400 of the period of a formula; the notes state its origin.
 
         Raises
         ------
         ScenarioError
             At the first invalid field.
         TypeError
-            When it is not exactly one of these kinds.
+            When not exactly one of these kinds is given.
         ValueError
-            When it makes several motions.
+            When the arguments describe several motions.
 
         Notes
         -----
@@ -165,7 +166,7 @@ class Record:
         """
         kinds = [name for name in ("sine", "pulse", "synthetic") if name in motion]
         if len(kinds) != 1:
-            raise TypeError(f"a motion is made by one of sine, pulse and synthetic, found {', '.join(motion) or 'none'}")
+            raise TypeError(f"expected one of sine, pulse and synthetic, found {', '.join(motion) or 'none'}")
         fields = dict(motion)
         if "synthetic" in fields:
             fields["synthetic"] = {"count": 1, **fields["synthetic"]}
@@ -174,7 +175,7 @@ class Record:
         text = "".join(f"{key} = {literal(value)}\n" for key, value in tables.items())
         records = _native.Study.parse("motion", text).records()
         if len(records) != 1:
-            raise ValueError(f"one motion is made at a time, and this makes {len(records)}: Study.records has them all")
+            raise ValueError(f"expected a single motion, found {len(records)}: use Study.records for several motions")
         return cls(records[0][1])
 
     @classmethod
@@ -196,8 +197,8 @@ class Record:
         Parameters
         ----------
         acceleration
-            The horizontal component, shape (samples,); or all components by name, where names state directions as in
-            files: ``"360"``, ``"N28W"``, ``"H1"``, ``"UP"``.
+            The horizontal component, shape (samples,); or all components by name, with names that state directions as
+            in files: ``"360"``, ``"N28W"``, ``"H1"``, ``"UP"``.
         dt
             Time between samples (s).
         unit
@@ -209,7 +210,7 @@ class Record:
         name
             Name of the record in results.
         raw
-            Whether it is as recorded, so that it is processed before use.
+            Whether the record is unprocessed, so that it is processed before use.
         start
             Instant of the first sample (UTC, ISO 8601).
         station
@@ -244,9 +245,9 @@ class Record:
         unit
             Unit of the numbers. Traces are often counts: remove the response or the sensitivity first.
         name
-            Name of the record in results; by default the identity of the first trace.
+            Name of the record in results; by default the id of the first trace.
         raw
-            Whether it is as recorded, so that it is processed before use.
+            Whether the record is unprocessed, so that it is processed before use.
 
         Returns
         -------
@@ -257,7 +258,7 @@ class Record:
         RecordError
             As :meth:`from_arrays`.
         ValueError
-            When traces have other steps, starts or lengths, or samples are missing.
+            When traces differ in step, start or length, or when samples are missing.
         """
         traces = list(stream) if hasattr(stream, "traces") else [stream]
         if not traces:
@@ -294,14 +295,14 @@ class Record:
         Returns
         -------
         obspy.Stream
-            One trace per component; names of components are cut to the three letters of a trace, and a long
-            station name to its number.
+            One trace per component. Names of components are cut to the three letters of a trace code, and a long
+            station name is reduced to the number in it.
         """
         from obspy import Stream, Trace, UTCDateTime
 
         network, _, station = self.station.rpartition(".")
         if len(station) > 5:
-            # A station code has five letters: use the number among the words of its name.
+            # A station code has at most five letters: use the number in the name.
             codes = [word for word in re.findall(r"\w+", station) if len(word) <= 5 and any(map(str.isdigit, word))]
             network, station = "", codes[0] if codes else ""
         traces = []
@@ -329,12 +330,12 @@ class Record:
 
     @property
     def event(self) -> str:
-        """The earthquake, as the file states it."""
+        """The earthquake, as stated in the file."""
         return self._native.event
 
     @property
     def station(self) -> str:
-        """The station, as the file states it."""
+        """The station, as stated in the file."""
         return self._native.station
 
     @property
@@ -344,7 +345,7 @@ class Record:
 
     @property
     def notes(self) -> list[str]:
-        """Steps of processing, one sentence each."""
+        """Processing steps, one sentence each."""
         return self._native.notes
 
     @property
@@ -365,7 +366,7 @@ class Record:
         return self.channels[self._native.find(component)]
 
     def velocity(self, component: str = "h1") -> NDArray[np.float64]:
-        """Returns the velocity (m/s) at the samples: the integral of accelerations that are linear between.
+        """Returns the velocity (m/s) at the samples: the integral of accelerations that are linear between samples.
 
         Parameters
         ----------
@@ -398,7 +399,7 @@ class Record:
         return self._native.integrated(self._native.find(component))[1]
 
     def component(self, name: str) -> Record:
-        """Returns the record with one component alone, turned if necessary.
+        """Returns the record with one component only, rotated if necessary.
 
         Parameters
         ----------
@@ -412,7 +413,8 @@ class Record:
         Raises
         ------
         RecordError
-            When the record has no such component, or an azimuth is requested and two horizontals do not state theirs.
+            When the record has no such component, or when an azimuth is requested but the azimuths of two horizontals
+            are unknown.
         """
         return Record(self._native.component(name))
 
@@ -429,27 +431,27 @@ class Record:
         keep_pads: bool | None = None,
         close: bool | None = None,
     ) -> Record:
-        """Processes all components by a chain, every step in :attr:`notes`.
+        """Processes all components by a chain of steps; :attr:`notes` state every step.
 
         Parameters
         ----------
         chain
-            Base of the settings: ``"default"`` for the stage of the record, ``"raw"`` (mean, taper, high-pass at
-            0.1 Hz, ends closed), ``"compact"`` (the same without pads), or ``"none"``. Other arguments replace its steps.
+            Base chain: ``"default"`` for the stage of the record, ``"raw"`` (mean, taper, high-pass at 0.1 Hz, ends
+            closed), ``"compact"`` (the same without pads), or ``"none"``. The other arguments replace its settings.
         mean
             ``"keep"``, ``"pre-event"`` or ``"whole"``.
         detrend
             Whether to subtract the least-squares line.
         taper
-            Length of the cosine taper at each end over that of the record.
+            Length of the cosine taper at each end, as a share of the length of the record.
         high_pass, low_pass
-            Corners (Hz) of the zero-phase Butterworth filter.
+            Corner frequencies (Hz) of the zero-phase Butterworth filter.
         order
-            Its order, applied forth and back.
+            Order of the filter, which runs forward and backward.
         keep_pads
-            Whether the zeros that hold the filter's transients stay (Boore 2005).
+            Whether to keep the zero pads, which contain the transients of the filter (Boore 2005).
         close
-            Whether velocity and displacement are brought to zero at the end.
+            Whether to bring velocity and displacement to zero at the end.
 
         Returns
         -------
@@ -469,9 +471,10 @@ class Record:
         Parameters
         ----------
         factor
-            The factor; or omit it and name a measure.
+            The factor; leave it out to scale to a measure.
         of
-            The component of the measure, or ``"rotd50"``, ``"rotd100"`` or ``"geomean"`` of both horizontals.
+            The component to which the measure refers, or ``"rotd50"``, ``"rotd100"`` or ``"geomean"`` for both
+            horizontals.
         **target
             One measure and its value: ``pgv=0.6`` (SI), ``pgv="60 cm/s"``, ``pga="0.4 g"``, ``arias=2.0``. Measures
             with a period are written ``**{"sa(1.0)": "0.5 g"}``.
@@ -483,7 +486,7 @@ class Record:
         Raises
         ------
         RecordError
-            When the measure does not grow with the motion or is zero.
+            When the measure does not scale with the motion, or is zero.
         """
         if factor is not None and not target:
             return Record(self._native.multiplied(float(factor)))
@@ -504,7 +507,7 @@ class Record:
         tolerance: float = 0.05,
         nearly: bool = False,
     ) -> Record:
-        """Matches one component, or both horizontals, to a target spectrum; all others take the first scaling.
+        """Matches one component, or both horizontals, to a target spectrum; other components are only scaled.
 
         Parameters
         ----------
@@ -513,18 +516,19 @@ class Record:
             ``"nch2745:zone=2,soil=II"``, ``"nzs1170:z=0.3,site=C"``, ``"ac156:sds=1"`` (accelerations in g); or
             periods (s, ascending) and pseudo-accelerations (m/s²).
         of
-            The component that is matched; ``"rotd50"`` and ``"rotd100"`` match both horizontals together, by their response
+            The component to match; ``"rotd50"`` and ``"rotd100"`` match both horizontals together, by their response
             over all directions.
         damping
             Damping ratio of a numerical target.
         method
-            Of one component: ``"time"``, wavelets at the peak responses; ``"frequency"``, Fourier amplitudes, phases kept.
+            For one component: ``"time"`` adds wavelets at the peak responses; ``"frequency"`` scales Fourier
+            amplitudes.
         periods
-            Shortest and longest period (s) that are matched.
+            Shortest and longest period (s) to match.
         tolerance
-            Largest relative misfit accepted at any of them.
+            Largest relative misfit that is accepted at any matched period.
         nearly
-            Whether to accept the best motion where the tolerance is not reached; :attr:`notes` state the misfits.
+            Whether to accept the best motion if the tolerance is not reached; :attr:`notes` state the misfits.
 
         Returns
         -------
@@ -536,7 +540,7 @@ class Record:
             When a setting is out of range, or the tolerance is not reached.
         """
         if method not in ("time", "frequency"):
-            raise ValueError(f'a method is "time" or "frequency", found {method!r}')
+            raise ValueError(f'expected the method "time" or "frequency", found {method!r}')
         wanted: str | list[tuple[float, float]]
         if isinstance(target, str):
             wanted = target
@@ -560,7 +564,7 @@ class Record:
         Returns
         -------
         list of Intensity
-            Each with its unit and a value (SI) by component. ``pandas.DataFrame`` accepts the list.
+            Each with its unit and a value (SI units) per component. ``pandas.DataFrame`` accepts the list.
 
         Raises
         ------
@@ -586,7 +590,7 @@ class Record:
         Parameters
         ----------
         periods
-            Periods (s); by default thirty a decade from 0.01 to 10 s.
+            Periods (s); by default thirty per decade from 0.01 to 10 s.
         damping
             Damping ratio.
         of
@@ -595,7 +599,7 @@ class Record:
         Returns
         -------
         periods : ndarray, shape (n,)
-            In s.
+            Periods (s).
         acceleration : ndarray, shape (n,)
             Pseudo-spectral acceleration (m/s²): exact for accelerations that are linear between samples.
         """
@@ -645,7 +649,7 @@ class Record:
         return figure
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes it in the format of the extension: ``.txt`` and ``.npz`` (exact), ``.csv``, ``.at2``.
+        """Writes the record in the format of the extension: ``.txt`` and ``.npz`` (exact), ``.csv``, ``.at2``.
 
         Parameters
         ----------
@@ -655,7 +659,7 @@ class Record:
         Raises
         ------
         RecordError
-            When the extension is unknown, or the format cannot hold the record.
+            When the extension is unknown, or the format cannot represent the record.
         OSError
             When the file cannot be written.
         """
@@ -669,7 +673,7 @@ class Record:
         return self
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        # An archive has the record bit for bit.
+        # An archive stores the record exactly.
         return _restored, (self._native.written("npz"), self.name)
 
     def _repr_html_(self) -> str:
@@ -691,7 +695,7 @@ class Record:
 
 
 def _restored(archive: bytes, name: str) -> Record:
-    """Returns a pickled record."""
+    """Restores a pickled record."""
     return Record.read(archive, name=name)
 
 
@@ -712,7 +716,7 @@ def _saved(data: bytes, name: str, unit: str | None, time_step: float | None) ->
     if unit is None:
         raise RecordError(f"{name}: expected the unit of the array acceleration, found none; state it with unit=", name)
     if stated is not None and time_step is not None and stated != time_step:
-        raise RecordError(f"{name}: the archive has a step of {stated} s, and {time_step} s was given; give one", name)
+        raise RecordError(f"{name}: the archive states a step of {stated} s, but {time_step} s was given", name)
     step = stated if time_step is None else time_step
     if step is None:
         raise RecordError(f"{name}: expected a number dt (s) beside the array, found none; state time_step=", name)

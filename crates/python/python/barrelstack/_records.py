@@ -1,4 +1,4 @@
-"""Many records at once: whole folders, their measures, sets for a target."""
+"""Many records at once: reading folders, measures, and selection of sets for a target."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._table import Table
 
 __all__ = ["Selection", "intensities", "read_folder", "select"]
 
-#: Periods (s) at which a code's spectrum is matched: the command's default.
+#: Periods (s) at which a code spectrum is matched: the default of the command.
 PERIODS = tuple(period for period in _native.PERIODS if period <= 5.0)
 
 
@@ -95,8 +95,8 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
     Returns
     -------
     Table
-        One row for every component of every record: ``record``, ``component``, and a column for every measure (SI),
-        None where the component is too short for it.
+        One row for every component of every record: ``record``, ``component``, and a column for every measure (SI
+        units), None if the component is too short for it.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
 class Selection(NamedTuple):
     """Records whose spectra have a target's mean and spread, made by :func:`select`."""
 
-    #: The chosen records by name, each multiplied by its factor.
+    #: The selected records by name, each multiplied by its factor.
     records: dict[str, Record]
     #: Factor of each record.
     factors: dict[str, float]
@@ -128,7 +128,7 @@ class Selection(NamedTuple):
     #: Target: medians (m/s², damping 5 %) in the first row, standard deviations of ln Sa (1) in the second;
     #: shape (2, periods).
     target: NDArray[np.float64]
-    #: The same for the set.
+    #: Median and standard deviation of the set, in the same form.
     found: NDArray[np.float64]
     #: Number of records that reach the target within the factors.
     eligible: int
@@ -155,23 +155,23 @@ def select(
     records
         The candidates, such as those of :func:`read_folder`.
     target
-        A code's spectrum as for :meth:`Record.match`, which all records shall match from 0.05 to 5 s; or the periods
+        A code spectrum as for :meth:`Record.match`, which all records should match from 0.05 to 5 s; or the periods
         (s, ascending), medians of the pseudo-acceleration (m/s², damping 5 %) and standard deviations of ln Sa (1) of a
-        ground-motion model, all of which count.
+        ground-motion model, all of which are matched.
     at
-        Period (s), one of the model's, at which Sa is given: selects the conditional spectrum (Baker 2011).
+        Period (s) of the model at which Sa is given; selects the conditional spectrum (Baker 2011).
     level
-        Sa there, in m/s² or as a text or quantity such as ``"0.6 g"``.
+        Sa at that period, in m/s² or as a text or quantity such as ``"0.6 g"``.
     epsilon
-        Or Sa there, as standard deviations of ln Sa above the median.
+        Sa at that period, as standard deviations of ln Sa above the median; in place of ``level``.
     count
-        Number of records to choose.
+        Number of records to select.
     spectrum
         Spectrum of a record to match: ``"rotd50"``, or a component such as ``"h1"``.
     scale
-        Smallest and largest factor.
+        Smallest and largest scale factor.
     events
-        The earthquake of each record, if not that of its header.
+        The earthquake of each record, in place of that in its header.
     most_of_event
         Maximum number of records of one earthquake.
     seed
@@ -184,31 +184,32 @@ def select(
     Raises
     ------
     RecordError
-        When too few records reach the target, or it is inconsistent.
+        When too few records reach the target, or the target is inconsistent.
     ValueError
-        When a condition is invalid: a period without level or epsilon, one not in the target, or one for a code.
+        When a condition is invalid: a period without level or epsilon, a period not in the target, or a period for a
+        code.
 
     Warns
     -----
     BarrelstackWarning
-        For each record without such a spectrum, such as RotD50 of one component; it is left out.
+        For each record that is left out because it lacks the spectrum, such as RotD50 of one component.
 
     Notes
     -----
-    The choice is that of ``barrelstack motion select`` for the same spectra and periods: Jayaram, Lin and Baker (2011),
-    Earthquake Spectra 27:797-815.
+    The selection equals that of ``barrelstack motion select`` for the same spectra and periods: Jayaram, Lin and Baker
+    (2011), Earthquake Spectra 27:797-815.
     """
     wanted: str | tuple[list[float], list[float]]
     given: tuple[float, float] | None = None
     if isinstance(target, str):
         if at is not None:
-            raise ValueError("a code's spectrum has no spread that could be conditional: leave out at")
+            raise ValueError("a code spectrum has no spread, so it cannot be made conditional: leave out at")
         periods, wanted = np.array(PERIODS), target
     else:
         periods, median, deviation = (np.ascontiguousarray(one, dtype=np.float64) for one in target)
         wanted = (median.tolist(), deviation.tolist())
         if (at is None) == (level is not None or epsilon is not None) or (level is not None and epsilon is not None):
-            raise ValueError("a condition is a period, at, with level or with epsilon")
+            raise ValueError("a condition needs a period, at, and either level or epsilon")
         if at is not None:
             given = (float(at), _given(periods, median, deviation, at, level, epsilon))
     candidates: list[tuple[str, list[float], str]] = []
@@ -246,7 +247,7 @@ def _given(
     level: object,
     epsilon: float | None,
 ) -> float:
-    """Returns the Sa (m/s²) given at a period."""
+    """Returns the given Sa (m/s²) at a period."""
     if epsilon is None:
         said = plain(level)
         try:
@@ -255,6 +256,6 @@ def _given(
             raise ValueError(f"level {str(refused).removeprefix('pga')}") from None
     places = np.flatnonzero(periods == at)
     if len(places) != 1:
-        raise ValueError(f"{at} s is none of the target's periods: {', '.join(f'{one:g}' for one in periods)} s")
+        raise ValueError(f"{at} s is not a period of the target: {', '.join(f'{one:g}' for one in periods)} s")
     place = places[0]
     return float(median[place] * np.exp(deviation[place] * epsilon))

@@ -40,11 +40,11 @@ class Outcome(NamedTuple):
     #: ``stable``, ``collapse``, ``not-judged``, ``interrupted`` or ``invalid``.
     kind: str
     #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``; in a table of
-    #: cases also ``gravity``, where the stack falls under its own weight, before it is shaken.
+    #: cases also ``gravity``, if the stack falls under its own weight, before it is shaken.
     mode: str | None
     #: Time at which the first body left its seat (s).
     time: float | None
-    #: That body.
+    #: Name of the first body that left its seat.
     first: str | None
     #: Time at which the first barrel had fallen (s).
     first_fall: float | None
@@ -55,7 +55,7 @@ class Outcome(NamedTuple):
 
 
 class Demands(Mapping[str, "float | None"]):
-    """Demands on the stack in a part of its run, by name, in SI units; None if not applicable."""
+    """Demands on the stack during a part of the run, by name, in SI units; None if not applicable."""
 
     def __init__(self, values: dict[str, float | None]) -> None:
         self._values = values
@@ -71,12 +71,12 @@ class Demands(Mapping[str, "float | None"]):
 
     @property
     def units(self) -> dict[str, str]:
-        """SI unit of each; ``1`` for a ratio."""
+        """SI unit of each demand; ``1`` for a ratio."""
         return {path.removeprefix("demands."): unit for path, unit, _ in _demands()}
 
     @property
     def meanings(self) -> dict[str, str]:
-        """Meaning of each, in a sentence."""
+        """Meaning of each demand, in a sentence."""
         return {path.removeprefix("demands."): meaning for path, _, meaning in _demands()}
 
     def __repr__(self) -> str:
@@ -96,7 +96,7 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
 
     Examples
     --------
-    >>> run.histories["B4.1_displacement_x"]  # m, relative to the ground and the place at rest
+    >>> run.histories["B4.1_displacement_x"]  # m, relative to the ground and the position at rest
     """
 
     def __init__(self, native: _native.Run) -> None:
@@ -107,12 +107,12 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
 
     @property
     def time(self) -> NDArray[np.float64]:
-        """Times of the samples (s), shape (samples,); ``histories["time"]``, too."""
+        """Times of the samples (s), shape (samples,); the same as ``histories["time"]``."""
         return self._native.times()
 
     @property
     def units(self) -> dict[str, str]:
-        """SI unit of each."""
+        """SI unit of each history."""
         return dict(self._units)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
@@ -131,7 +131,7 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
         return len(self._units)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Exports a table of Arrow, ``time`` first."""
+        """Exports an Arrow stream, with ``time`` as the first column."""
         columns = [(name, unit, self[name]) for name, unit in self._units.items()]
         return _native.Table.of_numbers(columns).__arrow_c_stream__(requested_schema)
 
@@ -139,8 +139,8 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
 class Force(NamedTuple):
     """The force between two bodies of a stack, on the upper one.
 
-    If neither body leans on the other by design, on the one named first. Largest forces are the extremes by absolute
-    value over all steps, with their sign.
+    If neither body rests on the other, the force is that on the body named first. Largest forces are those with the
+    largest magnitude in any step, with their sign.
     """
 
     #: Vertical force at rest (N).
@@ -174,12 +174,12 @@ class Envelope(NamedTuple):
     peak: NDArray[np.float64]
     #: Largest stress over the whole run (N/m): a view without a copy.
     peak_whole_run: NDArray[np.float64]
-    #: Whether the last point is next to the first.
+    #: True if the last point is adjacent to the first.
     closed: bool
 
 
 class Frames(NamedTuple):
-    """Poses of all bodies, at the rate of frames."""
+    """Poses of all bodies, one set per frame."""
 
     #: Times (s), shape (frames,).
     time: NDArray[np.float64]
@@ -187,7 +187,7 @@ class Frames(NamedTuple):
     bodies: list[str]
     #: x (m), z (m) and angle (rad) in the inertial frame, shape (frames, bodies, 3).
     poses: NDArray[np.float64]
-    #: Largest normal stress (N/m) of a contact of the body, shape (frames, bodies).
+    #: Largest normal stress (N/m) at the contacts of each body, shape (frames, bodies).
     stresses: NDArray[np.float64]
 
 
@@ -202,13 +202,13 @@ class Run:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """All numbers of the run, as ``barrelstack run --json`` prints them; SI units."""
+        """All numbers of the run, as printed by ``barrelstack run --json``; SI units."""
         summary: dict[str, Any] = json.loads(self._native.summary())
         return summary
 
     @property
     def headline(self) -> str:
-        """The answer in one sentence."""
+        """The result in one sentence."""
         return self._native.headline
 
     @property
@@ -219,12 +219,12 @@ class Run:
 
     @property
     def ensemble(self) -> dict[str, Any] | None:
-        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
+        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, modes; None without variants."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property
     def variants(self) -> Table | None:
-        """The nominal stack (number 0) and its variants, a row each; None if none were run."""
+        """The nominal stack (number 0) and its variants, one row each; None if no variants were run."""
         table = self._native.variants()
         return None if table is None else Table(table)
 
@@ -245,7 +245,7 @@ class Run:
 
     @cached_property
     def forces(self) -> dict[str, Force]:
-        """Forces between bodies that lean on each other, by names such as ``"R1 on ground"``.
+        """Forces between bodies that rest on each other, by names such as ``"R1 on ground"``.
 
         Includes bodies that met before the first loss of seat, such as ``"R1.1 against R1.2"``.
         """
@@ -257,7 +257,7 @@ class Run:
 
     @cached_property
     def envelopes(self) -> dict[str, Envelope]:
-        """Stress along the boundary of every barrel and rack, by its name."""
+        """Stress along the boundary of every barrel and rack, by name of the body."""
         found: dict[str, Envelope] = {}
         for at, (name, closed) in enumerate(self._native.envelopes()):
             points = self._native.envelope_points(at)
@@ -278,12 +278,12 @@ class Run:
         Parameters
         ----------
         frame
-            Its number, from 0.
+            Number of the frame, counted from 0.
 
         Returns
         -------
         ndarray, shape (arrows, 4)
-            Position x, z (m) and force x, z (N) on the body that carries the contact.
+            Position x, z (m) and force x, z (N) on the contactor.
         """
         return self._native.frame_forces(frame)
 
@@ -294,17 +294,17 @@ class Run:
 
     @property
     def interrupted(self) -> bool:
-        """True if an observer stopped it."""
+        """True if an observer stopped the run."""
         return self._native.interrupted
 
     @property
     def scenario(self) -> str:
-        """The scenario of the shown run, every default written out (TOML)."""
+        """The scenario of the shown run, including all defaults (TOML)."""
         return self._native.toml
 
     @property
     def other(self) -> Run | None:
-        """The other plane, where the scenario has both; None where it has one."""
+        """Results of the other plane; None if the scenario has one plane."""
         other = self._native.other()
         return None if other is None else Run(other)
 
@@ -338,7 +338,7 @@ class Run:
         folder
             A folder that is new or empty.
         overwrite
-            Whether to write into one that is not empty.
+            Whether to write into a folder that is not empty.
         """
         self._native.write(os.fspath(folder), overwrite)
 
@@ -354,7 +354,7 @@ class Run:
         size: int = 480,
         overwrite: bool = False,
     ) -> dict[str, int]:
-        """Writes pictures and films of the shown run, as ``barrelstack render``.
+        """Writes figures, animations and series of the shown run, like ``barrelstack render``.
 
         Parameters
         ----------
@@ -366,7 +366,7 @@ class Run:
         formats
             Formats of figures besides SVG: ``"png"``, ``"pdf"``; both by default.
         dpi
-            Dots per inch of figures as PNG, 20 to 1200.
+            Resolution (dots per inch) of figures in PNG, 20 to 1200.
         paper
             ``"a4"`` or ``"letter"``.
         rate
@@ -381,14 +381,14 @@ class Run:
         Returns
         -------
         dict
-            The place of each part, and the number of its files.
+            The folder or file of each part, and its number of files.
 
         Raises
         ------
         ValueError
             When there is no such part or format, or a number is out of range.
         Error
-            When the folder holds an earlier rendering, or cannot be written.
+            When the folder contains an earlier rendering, or cannot be written.
         """
         window = None if between is None else [float(time) for time in between]
         written = self._native.render(
@@ -402,7 +402,8 @@ class Run:
         Parameters
         ----------
         *names
-            Histories of one unit; by default displacements along x of the top barrels, or of all free bodies.
+            Names of histories with the same unit; by default displacements along x of the top barrels, or of all free
+            bodies.
         ax
             Axes to draw into; new ones by default.
 
@@ -449,7 +450,7 @@ class Run:
 
 
 class _KeptRun(Kept):
-    """Pickled run in one plane, with the other plane where there is one."""
+    """Pickled run in one plane, with the other plane if there is one."""
 
     def __init__(self, native: _native.Run, alone: bool = False) -> None:
         rows = {
@@ -478,5 +479,5 @@ class _KeptRun(Kept):
 
 
 def _kept(native: Any) -> Any:
-    """Pickled state of a run."""
+    """Returns the pickled state of a run."""
     return native if isinstance(native, _KeptRun) else _KeptRun(native)

@@ -29,16 +29,16 @@ def _schema(of: str) -> dict[str, Any]:
 
 
 def _is_file(name: str) -> bool:
-    """True for a path; any other name without a dot or a separator is a built-in scenario."""
+    """Returns True for a path; a name without a dot or a separator that is not a file is a built-in scenario."""
     return os.path.isfile(name) or any(sign in name for sign in "./\\")
 
 
-#: Value of a field: quantities are texts in SI with their unit.
+#: Value of a field; quantities are texts with their SI unit.
 Value = str | int | float | bool
 
 
 def _value(text: str) -> Value:
-    """Returns a plain number or bool as such; anything else as text."""
+    """Converts a plain number or bool; returns any other text unchanged."""
     if text in ("true", "false"):
         return text == "true"
     for kind in (int, float):
@@ -50,12 +50,12 @@ def _value(text: str) -> Value:
 
 
 def _unassigned(path: str) -> ArgumentError:
-    """Returns the error where a field is assigned, which would leave the scenario as it is."""
-    return ArgumentError(f'a scenario stays as it is: scenario.set("{path}", value) returns a new one')
+    """Returns the error for an assignment to a field; scenarios are immutable."""
+    return ArgumentError(f'a scenario cannot be changed: scenario.set("{path}", value) returns a new one')
 
 
 class Section:
-    """A table of a scenario: its fields are attributes, with their meaning as documentation.
+    """A table of a scenario; its fields are attributes, and :meth:`help` returns their meanings.
 
     Examples
     --------
@@ -115,18 +115,18 @@ class Section:
         Returns
         -------
         str
-            Its name, its value with its unit, and its meaning.
+            Name, value with unit, and meaning of the field.
         """
         value, meaning = self._fields[f"{self._path}.{name}" if self._path else name]
         return f"{name} = {value}: {meaning}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns the table as a nested dict, quantities as texts in SI with their unit.
+        """Returns the table as a nested dict; quantities are texts with their SI unit.
 
         Returns
         -------
         dict
-            One entry per field; a table inside is a dict.
+            One entry per field; inner tables are dicts.
         """
         inner = {name: self[name] for name in self._names()}
         return {name: item.to_dict() if isinstance(item, Section) else item for name, item in inner.items()}
@@ -146,12 +146,12 @@ class Scenario:
         The text of a scenario (TOML), or a nested dict of the same fields. Quantities are texts with a unit
         (``"32 kg"``), or quantities of Pint or astropy.
     name
-        Name of the text in errors.
+        Name of the text in error messages.
 
     Raises
     ------
     ScenarioError
-        At the first invalid field, with its place or its path.
+        At the first invalid field, with its position or its path.
 
     Examples
     --------
@@ -161,7 +161,7 @@ class Scenario:
 
     Notes
     -----
-    All fields are in the reference of scenario files; :meth:`schema` has them for programs.
+    The reference of scenario files describes all fields; :meth:`schema` returns their JSON Schema.
     """
 
     def __init__(self, of: str | Mapping[str, Any], name: str = "scenario") -> None:
@@ -177,20 +177,20 @@ class Scenario:
         made = cls.__new__(cls)
         made._native = native
         made._record = record
-        #: A path, to the folder of which paths in the scenario are relative.
+        #: A path; relative paths in the scenario start from its folder.
         made._name = name
         return made
 
     @classmethod
     def load(cls, name: str | os.PathLike[str], **changes: Any) -> Scenario:
-        """Loads a scenario from a file, or a built-in one by its name.
+        """Loads a scenario from a file, or a built-in scenario by name.
 
         Parameters
         ----------
         name
             A path, or one of :func:`barrelstack.scenarios`. An existing file takes precedence.
         **changes
-            Fields to set, with ``__`` for the dot: ``stack__levels=6``.
+            Fields to set, with ``__`` for the dot, such as ``stack__levels=6``.
 
         Returns
         -------
@@ -199,7 +199,7 @@ class Scenario:
         Raises
         ------
         ScenarioError
-            When there is none, or at the first invalid field.
+            When there is no such scenario, or at the first invalid field.
         """
         sets = [f"{path.replace('__', '.')}={literal(value)}" for path, value in changes.items()]
         path = os.fspath(name)
@@ -215,12 +215,12 @@ class Scenario:
             The path of a field, such as ``"stack.levels"`` or ``"interface.rack-ground.friction.coefficient"``;
             or a mapping of paths to values, set together.
         value
-            Its value: a number, a text, a quantity, a list or a dict.
+            The value: a number, a text, a quantity, a list or a dict.
 
         Returns
         -------
         Scenario
-            The new scenario; this one stays as it is.
+            The new scenario; this one is unchanged.
 
         Raises
         ------
@@ -232,7 +232,7 @@ class Scenario:
         return self._of(self._native.changed(sets), self._record, self._name)
 
     def with_record(self, record: Record) -> Scenario:
-        """Returns a new scenario with a record in place of its own motion.
+        """Returns a new scenario with a record in place of the stated motion.
 
         Parameters
         ----------
@@ -256,12 +256,12 @@ class Scenario:
 
     @property
     def fingerprint(self) -> str:
-        """Sixteen hexadecimal digits that identify everything that is run; titles do not count."""
+        """Sixteen hexadecimal digits that identify everything that affects the run, which excludes the title."""
         return self._shaken.fingerprint
 
     @property
     def fields(self) -> Section:
-        """All fields with their values, defaults written out."""
+        """All fields with their values, including defaults."""
         settings = self._native.settings()
         return Section("", {path: (value, meaning) for path, value, meaning in settings})
 
@@ -280,7 +280,7 @@ class Scenario:
         return [*super().__dir__(), *fields]
 
     def to_toml(self) -> str:
-        """Returns the scenario as a file: every default written out, every quantity in SI.
+        """Returns the scenario as the text of a file, including all defaults, with all quantities in SI units.
 
         Returns
         -------
@@ -316,17 +316,17 @@ class Scenario:
         return None if found is None else Record(found)
 
     def check(self) -> list[dict[str, Any]]:
-        """Checks that the scenario is valid, and that the stack stands by itself.
+        """Checks that the scenario is valid, and that the stack stands before the motion.
 
         Returns
         -------
         list of dict
-            Settlement, time step and warnings of every plane, as ``barrelstack check --json``.
+            Settlement, time step and warnings of every plane, as printed by ``barrelstack check --json``.
 
         Raises
         ------
         RunError
-            When it does not stand, with the first body to fail and the cause.
+            When the stack does not stand; names the first body to fail and the cause.
         """
         return [json.loads(one) for one in self._shaken.check()]
 
@@ -340,27 +340,27 @@ class Scenario:
         remedy: bool = False,
         verify: bool = False,
     ) -> Run:
-        """Runs it with its variants and shows the most typical run.
+        """Runs the scenario with its variants, and shows the most typical run.
 
         Parameters
         ----------
         record
-            A record, or a path, in place of its own motion.
+            A record or its path, in place of the motion of the scenario.
         variants
-            Number of variants besides the nominal stack; by default that of the scenario (64). 0 for none.
+            Number of variants in addition to the nominal stack; by default that of the scenario (64).
         progress
-            True for a bar, or a function that is called with (done, of, what) some twenty times a second.
+            True for a bar, or a function that is called with (done, of, what) about twenty times per second.
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search a remedy, as the command does.
+            Whether to search for a remedy, as the command does.
         verify
             Whether to repeat the run with half the step and with a perturbation of a nanometer.
 
         Returns
         -------
         Run
-            Results of the governing plane, with the other in :attr:`Run.other`.
+            Results of the governing plane; those of the other plane are in :attr:`Run.other`.
 
         Raises
         ------
@@ -369,7 +369,7 @@ class Scenario:
         RecordError
             When the motion cannot be read.
         ValueError
-            When it is a scenario in space, which :meth:`run_in_space` runs.
+            When the scenario is in space; use :meth:`run_in_space`.
         KeyboardInterrupt
             Within a second of Ctrl-C.
 
@@ -380,10 +380,10 @@ class Scenario:
 
         Notes
         -----
-        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is released meanwhile.
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter lock is released meanwhile.
         """
         if self._native.is_spatial:
-            raise ValueError(f"{self.title!r} stands in space: run it with run_in_space()")
+            raise ValueError(f"{self.title!r} is a scenario in space: run it with run_in_space()")
         if record is not None:
             record = record if isinstance(record, Record) else Record.read(record)
             return self.with_record(record).run(
@@ -408,20 +408,20 @@ class Scenario:
         Parameters
         ----------
         record
-            A record, or a path, in place of its own motion.
+            A record or its path, in place of the motion of the scenario.
         variants
-            Number of variants besides the nominal stack; by default that of the scenario (64). 0 for none.
+            Number of variants in addition to the nominal stack; by default that of the scenario (64).
         progress
-            True for a bar, or a function that is called with (done, of, what) some twenty times a second.
+            True for a bar, or a function that is called with (done, of, what) about twenty times per second.
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search a remedy, as the command does.
+            Whether to search for a remedy, as the command does.
 
         Returns
         -------
         SpatialRun
-            Its results.
+            Results of the scenario.
 
         Raises
         ------
@@ -430,7 +430,7 @@ class Scenario:
         RecordError
             When the motion cannot be read.
         ValueError
-            When it is a scenario in a plane, which :meth:`run` runs.
+            When the scenario is planar; use :meth:`run`.
         KeyboardInterrupt
             Within a second of Ctrl-C.
 
@@ -441,11 +441,11 @@ class Scenario:
 
         Notes
         -----
-        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is released meanwhile.
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter lock is released meanwhile.
         """
         if not self._native.is_spatial:
             raise ValueError(
-                f"{self.title!r} stands in a plane: run it with run(), or set {{'stack.view': 'spatial'}}"
+                f"{self.title!r} is a planar scenario: run it with run(), or set {{'stack.view': 'spatial'}}"
             )
         if record is not None:
             record = record if isinstance(record, Record) else Record.read(record)
@@ -458,15 +458,15 @@ class Scenario:
         return run
 
     def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
-        """Runs it as stated, in one plane, with an observer that may stop it.
+        """Runs the scenario as stated, in one plane, with an observer that may stop the run.
 
         Parameters
         ----------
         look
-            Called with a :class:`Glance` at the start and after every few accepted steps; the run ends when it returns
-            anything true, with the results so far.
+            Called with a :class:`Glance` at the start and after every few accepted steps; a true
+            result ends the run, which keeps the results so far.
         every
-            Accepted steps between two calls.
+            Number of accepted steps between two calls.
 
         Returns
         -------
@@ -482,7 +482,8 @@ class Scenario:
 
         Notes
         -----
-        A call takes the interpreter's lock and some microseconds; laws for every step belong in the library.
+        A call takes the interpreter lock and some microseconds; force laws that act at every step belong in the
+        library.
         """
         run = Run(self._shaken.run_before(every, look))
         warn(run.warnings)
@@ -508,5 +509,5 @@ class Scenario:
 
 
 def _restored(text: str, record: Record | None, name: str) -> Scenario:
-    """Returns a pickled scenario."""
+    """Restores a pickled scenario."""
     return Scenario._of(_native.Scenario.parse(name, text, []), record, name)

@@ -1,4 +1,4 @@
-"""Free scenes: any planar bodies, for checks of one's own."""
+"""Free scenes: any planar bodies, for your own checks."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ class Scene:
         Parameters
         ----------
         name
-            Its name in results.
+            Name of the body in results.
         shape
-            The fields of its shape: ``{"type": "disc", "radius": "35 cm"}``, or of its ``parts``.
+            The fields of the shape, such as ``{"type": "disc", "radius": "35 cm"}``, or of its ``parts``.
         mass
             Mass with its unit.
         position
-            Position of the reference point of its shape at the start, x and z with their units; z is up and 0 on the
+            Initial position of the reference point of the shape, x and z with their units; z is up and 0 on the
             ground.
         **fields
             Other fields of a body: ``angle``, ``velocity``, ``spin``, ``nodes``, ``group``.
@@ -68,7 +68,7 @@ class Scene:
         Returns
         -------
         Scene
-            This one.
+            This scene.
         """
         place = list(position)
         self.bodies.append({"name": name, "shape": dict(shape), "mass": mass, "position": place, **fields})
@@ -80,41 +80,41 @@ class Scene:
         Parameters
         ----------
         first, second
-            Their names; ``"ground"`` is one.
+            Names of the bodies or kinds; ``"ground"`` is the ground.
         **fields
             The fields of an interface: ``stiffness``, ``damping``, ``friction``, ``normal``.
 
         Returns
         -------
         Scene
-            This one.
+            This scene.
         """
         self.interfaces.append({"between": [first, second], **fields})
         return self
 
     def element(self, name: str, kind: str, first: str, second: str, *, stiffness: Any, **fields: Any) -> Scene:
-        """Puts a force element between two bodies.
+        """Adds a force element between two bodies.
 
         Parameters
         ----------
         name
-            Its name in results: ``run.summary["elements"]``.
+            Name of the element in results: ``run.summary["elements"]``.
         kind
-            ``"strap"``, which pulls only; ``"rod"``, which holds a distance; ``"guide"``, a spring with stops along an
+            ``"strap"``, which only pulls; ``"rod"``, which keeps a distance; ``"guide"``, a spring with stops along an
             axis of the first body.
         first, second
-            Names of the bodies; ``"ground"`` is one.
+            Names of the bodies; ``"ground"`` is the ground.
         stiffness
             Stiffness with its unit.
         **fields
-            ``at`` and ``to``, its attachment on each body, from the reference point of its shape; ``damping``; of a
-            strap ``length``, ``yields_at``, ``strength``; of a rod ``length``, ``sway_damping``; of a guide ``axis``,
-            ``gap`` with ``stop_stiffness`` and ``stop_damping``, ``strength``, ``reach``.
+            ``at`` and ``to``, the attachment points on the bodies, from the reference points of their shapes;
+            ``damping``; for a strap ``length``, ``yields_at``, ``strength``; for a rod ``length``, ``sway_damping``;
+            for a guide ``axis``, ``gap`` with ``stop_stiffness`` and ``stop_damping``, ``strength``, ``reach``.
 
         Returns
         -------
         Scene
-            This one.
+            This scene.
         """
         between = [first, second]
         self.elements.append({"name": name, "kind": kind, "between": between, "stiffness": stiffness, **fields})
@@ -130,14 +130,14 @@ class Scene:
         Raises
         ------
         ScenarioError
-            At the first invalid field; its ``value`` has the path, items of lists counted from 1.
+            At the first invalid field; ``value`` has its path, with list items counted from 1.
         """
         tree = {"title": self.title, "kind": "free", **self.tables}
         tree |= {"body": self.bodies, "interface": self.interfaces, "element": self.elements}
         return Scenario({key: value for key, value in tree.items() if value != []}, name=self.title)
 
     def run(self, record: Record | None = None, progress: Progress = None) -> Run:
-        """Runs it, as :meth:`Scenario.run`.
+        """Runs the scene, like :meth:`Scenario.run`.
 
         Parameters
         ----------
@@ -153,14 +153,14 @@ class Scene:
         return self.scenario().run(record, progress=progress)
 
     def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
-        """Runs it with an observer, as :meth:`Scenario.observe`.
+        """Runs the scene with an observer, like :meth:`Scenario.observe`.
 
         Parameters
         ----------
         look
-            Called every few steps; anything true ends the run.
+            Called every few steps; a true result ends the run.
         every
-            Accepted steps between two calls.
+            Number of accepted steps between two calls.
 
         Returns
         -------

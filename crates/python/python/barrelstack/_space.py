@@ -24,13 +24,14 @@ class OutcomeInSpace(NamedTuple):
     #: ``stable``, ``collapse``, ``not-judged`` or ``invalid``.
     kind: str
     #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``; in a table of
-    #: cases also ``gravity``, where the stack falls under its own weight, before it is shaken.
+    #: cases also ``gravity``, if the stack falls under its own weight, before it is shaken.
     mode: str | None
     #: Time at which the first body left its seat (s).
     time: float | None
-    #: That body.
+    #: Name of the first body that left its seat.
     first: str | None
-    #: Direction in which it left: ``right`` or ``left`` across the barrels, ``away`` or ``near`` along them.
+    #: Direction in which that body left: ``right`` or ``left`` across the barrels, ``away`` or
+    #: ``near`` along them.
     heading: str | None
     #: Time at which the first barrel had fallen (s).
     first_fall: float | None
@@ -41,7 +42,7 @@ class OutcomeInSpace(NamedTuple):
 
 
 class Poses(NamedTuple):
-    """Poses of all bodies in space, at the rate of frames."""
+    """Poses of all bodies in space, one set per frame."""
 
     #: Times (s), shape (frames,): a view without a copy.
     time: NDArray[np.float64]
@@ -65,13 +66,13 @@ class SpatialRun:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """All numbers of the run, as ``barrelstack run --json`` prints them (``space/1``); SI units."""
+        """All numbers of the run, as printed by ``barrelstack run --json`` (``space/1``); SI units."""
         summary: dict[str, Any] = json.loads(self._native.summary())
         return summary
 
     @property
     def headline(self) -> str:
-        """The answer in one sentence."""
+        """The result in one sentence."""
         return self._native.headline
 
     @property
@@ -82,17 +83,17 @@ class SpatialRun:
 
     @property
     def ensemble(self) -> dict[str, Any] | None:
-        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
+        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, modes; None without variants."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property
     def directions(self) -> dict[str, int] | None:
-        """Directions in which variants fall: first bodies and debris; None without any."""
+        """Directions in which variants fall: first bodies and debris; None if no variants were run."""
         return self.summary["directions"]  # type: ignore[no-any-return]
 
     @property
     def variants(self) -> Table | None:
-        """The nominal stack (number 0) and its variants, a row each; None if none were run."""
+        """The nominal stack (number 0) and its variants, one row each; None if no variants were run."""
         table = self._native.variants()
         return None if table is None else Table(table)
 
@@ -109,7 +110,7 @@ class SpatialRun:
 
     @property
     def scenario(self) -> str:
-        """The scenario of the shown run, every default written out (TOML)."""
+        """The scenario of the shown run, including all defaults (TOML)."""
         return self._native.toml
 
     def html(self) -> str:
@@ -129,7 +130,7 @@ class SpatialRun:
         folder
             A folder that is new or empty.
         overwrite
-            Whether to write into one that is not empty.
+            Whether to write into a folder that is not empty.
         """
         self._native.write(os.fspath(folder), self._stated, overwrite)
 

@@ -1,4 +1,4 @@
-"""Reads and writes files as the commands do."""
+"""Reads and writes files in the same way as the commands."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ import stat
 
 __all__ = ["contents", "store"]
 
-#: What the system offers as a file and the caller opened.
+#: Paths that are not files but that the system offers for streams opened by the caller.
 OPENED = ("/dev/stdin", "/dev/fd/", "/proc/")
 
 
 def contents(path: str | os.PathLike[str]) -> bytes:
-    """Reads a file. A named pipe would keep its reader waiting, and a device has no end: both are refused.
+    """Reads a file; named pipes, which may block the reader, and devices, which have no end, are refused.
 
     Parameters
     ----------
     path
-        The file, or what the caller opened (``/dev/stdin``).
+        The file, or a stream that the caller opened (``/dev/stdin``).
 
     Raises
     ------
     OSError
-        When it cannot be opened or is no file.
+        When the path cannot be opened or is not a file.
     """
     name = os.fspath(path)
     mode = os.stat(name).st_mode
@@ -36,16 +36,16 @@ def contents(path: str | os.PathLike[str]) -> bytes:
 
 
 def store(path: str | os.PathLike[str], content: bytes) -> None:
-    """Writes to a temporary name and renames, so that the file is never incomplete and a link of its name is replaced.
+    """Writes a file under a temporary name and renames it, so that it is never incomplete.
 
-    A folder of results may come from someone else, and a link in it lead to files outside.
+    A link with the name of the file is replaced: a folder from someone else may contain links to files outside.
 
     Parameters
     ----------
     path
-        The file; what the system offers as a file (``/dev/stdout``) is written to as it is.
+        The file; paths of the system such as ``/dev/stdout`` are written to directly.
     content
-        All of it.
+        The complete content.
     """
     name = os.fspath(path)
     if name.startswith(("/dev/", "/proc/")):

@@ -23,7 +23,7 @@ __all__ = ["Chunk", "Curve", "Fragility", "Hunts", "Study"]
 
 
 class Chunk(NamedTuple):
-    """Cases that are computed together and kept as a whole."""
+    """A chunk of a study: cases that are computed and stored together."""
 
     number: int
     cases: int
@@ -35,7 +35,7 @@ class Curve(NamedTuple):
     """The fragility of one limit state."""
 
     limit_state: str
-    #: Median (SI unit of the measure); None where the data support no curve.
+    #: Median (SI unit of the measure); None if the data support no curve.
     median: float | None
     #: Standard deviation of the logarithm.
     dispersion: float | None
@@ -45,11 +45,11 @@ class Curve(NamedTuple):
     raw: NDArray[np.float64]
     #: The 95 % band, shape (points, 3): intensity, lower, upper.
     band: NDArray[np.float64]
-    #: Reason why there is no curve.
+    #: Reason why there is no curve; None if there is one.
     no_curve: str | None
 
     def probability(self, intensity: Any) -> NDArray[np.float64]:
-        """Returns the probability of failure at intensities (SI), by the lognormal curve.
+        """Returns the probability of failure at intensities (SI units), from the lognormal curve.
 
         Parameters
         ----------
@@ -59,7 +59,7 @@ class Curve(NamedTuple):
         Returns
         -------
         ndarray
-            With the shape of the intensities.
+            Probabilities, in the shape of the intensities.
         """
         if self.median is None or self.dispersion is None:
             raise ValueError(f"{self.limit_state} has no curve: {self.no_curve}")
@@ -81,7 +81,7 @@ class Fragility(Page):
 
     @property
     def curves(self) -> dict[str, Curve]:
-        """A curve for every limit state, by its name; the first is the loss of the first seat."""
+        """A curve for every limit state, by name; the first is the first loss of a seat."""
         found: dict[str, Curve] = {}
         for one in self.document["fragility"]:
             raw = [[row["intensity"], row["cases"], row["failures"], *row["interval"]] for row in one["raw"]]
@@ -104,7 +104,7 @@ class Fragility(Page):
         Parameters
         ----------
         *limit_states
-            Names among :attr:`curves`; by default the first.
+            Names of :attr:`curves`; by default the first.
         ax
             Axes to draw into; new ones by default.
 
@@ -129,7 +129,7 @@ class Fragility(Page):
             if len(curve.band):
                 ax.fill_between(*curve.band.T, color=color, alpha=0.15, linewidth=0)
         ax.set_xlabel(f"{name} ({unit})")
-        ax.set_ylabel("chance of failure")
+        ax.set_ylabel("probability of failure")
         ax.set_ylim(-0.02, 1.02)
         ax.legend(loc="upper left", fontsize="small")
         return ax
@@ -140,11 +140,11 @@ class Hunts(NamedTuple):
 
     #: Names of the motions.
     motions: list[str]
-    #: For each motion the levels (SI unit of the measure), ascending.
+    #: For each motion, the levels in ascending order (SI unit of the measure).
     levels: list[NDArray[np.float64]]
-    #: For each motion the demands on the stack at those levels; not a number where it collapsed.
+    #: For each motion, the demands on the stack at those levels; NaN where the stack collapsed.
     demands: list[NDArray[np.float64]]
-    #: For each motion the lowest level at which the stack collapsed; not a number where it always stood.
+    #: For each motion, the lowest level at which the stack collapsed; NaN if it never collapsed.
     capacities: NDArray[np.float64]
 
 
@@ -154,15 +154,15 @@ def tables(of: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Study:
-    """A study: its factors, its motions, and the design of its cases.
+    """A study: factors, motions, and the design of the cases.
 
     Parameters
     ----------
     of
-        The text of a study file (TOML), or a nested dict of the same tables, with quantities of Pint or astropy, too;
-        it may extend scenarios that come with the library.
+        The text of a study file (TOML), or a nested dict of the same tables, which may contain quantities of Pint or
+        astropy; it may extend bundled scenarios.
     name
-        Name of the text in errors.
+        Name of the text in error messages.
 
     Examples
     --------
@@ -172,14 +172,14 @@ class Study:
     """
 
     def __init__(self, of: str | Mapping[str, Any], name: str = "study") -> None:
-        # Keep text, one line per table: it is stored in folders and sent to workers.
+        # The text is kept, one line per table, because it is stored in folders and sent to workers.
         text = of if isinstance(of, str) else "".join(f"{key} = {literal(item)}\n" for key, item in tables(of).items())
         self._source: tuple[str, str | None] = (text, name)
         self._native = _native.Study.parse(name, text)
 
     @classmethod
     def load(cls, name: str | os.PathLike[str]) -> Study:
-        """Loads a study from a file, or a built-in one by its name.
+        """Loads a study from a file, or a built-in study by name.
 
         Parameters
         ----------
@@ -208,7 +208,7 @@ class Study:
         return made
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickles it for workers: as its text, or as its path, which they must also be able to read."""
+        """Pickles the study for workers: as its text, or as its path, which the workers must be able to read."""
         text, name = self._source
         return (Study.load, (text,)) if name is None else (Study, (text, name))
 
@@ -219,12 +219,12 @@ class Study:
 
     @property
     def design(self) -> str:
-        """Design of its cases: ``full-factorial``, ``stripes``, ``ida``, …"""
+        """Design of the cases: ``full-factorial``, ``stripes``, ``ida``, …"""
         return self._native.design
 
     @property
     def fingerprint(self) -> str:
-        """Identifies it among all studies, by the bytes of its records among others."""
+        """Identifies the study; includes the contents of its records."""
         return self._native.fingerprint
 
     @property
@@ -238,7 +238,7 @@ class Study:
         return self._native.motions
 
     def records(self) -> dict[str, Record]:
-        """Returns its motions by their names, unscaled: levels of intensity scale them later.
+        """Returns the motions of the study by name, before they are scaled to levels of intensity.
 
         Returns
         -------
@@ -257,7 +257,7 @@ class Study:
         Parameters
         ----------
         folder
-            A folder: only its missing chunks are returned.
+            If given, only the chunks that are missing in this folder are returned.
 
         Returns
         -------
@@ -281,42 +281,42 @@ class Study:
         Parameters
         ----------
         folder
-            Folder of the results: new, empty, or one of this study, which is resumed.
+            Folder for the results: new, empty, or with results of this study, which then continues.
         workers
-            Number of threads; all cores by default. The table does not depend on it.
+            Number of threads; by default all cores. Results do not depend on it.
         progress
             As for :meth:`Scenario.run`.
 
         Returns
         -------
         Table
-            One row per case, as :meth:`collect`.
+            One row per case, as returned by :meth:`collect`.
 
         Raises
         ------
         KeyboardInterrupt
-            Within a second of Ctrl-C; finished chunks are kept, and the next run resumes from there.
+            Within a second of Ctrl-C; finished chunks are kept, and the next run continues from there.
         StudyError
-            When the folder belongs to something else or cannot be written.
+            When the folder belongs to another study or cannot be written.
         """
         with reporting(progress, f"study {self.title!r}") as report:
             self._native.run(os.fspath(folder), workers, report)
         return self.collect(folder)
 
     def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool:
-        """Runs one chunk and writes its shard, unless it exists: the same bytes on every machine.
+        """Runs one chunk and writes its shard, unless the shard exists; it has the same bytes on every machine.
 
         Parameters
         ----------
         folder
-            Folder of the results, shared by all workers.
+            Folder for the results, shared by all workers.
         chunk
-            Its number.
+            Number of the chunk.
 
         Returns
         -------
         bool
-            True if it was run.
+            True if the chunk was run.
         """
         return self._native.run_chunk(os.fspath(folder), chunk)
 
@@ -328,29 +328,29 @@ class Study:
         progress: Progress = None,
         retries: int = 10,
     ) -> Table:
-        """Runs the missing chunks of a folder on the workers of Dask, one task per chunk.
+        """Runs the missing chunks of a folder on Dask workers, with one task per chunk.
 
         Parameters
         ----------
         client
-            A ``distributed.Client``: of a ``LocalCluster``, of dask-jobqueue on Slurm, or of any other.
+            A ``distributed.Client`` of any cluster, such as a ``LocalCluster`` or dask-jobqueue on Slurm.
         folder
-            Folder of the results on a disk that all workers can access.
+            Folder for the results, on a disk that all workers can access.
         progress
             As for :meth:`Scenario.run`.
         retries
             Number of retries of a failed chunk. A killed worker does not count as a failure: its chunk is given to
-            another one.
+            another worker.
 
         Returns
         -------
         Table
-            As :meth:`collect`: byte for byte that of :meth:`run`.
+            The table of :meth:`collect`, byte for byte the same as from :meth:`run`.
 
         Raises
         ------
         KeyboardInterrupt
-            Tasks that have not begun are canceled; finished ones are kept.
+            Tasks that have not begun are canceled; finished chunks are kept.
 
         Notes
         -----
@@ -394,14 +394,14 @@ class Study:
 
     @staticmethod
     def collect(folder: str | os.PathLike[str], *, write: bool = False) -> Table:
-        """Returns the finished rows, one per case in their order.
+        """Returns the finished rows of a study, one per case, in order.
 
         Parameters
         ----------
         folder
             A folder of a study, finished or not.
         write
-            Whether to write also ``table.csv``, ``table.parquet``, ``columns.csv`` and ``provenance.json``.
+            Whether to also write ``table.csv``, ``table.parquet``, ``columns.csv`` and ``provenance.json``.
 
         Returns
         -------
@@ -411,7 +411,7 @@ class Study:
 
     @staticmethod
     def provenance(folder: str | os.PathLike[str]) -> dict[str, Any]:
-        """Returns the provenance of the rows of a folder.
+        """Returns the provenance of the rows in a folder.
 
         Parameters
         ----------
@@ -440,7 +440,7 @@ class Study:
         folder
             A folder of a study.
         hazard
-            A table (CSV) of intensity and annual rate at the site: adds annual rates and expected losses.
+            A CSV table of intensity and annual rate at the site, which adds annual rates and expected losses.
         years
             Exposure time in years; 50 by default.
 
@@ -465,7 +465,7 @@ class Study:
         folder
             A folder of a study whose design is ``ida`` or ``stripes``.
         demand
-            A column of the table.
+            Name of a column of the table.
 
         Returns
         -------
@@ -504,7 +504,7 @@ class Study:
         out
             Folder for the files.
         asset
-            Name of one stack in the other program.
+            Name of a stack in the other program.
 
         Returns
         -------

@@ -19,20 +19,20 @@ class Column(NamedTuple):
     """Description of a column."""
 
     name: str
-    #: SI unit; empty for pure numbers and for texts.
+    #: SI unit; empty for dimensionless numbers and for texts.
     unit: str
-    #: ``key``, ``factor``, ``motion``, ``intensity``, ``outcome``, ``demand`` or ``run``.
+    #: Role: ``key``, ``factor``, ``motion``, ``intensity``, ``outcome``, ``demand`` or ``run``.
     role: str
-    #: ``integer``, ``number`` or ``text``.
+    #: Type: ``integer``, ``number`` or ``text``.
     kind: str
     meaning: str
 
 
 class Columns:
-    """Columns by name, which pandas takes as such.
+    """Mapping of columns by name that pandas accepts.
 
-    Whatever says that it is a ``dict`` is a table of columns to ``pandas.DataFrame``; anything else that has names is a
-    list of these names to it. A real ``dict`` would lose its units where Arrow reads it.
+    ``pandas.DataFrame`` reads an object as columns only if its class is ``dict``; it reads any other mapping as a list
+    of names. A real ``dict`` would lose its units when exported to Arrow.
     """
 
     @property  # type: ignore[misc]
@@ -63,7 +63,7 @@ class Table(Columns):
         return (column.name for column in self.columns)
 
     def __getitem__(self, name: str) -> list[Any]:
-        """Returns the values of a column: int, float or str, and None if not applicable."""
+        """Returns the values of a column: int, float or str, and None for missing values."""
         return self._native.values(name)
 
     def keys(self) -> list[str]:
@@ -89,12 +89,12 @@ class Table(Columns):
         Returns
         -------
         ndarray, shape (rows,)
-            SI units; not a number where there is no value.
+            SI units; NaN for missing values.
         """
         return self._native.numbers(name)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Exports a stream of Arrow; units are in the metadata of the fields."""
+        """Exports an Arrow stream; units are in the metadata of the fields."""
         return self._native.__arrow_c_stream__(requested_schema)
 
     def to_csv(self, path: str | os.PathLike[str] | None = None) -> str:
@@ -103,7 +103,7 @@ class Table(Columns):
         Parameters
         ----------
         path
-            File to write it to as well.
+            File to which the text is also written.
 
         Returns
         -------
@@ -115,7 +115,7 @@ class Table(Columns):
         return text
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
-        """Writes it as Parquet; the same table gives the same bytes.
+        """Writes the table as Parquet; the same table gives the same bytes.
 
         Parameters
         ----------
@@ -138,5 +138,5 @@ class Table(Columns):
 
 
 def _restored(columns: list[tuple[str, str, str, str, list[Any]]]) -> Table:
-    """Returns a pickled table."""
+    """Restores a pickled table."""
     return Table(_native.Table.of_parts(columns))

@@ -18,12 +18,12 @@ RANGES = [
     (0x2070, 0x209F), (0x20AC, 0x20AC), (0x2190, 0x2199), (0x2200, 0x22FF), (0x25A0, 0x25FF),
     (0x2713, 0x2717), (0xFFFD, 0xFFFD),
 ]
-# How far a quadratic outline may leave the cubic one (units of 1/2816 of the size).
+# Largest deviation of a quadratic outline from the cubic one (units of 1/2816 of the size).
 TOLERANCE = 0.8
 
 
 def equal_digits(font):
-    """Lets the digits and signs of equal width stand for the plain ones."""
+    """Replaces the plain digits and signs by those of equal width."""
     substitutes = {}
     table = font["GSUB"].table
     for record in table.FeatureList.FeatureRecord:

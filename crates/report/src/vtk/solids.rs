@@ -17,11 +17,11 @@ pub struct SolidBody {
     pub name: String,
     /// Role.
     pub role: Role,
-    /// Level, 1 at the bottom; 0 if it belongs to none.
+    /// Level, 1 at the bottom; 0 for a body outside all levels.
     pub level: u32,
     /// Points (m).
     pub points: Vec<[f64; 3]>,
-    /// Triangles by the indices of their corners, counterclockwise viewed from outside.
+    /// Corner indices of the triangles, counterclockwise viewed from outside.
     pub triangles: Vec<[usize; 3]>,
 }
 
@@ -32,15 +32,17 @@ pub struct Solids {
     pub bodies: Vec<SolidBody>,
     /// Times of the frames (s).
     pub times: Vec<f64>,
-    /// For each time and body, position (m) and quaternion `w`, `x`, `y`, `z`.
+    /// For each time and body, position (m) and unit quaternion `w`, `x`, `y`, `z`.
     pub poses: Vec<Vec<[f64; 7]>>,
     /// For each time and body, velocity (m/s) and angular velocity (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
-/// Writes the files of bodies in space for ParaView, one after the other, for a folder of their own: a
-/// `bodies-*.vtp` for each time, `bodies.csv` with the names of the bodies by number, and `stack.pvd`, which is the
-/// one to open.
+/// Writes the files of bodies in space for ParaView, one after the other, to be placed into a
+/// folder of their own.
+///
+/// `stack.pvd` is the file to open. There is a `bodies-*.vtp` for each time, and `bodies.csv` lists
+/// the names of the bodies by number.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, lengths in m.
 /// Surfaces are triangles.
@@ -79,7 +81,7 @@ fn file(solids: &Solids, frame: usize) -> String {
     let (mut corners, mut of_body) = (Vec::new(), Vec::new());
     for (at, body) in bodies.iter().enumerate() {
         let (now, start, twist) = (poses[frame][at], poses[0][at], twists[frame][at]);
-        // A body whose numbers are not finite has no position.
+        // A body whose numbers are not finite is left out.
         if now.iter().chain(&twist).any(|value| !value.is_finite()) {
             continue;
         }
@@ -129,23 +131,23 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Writes vectors in single precision, which is finer than a micrometer at ten meters.
-#[expect(clippy::cast_possible_truncation, reason = "what a picture shows needs no more")]
+/// Writes vectors in single precision, which resolves less than a micrometer at ten meters.
+#[expect(clippy::cast_possible_truncation, reason = "single precision suffices for a picture")]
 fn vectors(out: &mut String, name: &str, values: &[[f64; 3]]) {
     let bytes: Vec<u8> =
         values.iter().flatten().flat_map(|value| (*value as f32).to_le_bytes()).collect();
     array(out, ("Float32", name, 3), &bytes);
 }
 
-/// Writes integers, all far below the limit of 32 bits.
+/// Writes integers, all of which fit easily into 32 bits.
 fn whole(out: &mut String, name: &str, values: impl Iterator<Item = usize>) {
     let number = |value| i32::try_from(value).unwrap_or(i32::MAX);
     let bytes: Vec<u8> = values.flat_map(|value| number(value).to_le_bytes()).collect();
     array(out, ("Int32", name, 1), &bytes);
 }
 
-/// Writes an array as one block, compressed by zlib, after its sizes before and after compression: as text, the
-/// series of a collapse would take a gigabyte.
+/// Writes an array as one block compressed by zlib, preceded by its sizes before and after
+/// compression. As text, the series of a collapse would take a gigabyte.
 fn array(out: &mut String, (kind, name, components): (&str, &str, u32), bytes: &[u8]) {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
     // Writing to memory cannot fail.

@@ -1,12 +1,14 @@
-//! Sequential search for a remedy: its order and its statistics, apart from the runs, so that whole searches can be
-//! simulated.
+//! Sequential search for a remedy: its order and its statistics.
 //!
-//! Variants are counted in whole blocks, in the order of their numbers, whichever finish first: runs that collapse end
-//! early, so that a count of finished runs would be biased towards them.
-//! A change is rejected after the first block by which the admissible number of failures is exceeded; its share is then
-//! unknown, since the search stopped because of them.
-//! The share of a change that ran all its variants is stated with an interval that holds for all changes and planes of
-//! the search simultaneously (Bonferroni), so that selection among them does not invalidate it.
+//! It does not depend on how variants are run, so whole searches can be simulated in tests.
+//!
+//! Variants are counted in whole blocks, in the order of their numbers. Counting runs as they
+//! finish would be biased towards collapses, because runs that collapse end early.
+//! A change is rejected after the first block that brings it above the admissible number of
+//! failures. Its share is then unknown, because the search stopped due to these failures.
+//! The share of a change that ran all its variants has an interval that holds simultaneously for
+//! all changes and planes of the search (Bonferroni), so choosing among them does not invalidate
+//! it.
 
 use std::ops::{ControlFlow, Range};
 
@@ -17,22 +19,23 @@ use super::super::spread::LEVEL;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Variants of the first block of a change: those of one bundle of lanes.
+/// Number of variants in the first block of a change, which fill one bundle of lanes.
 const FIRST: u32 = 8;
 
-/// Variants of every later block.
+/// Number of variants in every later block.
 const BLOCK: u32 = 16;
 
-/// Candidates of a search and the number of their variants.
+/// Candidates of a search, and the number of variants of each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Number of changes of height, the highest first; the first that suffices ends their search.
+    /// Number of changes of height; they come first, highest first, and their search ends at the
+    /// first that suffices.
     pub(super) heights: usize,
-    /// Number of pretensions, from loose to tight; their numbers follow those of the heights.
+    /// Number of strap pretensions, from loose to tight; they follow the changes of height.
     pub(super) straps: usize,
-    /// Number of variants of every change.
+    /// Number of variants of each change.
     pub(super) variants: u32,
-    /// Number of planes, in each of which enough variants have to stand.
+    /// Number of planes; enough variants must stand in each.
     pub(super) planes: usize,
 }
 
@@ -42,24 +45,25 @@ impl Plan {
         self.heights + self.straps
     }
 
-    /// Returns the level of each interval at which all hold simultaneously at [`LEVEL`].
+    /// Returns the confidence level of each interval, chosen so that all hold simultaneously at
+    /// [`LEVEL`].
     pub(super) fn level(&self) -> f64 {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// Returns the variants of the next block, counted from zero.
+    /// Returns the next block of variants, numbered from zero.
     fn block(&self, ran: u32) -> Range<u32> {
         let size = if ran == 0 { FIRST } else { BLOCK };
         ran..ran.saturating_add(size).min(self.variants)
     }
 }
 
-/// Counts of a change.
+/// Counts of a change that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
-    /// Number of counted variants: the first by their numbers.
+    /// Number of counted variants, which are the first by number.
     pub(super) ran: u32,
-    /// Number of them that failed, in the plane with more failures.
+    /// Number of counted variants that failed, in the plane with the most failures.
     pub(super) failed: u32,
     by_plane: Vec<u32>,
 }
@@ -77,7 +81,8 @@ impl Counts {
         self.failed = self.by_plane.iter().copied().max().unwrap_or(0);
     }
 
-    /// `true` if the failures so far exceed the admissible number for all variants.
+    /// `true` if the failures so far already exceed the number that is admissible among all
+    /// variants.
     fn rejected(&self, plan: &Plan) -> bool {
         !may_fail(self.failed, plan.variants)
     }
@@ -91,8 +96,8 @@ impl Counts {
         self.whole(plan) && !self.rejected(plan)
     }
 
-    /// Returns the interval of the share that fails in the worse plane; `None` if the search stopped before all
-    /// variants.
+    /// Returns the interval of the share that fails in the worse plane; `None` unless all variants
+    /// were counted.
     pub(super) fn interval(&self, plan: &Plan) -> Option<Interval> {
         self.whole(plan).then(|| clopper_pearson(self.failed, self.ran, plan.level()))
     }
@@ -103,17 +108,18 @@ impl Counts {
 pub(super) struct Found {
     /// Counts of every change of the plan; `None` for changes that were not tried.
     pub(super) counts: Vec<Option<Counts>>,
-    /// `true` if it was not canceled.
+    /// `true` if the search was not canceled.
     pub(super) complete: bool,
 }
 
-/// Number of failures of a block in each plane, or `Break` when canceled.
+/// Number of failures of a block in each plane, or `Break` if the block was canceled.
 pub type Failed = ControlFlow<(), Vec<u32>>;
 
-/// Runs a block of variants, counted from zero, of a change.
+/// Function that runs a block of variants, numbered from zero, of a change given by its index.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Failed, E> + 'a;
 
-/// Tries changes until the highest stack and the loosest straps that suffice are found.
+/// Tries changes until the highest stack that suffices and the loosest straps that suffice are
+/// found.
 pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
     let mut all = Search { plan, counts: vec![None; plan.changes()], run };
     let complete = all.heights()?.is_continue() && all.straps()?.is_continue();
@@ -127,7 +133,8 @@ struct Search<'a, 'b, E> {
 }
 
 impl<E> Search<'_, '_, E> {
-    /// Runs blocks of a change until a number of variants is counted or it is rejected.
+    /// Runs blocks of a change until the given number of variants is counted or the change is
+    /// rejected.
     fn try_change(&mut self, change: usize, until: u32) -> Result<ControlFlow<(), Counts>, E> {
         let mut counts =
             self.counts[change].take().unwrap_or_else(|| Counts::new(self.plan.planes));
@@ -146,7 +153,7 @@ impl<E> Search<'_, '_, E> {
         Ok(ControlFlow::Continue(counts))
     }
 
-    /// Tries changes in their order until one suffices.
+    /// Tries changes in order until one suffices.
     fn first_of(&mut self, changes: Range<usize>) -> Result<ControlFlow<()>, E> {
         for change in changes {
             match self.try_change(change, u32::MAX)? {
@@ -162,7 +169,7 @@ impl<E> Search<'_, '_, E> {
         self.first_of(0..self.plan.heights)
     }
 
-    /// Tries straps from the loosest whose first block does not reject them, found by bisection.
+    /// Tries straps from loose to tight; bisection skips those that their first block rejects.
     fn straps(&mut self) -> Result<ControlFlow<()>, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {
@@ -189,7 +196,7 @@ mod tests {
 
     use super::*;
 
-    /// Counts over searches in which variants of a change fail with a known probability.
+    /// Counts over simulated searches whose variants fail with known probabilities.
     struct Simulated {
         stated: u32,
         covered: u32,
@@ -200,7 +207,7 @@ mod tests {
         too_many_fall: u32,
     }
 
-    /// Draws the failure probability of a change in a plane.
+    /// Function that draws the failure probability of a change in a plane.
     type Chance = dyn Fn(&mut Random) -> f64;
 
     fn simulate(searches: u32, chance: &Chance) -> Simulated {
@@ -252,7 +259,7 @@ mod tests {
         found
     }
 
-    /// The table of `validation/mitigation.md`.
+    /// Prints the table of `validation/mitigation.md`.
     #[test]
     #[expect(clippy::print_stdout, reason = "the rows of the table")]
     fn stated_shares_cover_the_truth_as_often_as_their_intervals_say() {

@@ -1,4 +1,4 @@
-//! Archives as folders: `records.zip/a.AT2` is the file `a.AT2` inside.
+//! Archives treated as folders: `records.zip/a.AT2` is the file `a.AT2` in the archive.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -9,7 +9,7 @@ use barrelstack_motion::Archive;
 
 use super::input;
 
-/// An archive with its names, and the file that it was opened from.
+/// An opened archive with the names of its files, and the file from which it was opened.
 struct Opened {
     path: PathBuf,
     changed: Option<SystemTime>,
@@ -17,7 +17,7 @@ struct Opened {
     names: Vec<String>,
 }
 
-/// The most recently opened archive, since its files are read one after another.
+/// The most recently opened archive, kept because its files are read one after another.
 static LAST: Mutex<Option<Arc<Opened>>> = Mutex::new(None);
 
 /// Opens a file on the disk as an archive; `None` if it is not one.
@@ -58,7 +58,7 @@ pub(super) fn names(path: &Path) -> anyhow::Result<Option<Vec<String>>> {
     Ok(open(path)?.map(|opened| opened.names.clone()))
 }
 
-/// Returns the bytes of a file inside an archive; `None` if the path leads into none.
+/// Returns the bytes of a file in an archive; `None` if the path does not lead into an archive.
 pub(super) fn bytes_inside(path: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     if path.exists() {
         return Ok(None);
@@ -69,9 +69,10 @@ pub(super) fn bytes_inside(path: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     Ok(Some(bytes))
 }
 
-/// Returns the files of a folder inside an archive, without those of subfolders; empty if it is not in one.
+/// Returns the files of a folder in an archive, without those of subfolders; empty if the folder is
+/// not in an archive.
 pub(super) fn files_below(folder: &Path) -> Vec<PathBuf> {
-    // The archive itself counts as a folder here.
+    // The root of the archive counts as a folder too.
     let named = folder.join("file");
     let Some((archive, inner)) = Archive::path_inside(&named) else { return Vec::new() };
     let Ok(Some(opened)) = open(&archive) else { return Vec::new() };

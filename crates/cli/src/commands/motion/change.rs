@@ -12,21 +12,21 @@ use super::output::{Form, Output, Target};
 use crate::printer;
 use crate::typed::word;
 
-/// Forms of motion files, at the end of the help.
+/// Formats of motion files, for the end of the help.
 const FORMS: &str = "\
 Forms:
-  .txt  the program's own, exact: lines that start with #, then one column to a channel in m/s2
+  .txt  the program's own, exact: lines that start with #, then one column per channel in m/s2
           # barrelstack motion 1
           # station: Napa College
           # event: South Napa, 2014-08-24, M 6.0
-          # processing: one line for every step that was done
+          # processing: one line for each step
           # stage: raw, corrected or unknown
           # unit: m/s2
           # time_step: 0.005
           # channels: E az=90, N az=0, UP vertical
           1.2345e-3 -2.3456e-4 0e0
         az is the azimuth in degrees clockwise from north, vertical is positive upward
-  .csv  time (s) and accelerations (m/s2), the steps that were done in lines that start with #
+  .csv  time (s) and accelerations (m/s2), the processing steps in lines that start with #
   .npz  NumPy: time, NAME_acceleration, NAME_velocity and NAME_displacement in SI units
   .at2  PEER: one component in g with eight digits, five to a line, below four lines of header";
 
@@ -47,7 +47,7 @@ pub(super) struct ConvertArgs {
     folder: FolderArgs,
 }
 
-/// Reads, chooses, writes.
+/// Reads the motion, selects components, and writes it.
 pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
     if args.input.has_folder() {
         let out = args.output.output.as_path();
@@ -70,7 +70,7 @@ pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
 
 /// Writes a motion, then prints its processing, its measures and its path.
 ///
-/// If writing fails, nothing is printed.
+/// Nothing is printed if writing fails.
 pub(super) fn finish(
     target: &Target,
     read: &Record,
@@ -83,7 +83,7 @@ pub(super) fn finish(
     lines.extend(measures);
     lines.extend([String::new(), format!("written: {}", target.path.display())]);
     printer::lines(lines)?;
-    // A motion that was processed here is no longer raw.
+    // A motion that was processed by the command is no longer raw.
     info::warn(&Record { stage: made.stage, ..read.clone() });
     for loss in losses {
         printer::warning(&loss);

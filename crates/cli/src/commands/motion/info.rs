@@ -30,7 +30,7 @@ pub(super) struct InfoArgs {
     /// Print one JSON document, in SI units.
     #[arg(long)]
     json: bool,
-    /// Where the table of folders goes.
+    /// Folder for the table, if the input is a folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -43,8 +43,8 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
         Some(out) => return table(args, out),
         None if args.input.has_folder() => {
             bail!(
-                "a folder, or an archive of several records, is measured as a table: say where it \
-                 goes, with --out DIR"
+                "a folder, or an archive of several records, is measured as a table: give the \
+                 folder for the table with --out DIR"
             )
         }
         None => {}
@@ -73,7 +73,7 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Measures whole folders.
+/// Measures all records of folders, and writes the table.
 fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     if args.json || args.all_measures || args.input.join {
         bail!(
@@ -84,7 +84,7 @@ fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.print_summary()
 }
 
-/// Combines neighboring files of one event, station and step into one record.
+/// Combines consecutive files of the same event, station and step into one record.
 fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     let mut groups: Vec<Vec<Record>> = Vec::new();
     for record in records {
@@ -104,14 +104,14 @@ fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     groups.iter().map(|group| Ok(Record::gather(group)?)).collect()
 }
 
-/// Prints warnings on a record besides its numbers.
+/// Prints warnings about a record.
 pub(super) fn warn(record: &Record) {
     for warning in &record.warnings {
         printer::warning(&format!("{}: {warning}", record.file));
     }
     if record.stage == Stage::Raw {
         printer::warning(&format!(
-            "{}: a raw record; its PGV and PGD are drift until it is processed (barrelstack motion \
+            "{}: this is a raw record; its PGV and PGD are dominated by drift until it is processed (barrelstack motion \
              process)",
             record.file
         ));
@@ -150,7 +150,8 @@ fn block(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<Vec<Stri
     if all {
         match measures::rotated(record) {
             Err(error) if record.channels.len() > 1 => {
-                lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
+                lines
+                    .extend([String::new(), format!("  no measures over all directions: {error}")]);
             }
             Err(_) => {}
             Ok(rotated) => {
@@ -174,12 +175,12 @@ fn block(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<Vec<Stri
     if record.stage == Stage::Raw {
         lines.extend([
             String::new(),
-            "  corners that the noise before the shaking suggests".to_owned(),
+            "  corners suggested by the noise before the shaking".to_owned(),
         ]);
         lines.extend(corners(record).into_iter().map(|line| format!("    {line}")));
     }
     if !record.notes.is_empty() {
-        lines.extend([String::new(), "  what was done".to_owned()]);
+        lines.extend([String::new(), "  processing".to_owned()]);
         let step = |note: &String| note.strip_prefix("processing: ").unwrap_or(note).to_owned();
         lines.extend(record.notes.iter().map(|note| format!("    {}", step(note))));
     }
@@ -204,7 +205,7 @@ fn direction(channel: &Channel) -> String {
     }
 }
 
-/// Describes the corners of every channel, one sentence each; `process --corners auto` uses them.
+/// Describes the corners of every channel in one sentence each; `process --corners auto` uses them.
 fn corners(record: &Record) -> Vec<String> {
     let criterion = NoiseCriterion::default();
     let found = record.channels.iter().zip(record.noise_corners(&criterion));
@@ -219,8 +220,7 @@ fn corners(record: &Record) -> Vec<String> {
 /// Formats a channel for one column.
 type Cell<'a> = &'a dyn Fn(&Channel) -> String;
 
-/// Tabulates time and place of each channel, as stated in the file; columns that would be empty are left
-/// out.
+/// Tabulates time and location of each channel as stated in the file; empty columns are left out.
 fn recorded(record: &Record) -> Table {
     let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
     let meters = |value: Option<f64>| value.map_or_else(String::new, number);
@@ -249,7 +249,7 @@ fn recorded(record: &Record) -> Table {
     table
 }
 
-/// Tabulates peaks of the header beside those of the samples.
+/// Tabulates the peaks stated in the header and those of the samples.
 fn stated(record: &Record) -> Table {
     let mut table = Table::new(3, ["channel", "stated peak", "unit", "header", "numbers", "agree"]);
     for channel in &record.channels {
@@ -279,9 +279,9 @@ described! {
 
     /// A record.
     struct RecordInfo of found: (&Record, Vec<ChannelInfo>, &[measures::Rotated]) {
-        /// Its file.
+        /// Path of the file.
         file: String = found.0.file.clone(),
-        /// The form of the file.
+        /// Format of the file.
         format: &'static str = found.0.format,
         /// The event, as stated in the file.
         event: String = found.0.event.clone(),
@@ -289,29 +289,29 @@ described! {
         station: String = found.0.station.clone(),
         /// Stage of processing: raw or corrected.
         stage: String = found.0.stage.to_string(),
-        /// Its components.
+        /// Components of the record.
         channels: Vec<ChannelInfo> = found.1,
-        /// Peaks over all horizontal directions, where all measures are requested.
+        /// Peaks over all horizontal directions; empty unless all measures are requested.
         over_all_directions: Vec<RotatedInfo> = found.2.iter().map(RotatedInfo::of).collect(),
-        /// Warnings.
+        /// Warnings about the record.
         warnings: Vec<String> = found.0.warnings.iter().map(ToString::to_string).collect(),
-        /// Processing notes.
+        /// Notes on the processing of the record.
         notes: Vec<String> = found.0.notes.clone(),
     }
 
-    /// A component.
+    /// A component of a record.
     struct ChannelInfo of found: (&Channel, Option<Corners>, BTreeMap<String, MeasureInfo>, Option<PulseFit>) {
-        /// Its name.
+        /// Name of the component.
         name: String = found.0.name.clone(),
-        /// Its direction, clockwise from north.
+        /// Azimuth of the component, clockwise from north; null if unknown.
         azimuth: Option<f64> as "deg" = found.0.direction.azimuth,
-        /// `true` if it is vertical.
+        /// `true` if the component is vertical.
         vertical: bool = found.0.is_vertical(),
         /// Universal time of the first sample.
         start: Option<String> = found.0.start.map(|start| start.to_string()),
-        /// The station.
+        /// Name of the station.
         station: String = found.0.site.station.clone(),
-        /// The sensor.
+        /// Name of the sensor.
         sensor: String = found.0.site.sensor.clone(),
         /// Latitude, north positive.
         latitude: Option<f64> as "deg" = found.0.site.latitude,
@@ -319,79 +319,79 @@ described! {
         longitude: Option<f64> as "deg" = found.0.site.longitude,
         /// Elevation.
         elevation: Option<f64> as "m" = found.0.site.elevation,
-        /// Mean velocity of shear waves in the upper 30 m.
+        /// Mean shear-wave velocity of the upper 30 m.
         vs30: Option<f64> as "m/s" = found.0.site.vs30,
-        /// Samples.
+        /// Number of samples.
         samples: usize = found.0.acceleration.len(),
         /// Time between two samples.
         time_step: f64 as "s" = found.0.time_step,
-        /// From the first sample to the last.
+        /// Time from the first sample to the last.
         duration: f64 as "s" = found.0.duration(),
         /// Velocity at the first sample.
         initial_velocity: f64 as "m/s" = found.0.initial_velocity,
-        /// Peaks that the file states, beside those of its samples.
+        /// Peaks stated in the file, with those of the samples.
         stated_peaks: Vec<PeakInfo> = found.0.peaks.iter().map(PeakInfo::of).collect(),
-        /// Where the signal stands above the noise; null where that is unknown.
+        /// Frequencies between which the signal exceeds the noise; null if unknown.
         noise_corners: Option<CornersInfo> = found.1.as_ref().map(CornersInfo::of),
         /// Intensity measures, by name.
         measures: BTreeMap<String, MeasureInfo> = found.2,
-        /// The dominant velocity pulse, where all measures are requested.
+        /// The dominant velocity pulse; null unless all measures are requested.
         velocity_pulse: Option<PulseInfo> = found.3.as_ref().map(PulseInfo::of),
     }
 
-    /// A peak that a file states.
+    /// A peak stated in a file.
     struct PeakInfo of peak: &StatedPeak {
-        /// Of which quantity.
+        /// Quantity whose peak is stated.
         quantity: String = peak.quantity.to_string(),
-        /// As stated, in SI units.
+        /// Stated peak, in SI units.
         stated: f64 as "SI" = peak.stated,
-        /// As measured, in SI units.
+        /// Peak of the samples, in SI units.
         measured: f64 as "SI" = peak.measured,
-        /// `true` if the two agree.
+        /// `true` if the stated peak and that of the samples agree.
         agrees: bool = peak.agrees(),
     }
 
-    /// The frequencies between which the signal stands above the noise.
+    /// Frequencies between which the signal exceeds the noise.
     struct CornersInfo of found: &Corners {
-        /// The lowest.
+        /// Lower corner frequency.
         high_pass: f64 as "Hz" = found.high_pass,
-        /// The highest.
+        /// Upper corner frequency.
         low_pass: f64 as "Hz" = found.low_pass,
-        /// When the signal arrives.
+        /// Time at which the signal arrives.
         arrival: f64 as "s" = found.arrival,
-        /// Requested signal-to-noise ratio.
+        /// Required signal-to-noise ratio.
         least_ratio: f64 as "1" = found.least_ratio,
     }
 
     /// An intensity measure.
     struct MeasureInfo of found: (f64, &str) {
-        /// Its value.
+        /// Value of the measure, in the unit of `unit`.
         value: f64 as "as `unit` says" = found.0,
-        /// Its unit.
+        /// Unit of the value.
         unit: String = found.1.to_owned(),
     }
 
-    /// A velocity pulse.
+    /// The dominant velocity pulse of a component.
     struct PulseInfo of fit: &PulseFit {
-        /// Its period.
+        /// Period of the pulse.
         period: f64 as "s" = fit.period,
-        /// Its peak velocity.
+        /// Peak velocity of the pulse.
         peak_velocity: f64 as "m/s" = fit.peak_velocity,
-        /// When it starts.
+        /// Time at which the pulse starts.
         start: f64 as "s" = fit.start,
-        /// Its share of the energy of the velocity.
+        /// Share of the squared velocity of the record that is in the pulse.
         energy_share: f64 as "1" = fit.energy_share,
     }
 
     /// A peak over all horizontal directions.
     struct RotatedInfo of row: &measures::Rotated {
-        /// The measure.
+        /// Name of the measure.
         measure: String = row.measure.to_string(),
-        /// Its unit.
+        /// Unit of both values.
         unit: String = row.measure.unit().to_string(),
-        /// Median over the directions.
+        /// Median over all directions.
         rotd50: f64 as "as `unit` says" = row.peak.median,
-        /// Largest over the directions.
+        /// Largest value over all directions.
         rotd100: f64 as "as `unit` says" = row.peak.largest,
     }
 }

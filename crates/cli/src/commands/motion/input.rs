@@ -1,4 +1,5 @@
-//! Input of the commands: files, joined or gathered, and the components chosen from them.
+//! Input of the motion commands: files, how they are combined, and the components selected from
+//! them.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -15,40 +16,40 @@ use super::archives;
 pub(super) use crate::store::plain;
 use crate::typed::typed;
 
-/// Largest file (bytes) that is read; the longest strong-motion files have a tenth of it.
+/// Maximum size (bytes) of a file that is read; the longest strong-motion files have a tenth of it.
 const LIMIT: u64 = 256 << 20;
 
-/// Files, and what they may not say of themselves.
+/// Files, and information that they may lack.
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
-    /// Motion files of any known format, or napa-college-2014, which comes with the program; several
-    /// are taken as components of one record (info shows files that cannot be apart). Info, plot,
-    /// process and convert take folders too, and all records in them.
+    /// Motion files of any known format, or napa-college-2014, which is bundled. Several files are
+    /// read as components of one record; `info` lists files that do not belong together separately.
+    /// `info`, `plot`, `process` and `convert` also accept folders, and use all records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
-    /// Take several files as parts of one long record and join them where they overlap.
+    /// Join several files, as parts of one long record, where they overlap.
     #[arg(long)]
     pub(super) join: bool,
-    /// Take several files together although they are of different stations, sensors, events or
-    /// publishers, and combine their components.
+    /// Combine the components of several files even if they differ in station, sensor, event or
+    /// publisher.
     #[arg(long, conflicts_with = "join")]
     pub(super) allow_mixed: bool,
-    /// Unit of acceleration where the file states none: g, g/10, m/s2, cm/s2, gal, mm/s2, ft/s2
-    /// or in/s2.
+    /// Unit of acceleration if a file states none: g, g/10, m/s2, cm/s2, gal, mm/s2, ft/s2 or
+    /// in/s2.
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
-    /// Step where the file states none, such as "0.005 s".
+    /// Time step if a file states none, such as "0.005 s".
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Counts to one m/s2, where the file holds counts; of one channel as HNE=427819, and then once
-    /// for each.
+    /// Counts per m/s2, for files in counts; for a single channel as HNE=427819, once per channel.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
-    /// `StationXML` with the sensitivity and the direction of each channel, or a folder of such files;
-    /// without it files that end with .xml beside a file of counts are looked into.
+    /// `StationXML` file with the sensitivity and direction of each channel, or a folder of such
+    /// files; by default, .xml files beside a file in counts are used.
     #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
-    /// Quantity in SEED and SAC files of instruments other than accelerometers; it is differentiated.
+    /// Quantity in SEED and SAC files of instruments other than accelerometers; it is
+    /// differentiated to acceleration.
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
     recorded: Option<Recorded>,
 }
@@ -58,41 +59,42 @@ typed! {
     pub(super) enum Recorded of motion::Quantity {
         /// Accelerations, whatever the channel code says.
         Acceleration = Self::Acceleration,
-        /// Velocities; the sensitivity is then counts to one m/s.
+        /// Velocities; the sensitivity is then in counts per m/s.
         Velocity = Self::Velocity,
-        /// Displacements; the sensitivity is then counts to one m.
+        /// Displacements; the sensitivity is then in counts per m.
         Displacement = Self::Displacement,
     }
 }
 
-/// Which components, and what is done to them first.
+/// Components to use, and the processing to apply first.
 #[derive(Debug, clap::Args)]
 pub(super) struct Choice {
-    /// A component: its name in the file, an azimuth in degrees (rotated if no channel has it), h1,
-    /// h2 or vertical; may be repeated. Without it all components are taken.
+    /// Component: its name in the file, an azimuth in degrees (rotated if no channel has it), h1,
+    /// h2 or vertical; may be repeated. By default all components are used.
     #[arg(long, value_name = "NAME")]
     pub(super) component: Vec<String>,
-    /// Process the record first; without it convert takes the numbers as read, all others do as
-    /// default.
+    /// Processing to apply first; by default `convert` uses the numbers as read, and all other
+    /// commands use `default`.
     #[arg(long, value_enum)]
     pub(super) processing: Option<Chain>,
 }
 
-/// Chains of processing under one name.
+/// Named chains of processing steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Chain {
     /// The numbers as read.
     None,
-    /// As in a scenario: compact for raw records, nothing for the others.
+    /// As in a scenario: compact for raw records, no processing for others.
     Default,
-    /// Pre-event mean, taper of 2 %, zero-phase high-pass at 0.1 Hz without its pads, ends closed.
+    /// Remove the pre-event mean, taper 2 %, zero-phase high-pass at 0.1 Hz without its pads, close
+    /// the ends.
     Compact,
-    /// As compact with the pads of the filter kept: quiet before and after the shaking.
+    /// Like compact, but keep the pads of the filter: quiet time before and after the shaking.
     Padded,
 }
 
 impl Chain {
-    /// Returns the chain for a record of this stage.
+    /// Returns the processing of the chain for a record at a stage.
     pub(super) fn of(self, stage: Stage) -> Processing {
         match (self, stage) {
             (Self::Default, Stage::Raw) | (Self::Compact, _) => Processing::compact(),
@@ -105,7 +107,7 @@ impl Chain {
 }
 
 impl Input {
-    /// Reads every file as a record of its own.
+    /// Reads every file as a separate record.
     pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
         self.files.iter().map(|file| self.read_alone(file)).collect()
     }
@@ -131,7 +133,7 @@ impl Input {
         })
     }
 
-    /// Returns the options about files, as text.
+    /// Returns the options that affect how files are read, as text.
     pub(super) fn description(&self) -> String {
         format!(
             "unit {:?}, step {:?}, sensitivity {:?} of {:?}, as {:?}, mixed {}",
@@ -158,7 +160,7 @@ impl Input {
         })
     }
 
-    /// Returns the sensitivities given as options, and those of the `StationXML`.
+    /// Adds the sensitivities given as options, and those of the `StationXML` files.
     fn sensitivities(&self) -> anyhow::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         for text in &self.sensitivity {
@@ -181,7 +183,8 @@ impl Input {
         Ok(options)
     }
 
-    /// Reads one file; looks up missing sensitivities of counts in the `StationXML` beside it.
+    /// Reads one file; if the sensitivity of counts is missing, searches the `StationXML` files
+    /// beside it.
     fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
@@ -198,7 +201,8 @@ impl Input {
         let (mut used, mut damaged) = (Vec::new(), None);
         for path in &beside {
             match read_station_xml(path) {
-                // A catalog of events, or a station without responses, does not concern this record.
+                // A catalog of events, or a station file without responses, does not apply to this
+                // record.
                 Ok(found) if found.is_empty() => {}
                 Ok(found) => {
                     more.instruments.extend(found);
@@ -236,7 +240,7 @@ impl Input {
         if self.allow_mixed {
             return Ok(Record::gather_mixed(records)?);
         }
-        // Differences of station and publisher can be overruled; steps and times cannot.
+        // Differences in station and publisher can be overruled, but not those in step and time.
         Record::gather(records).map_err(|error| match Record::gather_mixed(records) {
             Ok(_) => anyhow!("{error}, or add --allow-mixed"),
             Err(_) => error.into(),
@@ -245,8 +249,10 @@ impl Input {
 }
 
 impl Choice {
-    /// Returns the chosen components of a record, cut to the shortest and processed by the requested chain, or
-    /// else by the command's `usual` one; the notes list the processing.
+    /// Returns the selected components of a record, cut to the shortest.
+    ///
+    /// They are processed by the requested chain, or else by the `usual` chain of the command; the
+    /// notes list the processing.
     pub(super) fn take(&self, record: &Record, usual: Chain) -> anyhow::Result<Record> {
         let mut chosen = record.clone();
         let from = format!(
@@ -256,7 +262,7 @@ impl Choice {
             record.stage
         );
         if record.format == "barrelstack" {
-            // The file carries its own history.
+            // The file states its own processing history.
             for note in &mut chosen.notes {
                 if let Some(step) = note.strip_prefix("processing: ") {
                     *note = step.to_owned();
@@ -271,7 +277,7 @@ impl Choice {
             for name in &self.component {
                 let channel = record.component(&component(record, name)?)?;
                 if chosen.channels.iter().any(|other| other.name == channel.name) {
-                    bail!("--component {name}: channel {} is chosen already", channel.name);
+                    bail!("--component {name}: channel {} is already selected", channel.name);
                 }
                 if !record.channels.contains(&channel) {
                     chosen.notes.push(format!(
@@ -288,7 +294,7 @@ impl Choice {
     }
 }
 
-/// Returns file names without folders.
+/// Returns the names of the files of a record, without folders.
 fn base_names(record: &Record) -> String {
     let names: Vec<&str> = record
         .file
@@ -298,7 +304,7 @@ fn base_names(record: &Record) -> String {
     names.join(", ")
 }
 
-/// Parses the name of a component: the channel's own name first, then an azimuth in degrees.
+/// Parses a component, first as a name of a channel, then as an azimuth in degrees.
 pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component> {
     let by_name = Component::Name(name.to_owned());
     if record.component(&by_name).is_ok() {
@@ -311,11 +317,11 @@ pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component
     })
 }
 
-/// Parses a quantity with its unit to SI; errors name the option.
+/// Parses a quantity with its unit, and converts it to SI units; errors name the option.
 pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
     let suggestion = Quantity::suggestion(text, &[dimension]);
     let example = match dimension {
-        // Without a better suggestion, the examples of the option.
+        // Without a better suggestion, the example of the dimension is used.
         _ if suggestion != dimension.example() => suggestion,
         Dimension::FREQUENCY => "0.1 Hz".to_owned(),
         Dimension::TIME if option == "--time-step" => "0.01 s".to_owned(),
@@ -330,17 +336,17 @@ pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow
         .map_err(|error| anyhow!("{option}: {error}; write for example \"{example}\""))
 }
 
-/// Parses a step (s), if given.
+/// Parses a time step (s), if one is given.
 pub(super) fn time_step(text: Option<&str>) -> anyhow::Result<Option<f64>> {
     text.map(|text| quantity("--time-step", text, Dimension::TIME)).transpose()
 }
 
-/// Parses a plain number, or a quantity with its unit to SI.
+/// Parses a plain number, or a quantity with its unit, and converts it to SI units.
 pub(super) fn number_or(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
     text.trim().parse().or_else(|_| quantity(option, text, dimension))
 }
 
-/// Reads one file, or a bundled record if there is no file of that name.
+/// Reads one file, or a bundled record if there is no file with that name.
 fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
     let path = Path::new(file);
     if let (false, Some(record)) = (path.exists(), bundled(file)) {
@@ -350,23 +356,23 @@ fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
     Ok(read(&bytes, file, options)?)
 }
 
-/// Adds to a reading error the option that states the missing information.
+/// Adds to a reading error the option that supplies the missing information.
 fn with_option(error: anyhow::Error) -> anyhow::Error {
     let Some(cause) = error.downcast_ref::<ReadError>() else { return error };
     let option = match cause.refusal {
-        Refusal::OtherInstrument => "add --as velocity, with the sensitivity in counts to one m/s",
+        Refusal::OtherInstrument => "add --as velocity, with the sensitivity in counts per m/s",
         Refusal::Missing(Given::Unit) => {
-            "add --unit g, or the unit it is; values in a unit that --unit does not know must be converted first"
+            "add --unit g, or the actual unit; values in a unit that --unit does not support must be converted first"
         }
         Refusal::Missing(Given::Step) => {
             "add --time-step with the time between two samples, as the publisher of the file states it"
         }
         Refusal::Missing(Given::Sensitivity) => {
-            "add --sensitivity with the counts to one m/s2, or --station-xml with the station's file"
+            "add --sensitivity with the counts per m/s2, or --station-xml with the file of the station"
         }
-        Refusal::SeveralRecords => "info, plot, process and convert take it with --out DIR",
+        Refusal::SeveralRecords => "info, plot, process and convert accept it with --out DIR",
         Refusal::Missing(Given::UnitOrSensitivity) => {
-            "add --unit g, or the unit it is, or --sensitivity with the counts to one m/s2"
+            "add --unit g, or the actual unit, or --sensitivity with the counts per m/s2"
         }
         Refusal::Options | Refusal::NotAcceleration | Refusal::Damaged | Refusal::Unrecognized => {
             return error;
@@ -375,7 +381,7 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     anyhow!("{error}: {option}")
 }
 
-/// Reads the channels of a `StationXML` file, or of all those in a folder.
+/// Reads the channels of a `StationXML` file, or of all such files in a folder.
 fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     if !path.is_dir() {
         return instruments_of_file(path);
@@ -383,7 +389,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let files = xml_files(path);
     let mut found = Vec::new();
     for file in &files {
-        // Catalogs of events and stations without responses lie among them.
+        // Catalogs of events and stations without responses may be among the files.
         found.extend(read_station_xml(file)?);
     }
     if found.is_empty() {
@@ -400,7 +406,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
 fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let found = read_station_xml(path)?;
     if found.is_empty() {
-        bail!("{}: it states no sensitivity of any channel", path.display());
+        bail!("{}: it states no sensitivity for any channel", path.display());
     }
     Ok(found)
 }
@@ -411,13 +417,13 @@ fn read_station_xml(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())
 }
 
-/// Returns files beside one that have the extension of `StationXML`, sorted by name.
+/// Returns the files beside a file that have the extension of `StationXML`, sorted by name.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     xml_files(folder.unwrap_or(Path::new(".")))
 }
 
-/// Returns the files of a folder that end with .xml, sorted by name.
+/// Returns the .xml files of a folder, sorted by name.
 fn xml_files(folder: &Path) -> Vec<PathBuf> {
     let inside = archives::files_below(folder);
     if !inside.is_empty() {
@@ -433,14 +439,14 @@ fn xml_files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Returns the bytes of a file of at most 256 MB.
+/// Returns the bytes of a file, which may have at most 256 MB.
 pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     let refused = || format!("cannot read {}", path.display());
     if let Some(bytes) = archives::bytes_inside(path)? {
         return Ok(bytes);
     }
     if path.is_dir() {
-        bail!("{}: it is a folder, not a file; name one of its files", refused());
+        bail!("{}: it is a folder, not a file; give one of its files", refused());
     }
     let plain = |error| anyhow!("{:#}; correct the path", plain(error));
     let file = barrelstack_input::system::open(path)
@@ -450,7 +456,7 @@ pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(plain).with_context(refused)?;
     if bytes.len() as u64 > LIMIT {
         bail!(
-            "{}: it has more than 256 MB, more than any strong-motion file; correct the path",
+            "{}: it exceeds 256 MB, which no strong-motion file does; correct the path",
             refused()
         );
     }

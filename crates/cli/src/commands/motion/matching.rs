@@ -29,51 +29,54 @@ pub(super) struct MatchArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// The target spectrum, at 5 % damping unless it says another; the list is below.
+    /// Target spectrum, at 5 % damping unless it states another damping; the targets are listed
+    /// below.
     #[arg(long, value_name = "TARGET")]
     to: String,
-    /// The component that is matched; the first horizontal if none is named. `rotd50` and `rotd100` match
-    /// both horizontals together, by their response over all directions. All other components take the first
-    /// scaling only.
+    /// Component to match; by default the first horizontal. `rotd50` and `rotd100` match both
+    /// horizontals together, by their response over all directions. Other components are only
+    /// scaled.
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
-    /// Method for one component; both together take amplitudes first, then wavelets.
+    /// Method for a single component; two horizontals use amplitudes first, then wavelets.
     #[arg(long, value_enum, default_value_t = Method::Time)]
     method: Method,
-    /// Shortest period matched.
+    /// Shortest period to match.
     #[arg(long, value_name = "TIME", default_value = "0.1 s")]
     shortest: String,
-    /// Longest period matched.
+    /// Longest period to match.
     #[arg(long, value_name = "TIME", default_value = "3 s")]
     longest: String,
-    /// Largest misfit accepted at any matched period.
+    /// Largest misfit that is accepted at any matched period.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     tolerance: String,
-    /// Write the best motion also where it misses the tolerance; what it misses is said, and the exit
+    /// Write the best motion even if it misses the tolerance; the misfit is printed, and the exit
     /// status is then 3.
     #[arg(long)]
     accept_misfit: bool,
     #[command(flatten)]
     output: Output,
-    /// Draw target, before and after: as panels (.png, .svg, .pdf), or as a page (.html).
+    /// Plot target, before and after: as panels (.png, .svg, .pdf) or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
 
-/// Exit status of a match that was written although it misses its target.
+/// Exit status if a motion was written although it misses its target.
 const NEAR: u8 = 3;
 
 typed! {
     /// Method of matching.
     enum Method of MatchMethod {
-        /// Wavelets at the times of the peak responses; keeps the character of the motion.
+        /// Adds wavelets at the times of the peak responses, which preserves the character of the
+        /// motion.
         Time = Self::Time,
-        /// Fourier amplitudes, phases kept; changes the character everywhere.
+        /// Scales Fourier amplitudes and keeps phases, which changes the character of the whole
+        /// motion.
         Frequency = Self::Frequency,
     }
 }
 
-/// Matches and writes.
+/// Matches the motion and writes the result.
 pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     let target = args.output.prepare()?;
     page::vacant_figure(args.figure.as_deref(), args.output.overwrite)?;
@@ -107,8 +110,8 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
             Some(words) => format!("The spectrum of {name} misses {} {words}.", args.to),
         };
         let tables = vec![
-            compared.on_page("The target spectrum, and those before and after."),
-            measured.on_page("Measures of the motion, before and after."),
+            compared.on_page("The target spectrum, and the spectra before and after matching."),
+            measured.on_page("Measures of the motion before and after matching."),
         ];
         page::write(figure, &drawn, &after, PageText { headline, tables })?;
     }
@@ -123,7 +126,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Part of a record that is matched.
+/// The part of a record that is matched.
 enum Part {
     /// The channel with this index.
     One(usize),
@@ -144,11 +147,11 @@ impl Part {
         let channel = record.component(&input::component(record, name)?)?;
         match record.channels.iter().position(|other| other.name == channel.name) {
             Some(place) => Ok(Self::One(place)),
-            None => bail!("--of {name}: choose it with --component {name} first"),
+            None => bail!("--of {name}: select it with --component {name} first"),
         }
     }
 
-    /// Names it in a sentence.
+    /// Returns the name of the part for use in a sentence.
     fn name(&self, record: &Record) -> anyhow::Result<String> {
         Ok(match self {
             Self::One(place) => record.channels[*place].name.clone(),
@@ -159,7 +162,7 @@ impl Part {
         })
     }
 
-    /// Returns the record without all other components.
+    /// Returns the record with this part only.
     fn alone(&self, record: &Record) -> anyhow::Result<Record> {
         match self {
             Self::One(place) => panels::only(record, *place),
@@ -191,7 +194,8 @@ impl Part {
     }
 }
 
-/// Returns the matched record, and a description of the periods that it misses, if any.
+/// Returns the matched record, and a description of the periods at which it misses the target, if
+/// any.
 fn matched(
     args: &MatchArgs,
     before: &Record,
@@ -219,7 +223,7 @@ fn matched(
     Ok((after, (!missed.is_empty()).then(|| missed_in_words(&missed))))
 }
 
-/// Tabulates spectra before, after and required at some periods.
+/// Tabulates the spectra before and after matching and the target at some periods.
 fn comparison(
     part: &Part,
     [before, after]: [&Record; 2],

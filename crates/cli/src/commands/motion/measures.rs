@@ -1,4 +1,4 @@
-//! Measures in customary units, and tables of them.
+//! Intensity measures in customary units, and tables of them.
 
 use barrelstack_motion::{
     Channel, IntensityMeasure, MotionError, PulseFit, Quantity, Record, RotatedPeak,
@@ -7,7 +7,7 @@ use barrelstack_motion::{
 
 use super::table::{Table, number};
 
-/// A measure with its printed name.
+/// A measure, with the name under which it is printed.
 pub(super) type Shown = (&'static str, IntensityMeasure);
 
 /// Measures that are always printed.
@@ -24,7 +24,7 @@ pub(super) const USUAL: &[Shown] = &[
     ("mean period Tm", IntensityMeasure::MeanPeriod),
 ];
 
-/// Further measures on request.
+/// Further measures, printed on request.
 pub(super) const FURTHER: &[Shown] = &[
     ("CAV, standardized", IntensityMeasure::CavStandardized),
     ("RMS acceleration", IntensityMeasure::Rms),
@@ -38,7 +38,7 @@ pub(super) const FURTHER: &[Shown] = &[
     ("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
 ];
 
-/// Returns the customary unit of a measure, and how many of it make one SI unit.
+/// Returns the customary unit of a measure, and its number per SI unit.
 pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     match measure {
         IntensityMeasure::Pga | IntensityMeasure::Rms | IntensityMeasure::Sa { .. } => {
@@ -60,7 +60,8 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     }
 }
 
-/// Returns the customary unit of a quantity, how many of it make one SI unit, and the name of its peak.
+/// Returns the customary unit of a quantity, its number per SI unit, and the name of the peak of
+/// the quantity.
 pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static str) {
     match quantity {
         Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY, "PGA"),
@@ -69,7 +70,7 @@ pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static s
     }
 }
 
-/// Tabulates measures (rows) of all columns.
+/// Tabulates measures, one per row, with one column per channel.
 pub(super) fn table(
     columns: &[(String, &Channel)],
     measures: &[Shown],
@@ -97,12 +98,12 @@ pub(super) fn usual(record: &Record) -> Result<Table, MotionError> {
     table(&columns(record), USUAL)
 }
 
-/// Returns the channels of a record under their names.
+/// Returns the channels of a record with their names.
 pub(super) fn columns(record: &Record) -> Vec<(String, &Channel)> {
     record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect()
 }
 
-/// Tabulates measures before and after, side by side for every channel in both.
+/// Tabulates measures before and after processing, side by side for every channel of both records.
 pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, MotionError> {
     let mut columns = Vec::new();
     for (k, new) in after.channels.iter().enumerate() {
@@ -114,17 +115,17 @@ pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, Mot
     table(&columns, USUAL)
 }
 
-/// Returns the dominant velocity pulse, from 0.3 to 12 s where the record allows.
+/// Returns the dominant velocity pulse, with a period from 0.3 to 12 s as far as the record allows.
 pub(super) fn pulse(motion: &Sampled) -> Result<PulseFit, MotionError> {
     let shortest = (8.0 * motion.time_step()).max(0.3);
     dominant_pulse(motion, shortest, (0.5 * motion.duration()).min(12.0))
 }
 
-/// Describes the dominant velocity pulse of every channel, one sentence each.
+/// Describes the dominant velocity pulse of every channel in one sentence each.
 pub(super) fn pulses(record: &Record) -> Vec<String> {
     let sentence = |channel: &Channel| match channel.sampled().and_then(|motion| pulse(&motion)) {
         Ok(fit) => format!(
-            "{}: a velocity pulse of {} s and {} cm/s from {} s holds {:.0} % of the squared \
+            "{}: a velocity pulse of {} s and {} cm/s, starting at {} s, contains {:.0} % of the squared \
              velocity{}",
             channel.name,
             number(fit.period),
@@ -142,9 +143,9 @@ pub(super) fn pulses(record: &Record) -> Vec<String> {
 pub(super) struct Rotated {
     /// The measure.
     pub(super) measure: IntensityMeasure,
-    /// As printed.
+    /// Name under which the measure is printed.
     pub(super) name: String,
-    /// Median and largest (SI).
+    /// Median and largest value over all directions (SI units).
     pub(super) peak: RotatedPeak,
 }
 

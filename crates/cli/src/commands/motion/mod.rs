@@ -29,14 +29,14 @@ const AFTER_HELP: &str = "\
 Start with:
   barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?
   barrelstack motion plot my-site.AT2 -o pictures        accelerations, velocities, spectra as SVG
-  barrelstack motion info records --out table            a whole folder: one row a record, CSV and Parquet
+  barrelstack motion info records --out table            a whole folder: one row per record, CSV and Parquet
   barrelstack motion select records --target ec8:ag=0.3,site=B --out set   a set for a study
   barrelstack motion scale my-site.AT2 --to \"pgv=60 cm/s\" -o strong.txt
   barrelstack run demo-napa --record strong.txt --set motion.vertical=false
 
 Quantities carry their unit: \"60 cm/s\", \"0.35 g\", \"0.1 Hz\", \"0.8 s\".
-Every step that is done to a motion is printed, and written into the header of the file.
-Accelerations are taken as linear between samples, velocities and displacements as their integrals.";
+Every processing step is printed, and written into the header of the file.
+Accelerations are linear between samples; velocities and displacements are their exact integrals.";
 
 pub(crate) use info::MotionInfo;
 
@@ -52,23 +52,27 @@ pub(crate) struct MotionArgs {
 /// Actions on a motion.
 #[derive(Debug, Subcommand)]
 enum MotionCommand {
-    /// Say what a file holds: header, channels, peaks stated and found, measures of intensity.
+    /// Print the contents of a file: header, channels, stated and measured peaks, intensity
+    /// measures.
     Info(info::InfoArgs),
-    /// Draw acceleration, velocity, displacement, Arias build-up and spectra as SVG, CSV beside.
+    /// Plot acceleration, velocity, displacement, Arias intensity and spectra as SVG, with CSV
+    /// files.
     Plot(plot::PlotArgs),
     /// Write a record as AT2, CSV, NPZ or the program's own text.
     Convert(change::ConvertArgs),
-    /// Remove means, taper, filter and close the ends, each step printed.
+    /// Remove the mean, taper, filter and close the ends; every step is printed.
     Process(process::ProcessArgs),
-    /// Choose from folders a set whose spectra have a target's mean and spread.
+    /// Select a set of records whose spectra have the mean and spread of a target.
     Select(select::SelectArgs),
-    /// Scale to a measure of intensity or by a factor, all components alike; or to another length.
+    /// Scale all components by one factor: to an intensity measure, by a number, or to another
+    /// length.
     Scale(scale::ScaleArgs),
-    /// Match the response spectrum to a code's or a table's.
+    /// Match the response spectrum to a code spectrum or to a table.
     Match(matching::MatchArgs),
-    /// Compute response spectra at any damping, also over all directions; for Fourier spectra see plot.
+    /// Compute response spectra at any damping, also over all directions; for Fourier spectra, see
+    /// plot.
     Spectrum(spectrum::SpectrumArgs),
-    /// Make a motion from a formula or from random numbers of a stated seed.
+    /// Make a motion from a formula, or from random numbers with a given seed.
     Synth(synth::SynthArgs),
 }
 

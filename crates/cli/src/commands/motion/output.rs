@@ -1,4 +1,5 @@
-//! Output of the commands: motion files by their extension, written atomically, never replaced unasked.
+//! Output of the motion commands: motion files by extension, written atomically, and replaced only
+//! on request.
 
 use std::path::{Path, PathBuf};
 
@@ -9,33 +10,33 @@ use super::folder::Source;
 use crate::store::{folder, store};
 use crate::typed::word;
 
-/// Where a motion goes.
+/// The output file of a motion.
 #[derive(Debug, clap::Args)]
 pub(super) struct Output {
-    /// The file to write; its ending says the form: .at2 (PEER, g, one component), .csv, .npz (NumPy)
-    /// or .txt (the program's own, exact). Of whole folders, the folder for all.
+    /// File to write; the extension selects the format: .at2 (PEER, g, one component), .csv, .npz
+    /// (NumPy) or .txt (the program's own, exact). For whole folders, the output folder.
     #[arg(long, short, value_name = "FILE", visible_alias = "out")]
     pub(super) output: PathBuf,
-    /// Replace the file if it is there.
+    /// Replace the file if it exists.
     #[arg(long)]
     pub(super) overwrite: bool,
 }
 
-/// Forms that can be written.
+/// Formats that can be written for the records of folders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Form {
-    /// NumPy.
+    /// NumPy archive.
     Npz,
-    /// Numbers between commas.
+    /// Comma-separated values.
     Csv,
-    /// The program's own, exact.
+    /// The program's own text format, exact.
     Txt,
-    // One component alone, so that the files of whole folders are never written as such.
+    // An AT2 file has one component only, so the records of folders are never written as such.
     #[value(skip)]
     At2,
 }
 
-/// A motion file that may be written.
+/// A motion file that has been checked for writing.
 #[derive(Debug)]
 pub(super) struct Target {
     pub(super) path: PathBuf,
@@ -43,7 +44,7 @@ pub(super) struct Target {
 }
 
 impl Form {
-    /// Writes a record into a file of this form, and creates its folder if missing.
+    /// Writes a record into a file of this format below a folder, creating missing folders.
     pub(super) fn write(self, source: &Source, out: &Path, record: &Record) -> anyhow::Result<()> {
         let path = source.beside(out, &word(self));
         make_folder_of(&path)?;
@@ -52,7 +53,7 @@ impl Form {
 }
 
 impl Output {
-    /// Checks the file before the work is done.
+    /// Checks the output file before the computation starts.
     pub(super) fn prepare(&self) -> anyhow::Result<Target> {
         let ending = self.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let form = match ending.as_str() {
@@ -61,7 +62,7 @@ impl Output {
             "npz" => Form::Npz,
             "txt" => Form::Txt,
             _ => bail!(
-                "{}: the extension of the name does not say the format; use .at2, .csv, .npz or .txt",
+                "{}: the extension does not state a format; use .at2, .csv, .npz or .txt",
                 self.output.display()
             ),
         };
@@ -71,13 +72,13 @@ impl Output {
 }
 
 impl Target {
-    /// Writes the record and returns warnings for readers of the file.
+    /// Writes the record and returns warnings for users of the file.
     pub(super) fn write(&self, record: &Record) -> anyhow::Result<Vec<String>> {
         let bytes = match self.form {
             Form::At2 if record.channels.len() != 1 => {
                 let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
                 bail!(
-                    "{}: an AT2 file holds one component, and there are {}: name one with \
+                    "{}: an AT2 file has one component, but there are {}: select one with \
                      --component ({}), or write .txt, .csv or .npz",
                     self.path.display(),
                     names.len(),
@@ -93,7 +94,7 @@ impl Target {
         Ok(self.losses(record))
     }
 
-    /// Describes the information that the file cannot hold.
+    /// Returns warnings about information that the file format cannot store.
     fn losses(&self, record: &Record) -> Vec<String> {
         let mut losses = Vec::new();
         if self.form != Form::At2 {
@@ -101,17 +102,17 @@ impl Target {
         }
         if record.stage == Stage::Raw {
             losses.push(
-                "AT2 files are taken for corrected records and this one is raw: write .txt, or \
+                "AT2 files are read as corrected records, but this one is raw: write .txt, or \
                  process it first"
                     .to_owned(),
             );
         }
         for channel in &record.channels {
-            // Rounding errors at the edge of a pulse are not a velocity.
+            // Rounding errors at the edge of a pulse do not count as a velocity.
             if channel.initial_velocity.abs() > 1e-6 * channel.pgv() {
                 losses.push(format!(
-                    "channel {} starts with a velocity of {} cm/s, for which AT2 has no place but the \
-                     title: read back, it starts from rest; .txt, .csv and .npz keep it",
+                    "channel {} starts with a velocity of {} cm/s, which AT2 can state only in the title: \
+                     read back, the motion starts from rest; .txt, .csv and .npz keep the velocity",
                     channel.name,
                     super::table::number(100.0 * channel.initial_velocity)
                 ));
@@ -121,18 +122,18 @@ impl Target {
     }
 }
 
-/// Refuses an existing file, and one in a missing folder.
+/// Refuses an existing file, and a file in a missing folder.
 pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     if path.is_dir() {
         bail!("{} is a folder, not a file", path.display());
     }
     if path.exists() && !overwrite {
-        bail!("{} is there already: name another file, or add --overwrite", path.display());
+        bail!("{} exists already: give another file, or add --overwrite", path.display());
     }
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             bail!(
-                "cannot write {}: there is no folder {}; make it, or name another",
+                "cannot write {}: there is no folder {}; create it, or give another",
                 path.display(),
                 folder.display()
             )
@@ -141,7 +142,7 @@ pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     }
 }
 
-/// Creates the folder of a file if missing.
+/// Creates the folder of a file if it is missing.
 pub(super) fn make_folder_of(path: &Path) -> anyhow::Result<()> {
     path.parent().map_or(Ok(()), folder)
 }

@@ -1,4 +1,4 @@
-//! Pages on changed records: every component, spectra and tables, before and after.
+//! Pages about changed records: every component, spectra and tables, before and after.
 
 use std::path::Path;
 
@@ -13,15 +13,15 @@ use super::panels;
 use crate::printer;
 use crate::store::store;
 
-/// Text of a page besides its figures.
+/// Text of a page in addition to its figures.
 pub(super) struct PageText {
-    /// The answer in one sentence.
+    /// Headline of the page: the result in one sentence.
     pub(super) headline: String,
-    /// Numbers before and after.
+    /// Tables of measures before and after.
     pub(super) tables: Vec<Table>,
 }
 
-/// `true` if a file is to be a page.
+/// `true` if the path has the extension of a page.
 fn is_page(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }
@@ -32,8 +32,8 @@ pub(super) fn vacant_figure(path: Option<&Path>, overwrite: bool) -> anyhow::Res
     if is_page(path) { vacant(path, overwrite) } else { panels::vacant_picture(path, overwrite) }
 }
 
-/// Writes the panels of a record before and after by the extension of the path: as a page with text, or as a
-/// picture; prints the path.
+/// Writes the panels of a record before and after, as a page with text or as a picture, depending
+/// on the extension of the path; prints the path.
 pub(super) fn write(
     path: &Path,
     figure: &Figure,
@@ -51,11 +51,11 @@ pub(super) fn write(
 fn document(panels: &Panels, after: &Record, text: PageText) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();
-    // The spectra, which are the last row, come first: they matter most.
+    // The spectra are the last row, but come first on the page because they matter most.
     if let Some((spectra, components)) = panels.rows.split_last() {
         blocks.push(heading("Spectra"));
         blocks.extend(spectra.iter().enumerate().map(|(at, plot)| live("spectra", at, plot)));
-        blocks.push(heading("What became of it"));
+        blocks.push(heading("Components before and after"));
         blocks.extend(text.tables.into_iter().map(Block::Table));
         for (row, plots) in components.iter().enumerate() {
             let name = plots.first().and_then(|plot| plot.y.label.split_once(": "));
@@ -80,7 +80,7 @@ fn document(panels: &Panels, after: &Record, text: PageText) -> Document {
     }
 }
 
-/// Returns a plot that can be zoomed.
+/// Returns an interactive plot.
 fn live(id: &str, at: usize, plot: &Plot) -> Block {
     let what = match plot.y.label.split_once(": ") {
         Some((channel, quantity)) => format!("{quantity} of {channel}"),
@@ -94,12 +94,12 @@ fn live(id: &str, at: usize, plot: &Plot) -> Block {
     ))
 }
 
-/// Converts a table of the terminal to one of a page.
+/// Converts a table of the terminal to a table of a page.
 pub(super) fn table(caption: &str, rows: &[Vec<String>]) -> Table {
     let Some((head, rows)) = rows.split_first() else { return Table::new(caption, &[]) };
     let columns: Vec<(&str, &str)> = head.iter().map(|name| (name.as_str(), "")).collect();
     let mut table = Table::new(caption, &columns);
-    // Keep the digits of the terminal.
+    // The digits are the same as on the terminal.
     let digits = |text: &str| {
         let digits = text.trim_start_matches(['-', '0', '.']);
         digits.chars().filter(char::is_ascii_digit).count()

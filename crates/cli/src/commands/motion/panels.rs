@@ -1,4 +1,5 @@
-//! Pictures of whole records: every component with its peaks, Husid, spectra; before and after.
+//! Figures of whole records: every component with its peaks, Husid plots and spectra, also before
+//! and after processing.
 
 use std::path::Path;
 
@@ -17,17 +18,18 @@ use crate::store::store;
 
 /// Damping ratio of the spectra.
 const DAMPING: f64 = 0.05;
-/// Dots per inch of pixel pictures: three plots beside each other have some 2000 at this.
+/// Resolution (dots per inch) of pixel pictures, at which three plots side by side have about 2000
+/// pixels.
 const DPI: f64 = 96.0;
-/// Range of the velocity's axis relative to the peak after processing: drift before processing is cut
-/// off.
+/// Range of the velocity axis relative to the peak after processing; larger drift before processing
+/// is cut off.
 const BEYOND: f64 = 1.5;
 
-/// The quantities of one component over time.
+/// The quantities of a component that are plotted over time.
 const QUANTITIES: [Quantity; 3] =
     [Quantity::Acceleration, Quantity::Velocity, Quantity::Displacement];
 
-/// Returns values in the customary unit.
+/// Returns the values of a quantity in its customary unit.
 fn history(quantity: Quantity, motion: &Sampled) -> Vec<f64> {
     let (_, factor, _) = peak_reading(quantity);
     let values = match quantity {
@@ -42,9 +44,10 @@ fn axis(quantity: Quantity, channel: &str) -> Axis {
     Axis::new(format!("{channel}: {quantity}"), peak_reading(quantity).0)
 }
 
-/// Plots a record: acceleration, velocity and displacement of every component with their peaks, build-up of
-/// the Arias intensity, response spectra, and Fourier amplitudes with the corners suggested by the noise of
-/// the record as `read`.
+/// Plots a record: acceleration, velocity and displacement of every component with their peaks, the
+/// build-up of the Arias intensity, and response and Fourier spectra.
+///
+/// The Fourier spectra show the corners suggested by the noise of the record as `read`.
 pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let mut rows = Vec::new();
     for channel in &record.channels {
@@ -69,12 +72,13 @@ pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     Ok(figure(record, "panels", "components, build-up of the Arias intensity, and spectra", rows))
 }
 
-/// Plots a record before and after processing: every component, response spectra, Fourier amplitudes.
+/// Plots a record before and after processing: every component, response spectra, and Fourier
+/// amplitudes.
 pub(super) fn before_after(before: &Record, after: &Record) -> anyhow::Result<Figure> {
     compared(before, after, None)
 }
 
-/// Plots the same as [`before_after`], with the spectrum that was matched.
+/// Plots a record like [`before_after`], with the target spectrum that was matched.
 pub(super) fn compared(
     before: &Record,
     after: &Record,
@@ -84,7 +88,7 @@ pub(super) fn compared(
     let mut channels = Vec::new();
     for (old, new) in before.channels.iter().zip(&after.channels) {
         let (was, is) = (old.sampled()?, new.sampled()?);
-        // The longer one has pads at both ends: the recorded part begins later.
+        // The longer record has pads at both ends, so its recorded part begins later.
         let shift = 0.5 * (new.duration() - old.duration());
         let row = QUANTITIES.map(|quantity| {
             let values = history(quantity, &is);
@@ -125,13 +129,13 @@ fn known_format(path: &Path) -> anyhow::Result<Format> {
         .ok_or_else(|| anyhow!("{}: figures are written as .svg, .png or .pdf", path.display()))
 }
 
-/// Returns the format of a file by its extension; `None` for a folder.
+/// Returns the format of a picture by its extension; `None` for a folder.
 pub(super) fn format_of(path: &Path) -> Option<Format> {
     let ending = path.extension()?;
     Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
 }
 
-/// Returns a record of one channel, chosen by `--of`, for records of several.
+/// Returns a record with one channel, as selected by `--of` among several.
 pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
     let Some(channel) = record.channels.get(place) else { bail!("there is no such component") };
     Ok(Record { channels: vec![channel.clone()], ..record.clone() })
@@ -140,7 +144,7 @@ pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
 fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure {
     let parts = [record.station.as_str(), record.event.as_str()];
     let known: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    // A picture goes to others, to whom the folders of this machine mean nothing.
+    // The folders of this machine mean nothing to other readers of the picture.
     let file = Path::new(&record.file).file_name().unwrap_or_default().to_string_lossy();
     let title = if known.is_empty() { file.to_string() } else { known.join(", ") };
     let mut lines = vec![format!("{file}, format {}, stage {}", record.format, record.stage)];
@@ -161,7 +165,7 @@ pub(super) fn times(channel: &Channel) -> Vec<f64> {
     (0..channel.acceleration.len()).map(|k| k as f64 * channel.time_step).collect()
 }
 
-/// Returns the sample of the largest absolute value.
+/// Returns the value with the largest magnitude, with its sign.
 fn at_peak(values: &[f64]) -> f64 {
     let larger =
         |best: usize, k: usize| if values[k].abs() > values[best].abs() { k } else { best };
@@ -176,7 +180,8 @@ fn peak_mark(quantity: Quantity, time_step: f64, values: &[f64]) -> Option<Mark>
     (!values.is_empty()).then_some(Mark { at, label })
 }
 
-/// Draws Husid plots, with the strong part of the strongest component shaded.
+/// Plots the build-up of the Arias intensity (Husid plots), with the strong part of the strongest
+/// component shaded.
 fn build_up(record: &Record) -> Plot {
     let mut plot =
         Plot { x: time(), y: Axis::new("share of the Arias intensity", ""), ..Plot::default() };
@@ -196,7 +201,8 @@ fn build_up(record: &Record) -> Plot {
     plot
 }
 
-/// Plots response spectra, with both horizontals over all directions and the target, if any.
+/// Plots response spectra, over all directions if there are two horizontals, and the target if
+/// there is one.
 fn response(
     channels: &[(String, &Channel)],
     whole: Option<&Record>,
@@ -236,7 +242,7 @@ fn response(
     Ok(plot)
 }
 
-/// Returns the axes of Fourier amplitudes.
+/// Returns the axes of Fourier amplitude plots.
 pub(super) fn fourier_axes() -> (Axis, Axis) {
     (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
 }
@@ -244,7 +250,7 @@ pub(super) fn fourier_axes() -> (Axis, Axis) {
 /// Returns the Fourier amplitudes of a channel.
 pub(super) fn fourier_series(name: &str, channel: &Channel) -> Series {
     let spectrum = FourierSpectrum::new(channel.time_step, &channel.acceleration);
-    // A logarithmic axis has no frequency 0.
+    // A logarithmic axis cannot show frequency 0.
     Series::new(name, spectrum.frequency[1..].to_vec(), spectrum.amplitude[1..].to_vec())
 }
 

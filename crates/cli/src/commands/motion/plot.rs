@@ -1,4 +1,4 @@
-//! `barrelstack motion plot`: a record as pictures, with their numbers beside.
+//! `barrelstack motion plot`: a record as figures, with their numbers as CSV.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -28,10 +28,12 @@ pub(super) struct PlotArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// A folder for all figures, or one .svg, .png or .pdf file; the numbers go beside each as .csv.
+    /// Folder for all figures, or one .svg, .png or .pdf file; the numbers are written beside each
+    /// figure as .csv.
     #[arg(long, short, value_name = "DIR|FILE", visible_alias = "out")]
     output: PathBuf,
-    /// Which figure; may be repeated. Without it a folder gets all, a file the accelerations.
+    /// Figure to draw; may be repeated. By default a folder gets all figures, and a file the
+    /// accelerations.
     #[arg(long, value_enum)]
     figure: Vec<Kind>,
     #[command(flatten)]
@@ -39,7 +41,7 @@ pub(super) struct PlotArgs {
     /// Damping ratio of the response spectra; may be repeated.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
-    /// Replace figures that are there.
+    /// Replace existing figures.
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
@@ -49,7 +51,8 @@ pub(super) struct PlotArgs {
 /// Figures of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Kind {
-    /// All of a record: components with their peaks, Husid, response and Fourier spectra.
+    /// All panels of a record: components with their peaks, Husid plots, response and Fourier
+    /// spectra.
     Panels,
     /// Acceleration over time (g).
     Acceleration,
@@ -73,7 +76,7 @@ impl Kind {
     }
 }
 
-/// Draws and writes.
+/// Draws the figures and writes them.
 pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     if args.input.has_folder() {
         return folders(args);
@@ -116,10 +119,12 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Draws every record of folders as panels.
+/// Draws the panels of every record in folders.
 fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     if args.figure.iter().any(|kind| *kind != Kind::Panels) {
-        bail!("records of a folder are drawn as panels: leave --figure out, or name panels");
+        bail!(
+            "records of a folder are drawn as panels: leave --figure out, or give --figure panels"
+        );
     }
     let formats = if args.formats.names_any() { args.formats.formats() } else { vec![Format::Png] };
     let out = args.output.as_path();
@@ -143,28 +148,31 @@ fn is_file(output: &Path) -> bool {
     format_of(output).is_some()
 }
 
-/// Returns the formats of all figures.
+/// Returns the formats in which figures are written.
 fn formats(args: &PlotArgs) -> Vec<Format> {
     format_of(&args.output).map_or_else(|| args.formats.formats(), |format| vec![format])
 }
 
-/// Returns the extensions of the files of a figure.
+/// Returns the extensions of the files of each figure.
 fn endings(args: &PlotArgs) -> impl Iterator<Item = &'static str> {
     formats(args).into_iter().map(Format::extension).chain(["csv"])
 }
 
-/// Assigns figures to files.
+/// Returns the figures to draw, with their files.
 fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     let mut kinds = args.figure.clone();
     if is_file(&args.output) {
         if args.formats.names_any() {
-            bail!("{} says its format; --format goes with a folder", args.output.display());
+            bail!("{} states its format; --format applies to a folder", args.output.display());
         }
         vacant(&args.output, true)?;
         let kind = match kinds.as_slice() {
             [] => Kind::Acceleration,
             [kind] => *kind,
-            _ => bail!("{} holds one figure: name one, or a folder", args.output.display()),
+            _ => bail!(
+                "{} can have one figure only: select one with --figure, or give a folder",
+                args.output.display()
+            ),
         };
         return Ok(vec![(kind, args.output.clone())]);
     }
@@ -176,7 +184,7 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     }
     if let Some(ending) = args.output.extension().filter(|_| !args.output.is_dir()) {
         bail!(
-            "{}: figures are written as .svg, .png or .pdf, not as .{}; name such a file or a folder",
+            "{}: figures are written as .svg, .png or .pdf, not as .{}; give such a file or a folder",
             args.output.display(),
             ending.to_string_lossy()
         );
@@ -195,7 +203,7 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
         return panels::record(record, read);
     }
     let mut plot = Plot::default();
-    // The strongest first: the weaker ones are drawn over it and stay visible.
+    // The strongest channel is drawn first, so that weaker ones are drawn over it and stay visible.
     let mut channels: Vec<&Channel> = record.channels.iter().collect();
     channels.sort_by(|a, b| b.pga().total_cmp(&a.pga()));
     for channel in &channels {
@@ -219,14 +227,14 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
     Ok(Figure::new(kind.file(), caption, plot))
 }
 
-/// Returns the name of the record in a caption.
+/// Returns the name of the record for a caption.
 fn title(record: &Record) -> String {
     let mut parts = vec![record.event.as_str(), record.station.as_str()];
     parts.retain(|part| !part.is_empty());
     if parts.is_empty() { record.file.clone() } else { parts.join(", ") }
 }
 
-/// Returns the interval from 5 to 95 % of the Arias intensity.
+/// Returns the interval from 5 to 95 % of the Arias intensity, labeled with the channel.
 fn strong_part(channel: &Channel) -> Option<Band> {
     let build_up = husid(&channel.acceleration);
     let time = |share: f64| {

@@ -1,4 +1,4 @@
-//! `barrelstack motion process`: makes a raw record fit for integration, in explicit steps.
+//! `barrelstack motion process`: prepares a raw record for integration, in explicit steps.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -22,42 +22,43 @@ use crate::typed::{typed, word};
 pub(super) struct ProcessArgs {
     #[command(flatten)]
     input: Input,
-    /// A component: its name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
+    /// Component: its name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
     #[arg(long, value_name = "NAME")]
     component: Vec<String>,
-    /// The chain to start from; the options below change it.
+    /// Processing chain to start from; the options below change it.
     #[arg(long, value_enum, default_value_t = Chain::Compact)]
     chain: Chain,
-    /// Which mean is removed.
+    /// Mean to remove.
     #[arg(long, value_enum)]
     mean: Option<Mean>,
     /// Subtract the least-squares line of the acceleration.
     #[arg(long)]
     detrend: bool,
-    /// Length of the cosine taper at each end over the length of the record, such as "2 %"; 0 for none.
+    /// Length of the cosine taper at each end, as a share of the length of the record, such as "2
+    /// %"; 0 for none.
     #[arg(long, value_name = "SHARE")]
     taper: Option<String>,
-    /// Corner of the high-pass, such as "0.05 Hz", or none.
+    /// Corner frequency of the high-pass filter, such as "0.05 Hz", or none.
     #[arg(long, value_name = "FREQUENCY")]
     high_pass: Option<String>,
-    /// Corner of the low-pass, such as "25 Hz", or none.
+    /// Corner frequency of the low-pass filter, such as "25 Hz", or none.
     #[arg(long, value_name = "FREQUENCY")]
     low_pass: Option<String>,
-    /// Order of the Butterworth filter, which runs forth and back.
+    /// Order of the Butterworth filter, which runs forward and backward.
     #[arg(long, value_name = "NUMBER")]
     order: Option<u32>,
-    /// Treatment of the zeros added for the filter.
+    /// Treatment of the zero pads that are added for the filter.
     #[arg(long, value_enum)]
     pads: Option<Fate>,
-    /// Bring the last velocity and displacement to zero by the smallest smooth acceleration.
+    /// Bring the final velocity and displacement to zero by the smallest smooth acceleration.
     #[arg(long, value_enum)]
     close: Option<Answer>,
-    /// Take both corners from the record: auto finds where the signal is at least three times the noise
-    /// before the first arrival; both horizontals share theirs.
+    /// Take both corner frequencies from the record: auto finds where the signal is at least three
+    /// times the noise before the first arrival; both horizontals share their corners.
     #[arg(long, value_enum, conflicts_with_all = ["high_pass", "low_pass"])]
     corners: Option<CornersFrom>,
-    /// Turn the horizontals first: to fault-normal and fault-parallel of a strike in degrees, such as
-    /// strike:122, or to the direction of the largest velocity, vmax.
+    /// Rotate the horizontals first: to fault-normal and fault-parallel for a strike in degrees,
+    /// such as strike:122, or to the direction of the largest velocity, vmax.
     #[arg(long, value_name = "AXES", conflicts_with = "component")]
     rotate: Option<Axes>,
     #[command(flatten)]
@@ -65,21 +66,21 @@ pub(super) struct ProcessArgs {
     /// Format in which the motions of a folder are written.
     #[arg(long, value_enum, default_value_t = Form::Txt)]
     form: Form,
-    /// Draw before and after: as panels (.png, .svg, .pdf), or as a page (.html).
+    /// Plot the record before and after: as panels (.png, .svg, .pdf) or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     #[command(flatten)]
     folder: FolderArgs,
 }
 
-/// Source of corners.
+/// Source of the corner frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum CornersFrom {
-    /// From the noise before the first arrival.
+    /// The noise before the first arrival.
     Auto,
 }
 
-/// Directions to which the horizontals are turned.
+/// Directions to which the horizontals are rotated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Axes {
     Strike(f64),
@@ -105,21 +106,21 @@ impl FromStr for Axes {
 typed! {
     /// Mean to remove.
     enum Mean of MeanRemoval {
-        /// None.
+        /// Remove no mean.
         Keep = Self::Keep,
-        /// Mean of the quiet part before the first arrival.
+        /// Remove the mean of the quiet part before the first arrival.
         PreEvent = Self::PreEvent,
-        /// Mean of the whole record.
+        /// Remove the mean of the whole record.
         Whole = Self::Whole,
     }
 }
 
 typed! {
-    /// Treatment of pads.
+    /// Treatment of the pads of the filter.
     enum Fate of Pads {
-        /// They stay.
+        /// Keep the pads.
         Keep = Self::Kept,
-        /// They are cut off.
+        /// Cut the pads off.
         Remove = Self::Removed,
     }
 }
@@ -129,13 +130,13 @@ typed! {
     enum Answer of bool {
         /// Do it.
         Yes = true,
-        /// Leave it.
+        /// Do not do it.
         No = false,
     }
 }
 
 impl ProcessArgs {
-    /// Returns all settings that the result depends on, as text.
+    /// Returns all settings that affect the result, as text.
     fn settings(&self) -> String {
         let Self { form, component, chain, mean, detrend, taper, .. } = self;
         let Self { high_pass, low_pass, order, pads, close, corners, rotate, .. } = self;
@@ -168,7 +169,7 @@ impl ProcessArgs {
         Ok(chain)
     }
 
-    /// Returns the record as chosen and turned, before and after processing.
+    /// Returns the selected and rotated record, before and after processing.
     fn both(&self, read: &Record) -> anyhow::Result<(Record, Record)> {
         let choice = input::Choice { component: self.component.clone(), processing: None };
         let mut before = choice.take(read, Chain::None)?;
@@ -184,7 +185,7 @@ impl ProcessArgs {
         let chain = self.chain(read.stage)?;
         if chain.is_none() && self.corners.is_none() && self.rotate.is_none() {
             bail!(
-                "this chain does nothing: name a step, such as --high-pass \"0.1 Hz\", or use convert"
+                "this chain has no steps: add one, such as --high-pass \"0.1 Hz\", or use convert"
             );
         }
         let after = match self.corners {
@@ -195,7 +196,7 @@ impl ProcessArgs {
     }
 }
 
-/// Applies the chain to every channel with the corners of its own noise.
+/// Applies the chain to every channel, with corner frequencies from the noise of the channel.
 fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let criterion = NoiseCriterion::default();
     let mut after = before.clone();
@@ -220,16 +221,16 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     Ok(after)
 }
 
-/// Parses a share as a plain number or in percent.
+/// Parses a share given as a plain number or in percent.
 pub(super) fn share(option: &str, text: &str) -> anyhow::Result<f64> {
     let value = number_or(option, text, Dimension::NONE)?;
     if !value.is_finite() {
-        bail!("{option}: `{text}` is no share; write a number such as 0.05, or 5 %");
+        bail!("{option}: `{text}` is not a share; write a number such as 0.05, or 5 %");
     }
     Ok(value)
 }
 
-/// Processes and writes.
+/// Processes the record and writes the result.
 pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     if args.input.has_folder() {
         return folders(args);
@@ -243,17 +244,17 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     if let Some(figure) = &args.figure {
         let drawn = panels::before_after(&before, &after)?;
         let headline = "The record before and after processing.".to_owned();
-        let tables = vec![table.on_page("Measures of the motion, before and after.")];
+        let tables = vec![table.on_page("Measures of the motion before and after processing.")];
         page::write(figure, &drawn, &after, PageText { headline, tables })?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Processes all records of folders.
+/// Processes all records in folders.
 fn folders(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     let out = args.output.output.as_path();
     if args.figure.is_some() {
-        bail!("--figure is for one record; draw those of a folder with motion plot");
+        bail!("--figure applies to a single record; plot the records of a folder with motion plot");
     }
     let batch = Batch::new(&args.input, out, &args.folder, args.settings());
     let batch = Batch { ending: Some(word(args.form)), ..batch };

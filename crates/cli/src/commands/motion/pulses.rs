@@ -1,4 +1,4 @@
-//! Options of pulses given by formulas.
+//! Options of the pulses that are given by formulas.
 
 use anyhow::bail;
 use barrelstack::scenario::{Dimension, Quantity};
@@ -6,19 +6,19 @@ use barrelstack_motion::{GroundMotion, IntensityMeasure, Pulse};
 
 use super::input::quantity;
 
-/// Size and period of a pulse.
+/// Peak and period of a pulse.
 #[derive(Debug, clap::Args)]
 pub(super) struct Size {
-    /// Peak of the acceleration, velocity or displacement, distinguished by the unit: "0.4 g",
-    /// "60 cm/s", "5 cm".
+    /// Peak acceleration, velocity or displacement; the unit determines which: "0.4 g", "60 cm/s",
+    /// "5 cm".
     #[arg(long, value_name = "QUANTITY")]
     peak: String,
-    /// Period; of a half sine its length.
+    /// Period; for a half sine, its length.
     #[arg(long, value_name = "TIME")]
     period: String,
 }
 
-/// Size, period and number of cycles.
+/// Peak, period and number of cycles of a harmonic motion.
 #[derive(Debug, clap::Args)]
 pub(super) struct Harmonic {
     #[command(flatten)]
@@ -26,12 +26,12 @@ pub(super) struct Harmonic {
     /// Number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
     pub(super) cycles: f64,
-    /// Length of the ramps at both ends in cycles; without a ramp the velocity jumps at the start.
+    /// Length of the ramps at both ends, in cycles; without a ramp the velocity jumps at the start.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
     pub(super) ramp_cycles: f64,
 }
 
-/// Size, period and main cycles of a cycloid.
+/// Peak, period and number of main cycles of a cycloid.
 #[derive(Debug, clap::Args)]
 pub(super) struct Repeated {
     #[command(flatten)]
@@ -41,28 +41,28 @@ pub(super) struct Repeated {
     pub(super) cycles: u32,
 }
 
-/// Size, period and shape of a wavelet.
+/// Peak, period and shape of a wavelet.
 #[derive(Debug, clap::Args)]
 pub(super) struct Wavelet {
     #[command(flatten)]
     pub(super) size: Size,
-    /// Width, which sets the number of cycles.
+    /// Width, which determines the number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
     pub(super) gamma: f64,
-    /// Phase.
+    /// Phase angle.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
     phase: String,
 }
 
 impl Wavelet {
-    /// Returns the phase (rad).
+    /// Returns the phase angle (rad).
     pub(super) fn phase(&self) -> anyhow::Result<f64> {
         quantity("--phase", &self.phase, Dimension::ANGLE)
     }
 }
 
 impl Size {
-    /// Scales a pulse of unit amplitude, made with the period (s), to the requested peak.
+    /// Scales a pulse of unit amplitude with the given period (s) to the requested peak.
     pub(super) fn motion(
         &self,
         name: &str,
@@ -84,7 +84,7 @@ impl Size {
             bail!("--peak: expected a quantity above 0, found {}", self.peak);
         }
         let unit = GroundMotion::from_pulse(name, pulse)?;
-        // The provenance states the request, not the pulse of unit amplitude.
+        // The provenance states the requested pulse, not the pulse of unit amplitude.
         let mut motion = unit.scaled(unit.scale_factor(measure, peak.value)?);
         motion.provenance =
             vec![format!("made by formula: {name}, period {period} s, {measure} {}", self.peak)];

@@ -1,4 +1,4 @@
-//! `barrelstack motion scale`: to a measure, by a factor, to another length; all components by one factor.
+//! `barrelstack motion scale`: scales all components by one factor, or to another length scale.
 
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
@@ -17,26 +17,27 @@ pub(super) struct ScaleArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// Scale until a measure of one component has a value, such as "pgv=60 cm/s", "pga=0.4 g",
-    /// "arias=2 m/s", "sa(1.0)=0.5 g" (period in s, damping 5 %) or "sa(1.0,0.02)=0.5 g".
+    /// Scale until an intensity measure of one component has a value, such as "pgv=60 cm/s",
+    /// "pga=0.4 g", "arias=2 m/s", "sa(1.0)=0.5 g" (period in s, damping 5 %) or "sa(1.0,0.02)=0.5
+    /// g".
     #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]
     to: Option<String>,
-    /// The component that --to is about, the first horizontal if none is named; or both horizontals:
-    /// rotd50, rotd100 (median and largest over all directions) or geomean.
+    /// Component whose measure --to refers to, by default the first horizontal; or both
+    /// horizontals: rotd50, rotd100 (median and largest over all directions) or geomean.
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,
-    /// Multiply the accelerations.
+    /// Multiply the accelerations by this factor.
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     factor: Option<f64>,
-    /// Make the motion for a model this many times the size: time times its square root,
-    /// acceleration as it is. Done after --to or --factor.
+    /// Scale the motion for a model of this length ratio: time by its square root, with unchanged
+    /// accelerations. Applied after --to or --factor.
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     froude: Option<f64>,
     #[command(flatten)]
     output: Output,
 }
 
-/// Scales and writes.
+/// Scales the motion and writes it.
 pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     let target = args.output.prepare()?;
     let goal = args.to.as_deref().map(goal).transpose()?;
@@ -67,7 +68,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     super::change::finish(&target, &read, &after, table.lines())
 }
 
-/// Returns the factor, and the name of the component that determines it.
+/// Returns the scale factor, and the name of the component that determines it.
 fn factor_to(
     args: &ScaleArgs,
     record: &Record,
@@ -111,7 +112,7 @@ fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Parses `MEASURE=VALUE` to SI units.
+/// Parses `MEASURE=VALUE` to an intensity measure and its value in SI units.
 fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     let (name, value) = text.rsplit_once('=').ok_or_else(|| {
         anyhow!("--to {text}: expected a measure and its value, such as \"pgv=60 cm/s\"")
@@ -119,7 +120,7 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     let measure: IntensityMeasure =
         name.parse().map_err(|error| anyhow!("--to {text}: {error}"))?;
     if measure == IntensityMeasure::Fajfar {
-        // No other quantity has the unit m/s^0.75.
+        // No other quantity has the unit m/s^0.75, so it is parsed here.
         let plain = value.trim().strip_suffix("m/s^0.75").unwrap_or(value).trim();
         return match plain.parse::<f64>() {
             Ok(goal) if goal.is_finite() && goal > 0.0 => Ok((measure, goal)),
@@ -133,7 +134,7 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
         "m/s" => Dimension::VELOCITY,
         "m" => Dimension::LENGTH,
         "s" => Dimension::TIME,
-        unit => bail!("--to {text}: a value in {unit} cannot be written; choose another measure"),
+        unit => bail!("--to {text}: a value in {unit} cannot be given; choose another measure"),
     };
     let goal = quantity(&format!("--to {}", name.trim()), value, dimension)?;
     if goal <= 0.0 {

@@ -1,4 +1,5 @@
-//! `barrelstack motion spectrum`: peak responses of oscillators, by component and over all directions.
+//! `barrelstack motion spectrum`: peak responses of oscillators, per component and over all
+//! directions.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -28,19 +29,19 @@ pub(super) struct SpectrumArgs {
     /// Damping ratio, such as 0.05 or "5 %"; may be repeated.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
-    /// Periods in seconds between commas, or with a unit each, such as "100 ms,0.2,1"; 0 is the ground.
-    /// Without them, 16 are printed and 121 written.
+    /// Periods in seconds or each with a unit, separated by commas, such as "100 ms,0.2,1"; 0 is
+    /// the ground itself. By default, 16 periods are printed and 121 are written.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
     #[arg(
         long,
-        help = "Also RotD50 and RotD100, the median and the largest over all horizontal directions"
+        help = "Also compute RotD50 and RotD100, the median and the largest over all horizontal directions"
     )]
     rotd: bool,
     /// Write the spectrum as .csv, in SI units.
     #[arg(long, short, value_name = "FILE.csv")]
     output: Option<PathBuf>,
-    /// Replace the file if it is there.
+    /// Replace the file if it exists.
     #[arg(long, requires = "output")]
     overwrite: bool,
 }
@@ -48,7 +49,7 @@ pub(super) struct SpectrumArgs {
 const PRINTED: [f64; 16] =
     [0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 10.0];
 
-/// The spectra of one record at one damping.
+/// The response spectra of one record at one damping ratio.
 struct Spectra {
     periods: Vec<f64>,
     damping: f64,
@@ -56,13 +57,13 @@ struct Spectra {
     rotated: Option<Rotated>,
 }
 
-/// Peaks over all directions, with the directions of the largest.
+/// Peaks over all horizontal directions, with the directions of the largest peaks.
 struct Rotated {
     peaks: Vec<RotatedPeak>,
-    /// Degrees clockwise from north where both azimuths are known, else from the first component
-    /// towards the second.
+    /// Directions of the largest peaks (degrees): clockwise from north if both azimuths are known,
+    /// otherwise from the first component towards the second.
     directions: Vec<f64>,
-    /// Reference of the directions.
+    /// Reference of these directions.
     from: &'static str,
 }
 
@@ -162,7 +163,7 @@ impl Spectra {
     }
 }
 
-/// Computes, prints and writes.
+/// Computes the spectra, prints them, and writes them if requested.
 pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
     if let Some(output) = &args.output {
         if output.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("csv")) {

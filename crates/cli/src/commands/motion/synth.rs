@@ -1,4 +1,4 @@
-//! `barrelstack motion synth`: motions from formulas and from random numbers of a stated seed.
+//! `barrelstack motion synth`: motions from formulas, and from random numbers with a given seed.
 
 use anyhow::anyhow;
 use barrelstack::scenario::Dimension;
@@ -25,10 +25,11 @@ pub(super) struct SynthArgs {
 /// Options of every synthetic motion.
 #[derive(Debug, clap::Args)]
 struct Common {
-    /// Step of the file; without it 0.005 s for random motions, a 400th of the period for pulses.
+    /// Time step of the file; by default 0.005 s for random motions, and 1/400 of the period for
+    /// pulses.
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Make it a vertical component.
+    /// Make the motion a vertical component.
     #[arg(long)]
     vertical: bool,
     #[command(flatten)]
@@ -38,7 +39,7 @@ struct Common {
 /// Options of random motions.
 #[derive(Debug, clap::Args)]
 struct Seed {
-    /// Seed of the random numbers: the same seed gives the same motion on every machine.
+    /// Seed of the random numbers; the same seed gives the same motion on every machine.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
 }
@@ -48,19 +49,19 @@ struct Seed {
 enum Kind {
     /// Harmonic displacement with ramps at both ends.
     Sine(Made<Harmonic>),
-    /// Half a sine wave of acceleration; leaves with a velocity.
+    /// Half a sine wave of acceleration; leaves a residual velocity.
     HalfSine(Made<Size>),
-    /// One sine wave of acceleration; leaves with a displacement.
+    /// One sine wave of acceleration; leaves a residual displacement.
     OneSine(Made<Size>),
     /// One cosine wave of acceleration.
     OneCosine(Made<Size>),
-    /// Ricker wavelet of acceleration: ends at rest where it began.
+    /// Ricker wavelet of acceleration; ends at rest at its starting point.
     Ricker(Made<Size>),
     /// Gabor wavelet of velocity.
     Gabor(Made<Wavelet>),
     /// Cycloidal pulse A: a forward step.
     CycloidA(Made<Size>),
-    /// Cycloidal pulse B: forth and back.
+    /// Cycloidal pulse B: forward and back.
     CycloidB(Made<Size>),
     /// Cycloidal pulse C: several cycles.
     CycloidC(Made<Repeated>),
@@ -70,11 +71,11 @@ enum Kind {
     CloughPenzien(Made<Noise>),
     /// Stochastic method for a point source (Boore).
     Boore(Made<Source>),
-    /// A velocity pulse on top of a stochastic motion.
+    /// A velocity pulse added to a stochastic motion.
     NearFault(Made<Fault>),
 }
 
-/// Arguments of one kind with those of all.
+/// Arguments of one kind of motion, with the common options.
 #[derive(Debug, clap::Args)]
 struct Made<T: clap::Args> {
     #[command(flatten)]
@@ -84,14 +85,14 @@ struct Made<T: clap::Args> {
 }
 
 impl Made<Size> {
-    /// Makes and writes a pulse defined by size and period alone.
+    /// Makes and writes a pulse that is defined by peak and period.
     fn pulse(&self, name: &str, shape: impl FnOnce(f64) -> Pulse) -> anyhow::Result<()> {
         write(&self.common, |_| self.kind.motion(name, |period| Ok(shape(period))))
     }
 }
 
 impl Made<Wavelet> {
-    /// Makes and writes a wavelet of a period (s), a width and a phase (rad).
+    /// Makes and writes a wavelet with a period (s), a width and a phase (rad).
     fn wavelet(
         &self,
         name: &str,
@@ -104,7 +105,7 @@ impl Made<Wavelet> {
     }
 }
 
-/// Soils of Der Kiureghian and Neuenhofer (1992).
+/// Soil types of Der Kiureghian and Neuenhofer (1992).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Soil {
     /// Ground frequency 15 rad/s.
@@ -115,32 +116,32 @@ enum Soil {
     Soft,
 }
 
-/// Filtered noise.
+/// Options of filtered white noise.
 #[derive(Debug, clap::Args)]
 struct Noise {
-    /// Soil.
+    /// Soil type.
     #[arg(long, value_enum, default_value_t = Soil::Medium)]
     soil: Soil,
     /// Root mean square of the acceleration at full strength.
     #[arg(long, value_name = "ACCELERATION", default_value = "0.1 g")]
     rms: String,
-    /// Length.
+    /// Duration of the motion.
     #[arg(long, value_name = "TIME", default_value = "20 s")]
     duration: String,
-    /// End of the rise to full strength.
+    /// Time at which full strength is reached.
     #[arg(long, value_name = "TIME", default_value = "2 s")]
     rise: String,
-    /// Start of the decay.
+    /// Time at which the decay starts.
     #[arg(long, value_name = "TIME", default_value = "10 s")]
     decay_start: String,
-    /// Time in which the motion then falls to 1/e.
+    /// Time in which the motion decays to 1/e.
     #[arg(long, value_name = "TIME", default_value = "2.5 s")]
     decay: String,
     #[command(flatten)]
     seed: Seed,
 }
 
-/// A point source in western North America, changed where options say so.
+/// Options of a point source in western North America; each option overrides a default.
 #[derive(Debug, clap::Args)]
 struct Source {
     /// Moment magnitude.
@@ -158,18 +159,19 @@ struct Source {
     /// Shear-wave velocity at the source.
     #[arg(long, value_name = "VELOCITY", default_value = "3500 m/s")]
     beta: String,
-    /// Quality factor of the path: at 1 Hz, and after a comma the exponent of the frequency in Hz.
+    /// Quality factor of the path: its value at 1 Hz and, after a comma, the exponent of the
+    /// frequency in Hz.
     #[arg(long, value_name = "Q,EXPONENT", default_value = "180,0.45")]
     quality: String,
-    /// Site amplification of Fourier amplitudes: frequency in Hz and factor between commas, such as
-    /// "0.1,1;1,1.5;10,2", in ascending order; without it 1.
+    /// Site amplification of Fourier amplitudes: pairs of frequency in Hz and factor, in ascending
+    /// order, such as "0.1,1;1,1.5;10,2"; by default 1.
     #[arg(long, value_name = "TABLE")]
     site_amplification: Option<String>,
     #[command(flatten)]
     seed: Seed,
 }
 
-/// A pulse and the rest around it.
+/// Options of a near-fault motion: a pulse and the stochastic remainder.
 #[derive(Debug, clap::Args)]
 struct Fault {
     #[command(flatten)]
@@ -180,7 +182,7 @@ struct Fault {
     /// Period of the pulse.
     #[arg(long, value_name = "TIME")]
     pulse_period: String,
-    /// Width of the pulse, above 1; sets its number of cycles.
+    /// Width of the pulse, above 1; determines the number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
     gamma: f64,
     /// Phase of the pulse.
@@ -189,7 +191,7 @@ struct Fault {
     /// Start of the pulse.
     #[arg(long, value_name = "TIME", default_value = "2 s")]
     start: String,
-    /// The rest holds frequencies above this many times the pulse's.
+    /// The remainder contains frequencies above this multiple of the pulse frequency.
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
     crossover: f64,
 }
@@ -198,20 +200,23 @@ impl Source {
     fn build(&self) -> anyhow::Result<BooreSource> {
         let kilometers = quantity("--distance", &self.distance, Dimension::LENGTH)? / 1000.0;
         let mut source = BooreSource::western(self.magnitude, kilometers);
-        // The formula uses stress in bar.
+        // The formula expects the stress in bar.
         let pascal = quantity("--stress", &self.stress, Dimension::STIFFNESS_PER_LENGTH)?;
         source.stress = pascal / 1e5;
         source.path.kappa = quantity("--kappa", &self.kappa, Dimension::TIME)?;
         source.velocity = quantity("--beta", &self.beta, Dimension::VELOCITY)? / 1000.0;
         let numbers = pair(&self.quality).ok_or_else(|| {
-            anyhow!("--quality: `{}` is no factor and exponent such as 180,0.45", self.quality)
+            anyhow!(
+                "--quality: `{}` is not a factor and an exponent such as 180,0.45",
+                self.quality
+            )
         })?;
         (source.path.quality, source.path.quality_exponent) = numbers;
         if let Some(text) = &self.site_amplification {
             let points: Option<Vec<(f64, f64)>> = text.split(';').map(pair).collect();
             source.path.amplification = SiteAmplification::Table(points.ok_or_else(|| {
                 anyhow!(
-                    "--site-amplification: `{text}` is no list of frequency and factor such as \
+                    "--site-amplification: `{text}` is not a list of frequencies and factors such as \
                          0.1,1;1,1.5;10,2"
                 )
             })?);
@@ -220,7 +225,7 @@ impl Source {
     }
 }
 
-/// Parses two numbers with a comma between.
+/// Parses two numbers separated by a comma.
 fn pair(text: &str) -> Option<(f64, f64)> {
     let (one, two) = text.split_once(',')?;
     Some((one.trim().parse().ok()?, two.trim().parse().ok()?))
@@ -248,8 +253,8 @@ impl Source {
     }
 }
 
-/// Replaces the first step of a motion's provenance by one in the terms of the command line, with
-/// units.
+/// Replaces the first step of the provenance of a motion by a description in terms of the
+/// command-line options, with units.
 fn with_provenance(mut motion: GroundMotion, made: String) -> GroundMotion {
     match motion.provenance.first_mut() {
         Some(first) => *first = made,
@@ -315,7 +320,7 @@ impl Fault {
     }
 }
 
-/// Makes and writes.
+/// Makes the motion and writes it.
 pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
     let (acceleration, velocity) = (1.0, 1.0);
     match &args.kind {
@@ -360,10 +365,10 @@ pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Default step of random motions (s).
+/// Default time step (s) of random motions.
 const RANDOM_STEP: f64 = 0.005;
 
-/// Makes a motion with a step (s), samples it and writes it.
+/// Samples a motion at a time step (s) and writes it.
 fn write(
     common: &Common,
     make: impl FnOnce(f64) -> anyhow::Result<GroundMotion>,

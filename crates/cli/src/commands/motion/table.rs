@@ -1,4 +1,4 @@
-//! Text tables: names left-aligned, numbers right-aligned, columns as wide as their contents.
+//! Text tables: names aligned left, numbers aligned right, columns as wide as their contents.
 
 use barrelstack_report::significant;
 
@@ -6,12 +6,12 @@ use barrelstack_report::significant;
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     rows: Vec<Vec<String>>,
-    /// Columns set flush left, counted from the left.
+    /// Number of columns that are aligned left, counted from the left.
     left: usize,
 }
 
 impl Table {
-    /// Creates an empty table; the first `left` columns are words.
+    /// Creates an empty table; the first `left` columns are text.
     pub(crate) fn new(left: usize, header: impl IntoIterator<Item: Into<String>>) -> Self {
         Self { rows: vec![header.into_iter().map(Into::into).collect()], left }
     }
@@ -31,7 +31,7 @@ impl Table {
         super::page::table(caption, &self.rows)
     }
 
-    /// Returns the rows as lines, indented by two.
+    /// Returns the rows as lines, indented by two spaces.
     pub(crate) fn lines(&self) -> Vec<String> {
         let width = |column: usize| {
             let cells = self.rows.iter().filter_map(|row| row.get(column));

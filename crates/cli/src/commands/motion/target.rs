@@ -1,4 +1,4 @@
-//! Target spectra on the command line: a code and its parameters, or a table of a file.
+//! Target spectra on the command line: a code with its parameters, or a table in a file.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use barrelstack_motion::{AccelerationUnit, MotionError, TargetSpectrum};
 
 use super::input;
 
-/// The codes and their parameters, for help and errors.
+/// The codes and their parameters, for help and error messages.
 pub(super) const CODES: &str = "\
 Targets (accelerations in g; damping ratio 0.05 where none is given):
   asce7:sds=1.0,sd1=0.6[,tl=8,damping=0.05]    ASCE/SEI 7-16 design spectrum; T_L in s
@@ -20,7 +20,7 @@ Targets (accelerations in g; damping ratio 0.05 where none is given):
   FILE.csv                                     a header such as \"period (s), Sa (g)\", then rows;
                                                \"period (s), Sa (g) at 2 %\" for another damping";
 
-/// Parses a target: a code with its parameters, or the file of a table.
+/// Parses a target: a code with its parameters, or the path of a table.
 pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
     match text.split_once(':').filter(|(code, _)| code.len() > 1) {
         Some(_) => text.parse().map_err(|error: MotionError| anyhow!("target {error}")),
@@ -31,7 +31,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
 /// Reads a table of periods and accelerations.
 fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
     let mut damping = 0.05;
-    let columns = "a period and an acceleration with a comma between";
+    let columns = "a period and an acceleration, separated by a comma";
     let rows = rows(path, columns, "period (s), Sa (g)", |place, behind| {
         if let Some(at) = behind.trim().strip_prefix("at ") {
             damping = input::quantity(place, at, Dimension::NONE)?;
@@ -44,8 +44,11 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
     Ok(spectrum)
 }
 
-/// Reads the rows of a table of periods (s) and accelerations (m/s²), which may have further columns; the header states
-/// the unit of the accelerations, and the text after it is passed to `behind` with its place.
+/// Reads the rows of a table of periods (s) and accelerations (m/s²), which may have further
+/// columns.
+///
+/// The header states the unit of the accelerations. The text after the unit is passed to `behind`,
+/// with its position.
 pub(super) fn rows<const N: usize>(
     path: &Path,
     columns: &str,

@@ -1,4 +1,4 @@
-//! Results of a study, finished or not: in words and as JSON.
+//! Results of a study, finished or not, in words and as JSON.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -17,19 +17,20 @@ fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
     format!("{:.1} % ({:.1} to {:.1} %)", shown(p), shown(low), shown(high))
 }
 
-/// Results of the cases of a study, accumulated in parts.
+/// Results of the cases of a study, accumulated shard by shard.
 #[derive(Default)]
 pub(crate) struct Answer {
     tally: Tally,
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels shared by cases, with counts by outcome; one too many if there are too many.
+    /// Levels that cases share, with counts by outcome; one more than the maximum if there are too
+    /// many.
     levels: Vec<(f64, Tally)>,
     unit: String,
 }
 
-/// Maximum number of levels and of reasons listed individually.
+/// Maximum number of levels, and of reasons, that are listed individually.
 const MOST: usize = 30;
 
 impl Answer {
@@ -63,7 +64,8 @@ impl Answer {
         }
     }
 
-    /// Returns the levels that several cases share, ascending; empty where levels are drawn.
+    /// Returns the levels that several cases share, in ascending order; empty if levels are drawn
+    /// at random.
     fn levels(&self) -> Vec<(f64, Tally)> {
         let mut levels = self.levels.clone();
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -73,17 +75,18 @@ impl Answer {
     }
 }
 
-/// Name of all further reasons.
+/// Name under which all further reasons are counted.
 const OTHERS: &str = "others";
 
-/// Sorts counts, the largest first and further reasons last.
+/// Sorts counts in descending order, with further reasons last.
 fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
     let mut counts: Vec<(&str, usize)> = counts.iter().map(|(k, n)| (k.as_str(), *n)).collect();
     counts.sort_by_key(|(name, count)| (*name == OTHERS, Reverse(*count), *name));
     counts
 }
 
-/// Describes the number of collapses, with their share if the cases are a sample: levels and hunts depend on results.
+/// Describes the number of collapses. Their share is stated only if the cases are a sample, because
+/// adaptive designs choose levels by earlier results.
 fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     let share = tally.collapse()?;
     let share =
@@ -152,7 +155,7 @@ pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> 
     lines
 }
 
-/// Describes the progress of a study, in words.
+/// Describes the progress of a study in words.
 pub(super) fn status(status: &Status) -> Vec<String> {
     let provenance = &status.provenance;
     let mut lines = vec![
@@ -183,39 +186,39 @@ described! {
         schema: &'static str ["study-result/1"] = "study-result/1",
         /// Provenance of the rows of the study.
         provenance: Provenance = found.1.clone(),
-        /// Outcomes of its cases.
+        /// Outcomes of the cases of the study.
         tally: TallyRow = TallyRow::of(&(found.0.tally, found.1.is_sample())),
         /// Notes on cases that were not followed to their end.
         notes: Vec<String> = found.0.endings.sentences(),
-        /// Outcomes of cases at each level that several share.
+        /// Outcomes of cases, for each level that several cases share.
         levels: Vec<LevelTally> = found.0.levels().iter().map(LevelTally::of).collect(),
     }
 
     /// Outcomes of the cases of one level.
     pub(crate) struct LevelTally of found: &(f64, Tally) {
-        /// The level.
+        /// The level of the intensity measure.
         level: f64 as "of the measure" = found.0,
-        /// Their outcomes.
+        /// Outcomes of the cases at this level.
         tally: TallyRow = TallyRow::of(&(found.1, true)),
     }
 
     /// Outcomes of cases.
     pub(crate) struct TallyRow of found: &(Tally, bool) {
-        /// Cases in all.
+        /// Number of cases.
         cases: u64 = found.0.cases,
-        /// Cases with a verdict.
+        /// Number of cases with a verdict.
         judged: u64 = found.0.judged,
-        /// Cases that collapsed.
+        /// Number of cases that collapsed.
         collapsed: u64 = found.0.collapsed,
-        /// The chance of collapse; null where the cases are no sample.
+        /// Probability of collapse; null if the cases are not a sample.
         collapse: Option<Fraction> = found.0.collapse().filter(|_| found.1).map(|at| Fraction::of(&at)),
     }
 
-    /// A share with its interval.
+    /// A share with its confidence interval.
     pub(crate) struct Fraction of found: &(f64, [f64; 2]) {
         /// The share.
         fraction: f64 as "1" = found.0,
-        /// Its 95 % interval (Wilson).
+        /// 95 % interval of the share (Wilson).
         interval_95: [f64; 2] as "1" = found.1,
     }
 }

@@ -14,19 +14,22 @@ use crate::printer;
 pub(super) struct EmitArgs {
     #[command(flatten)]
     which: super::Which,
-    /// The engine.
+    /// Scheduler that runs the chunks.
     #[arg(long, value_enum)]
     engine: Engine,
-    /// Folder of the results, which every worker must see.
+    /// Folder for the results, which every worker must be able to access.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Longest time of a chunk as Slurm takes it, such as 02:00:00; that of the partition without (slurm).
+    /// Time limit of a chunk in Slurm's format, such as 02:00:00; by default that of the partition
+    /// (slurm).
     #[arg(long, value_name = "TIME")]
     walltime: Option<String>,
-    /// Most chunks that run at a time; as many as the engine has room for without (slurm, parallel).
+    /// Maximum number of chunks that run at a time; by default as many as the scheduler allows
+    /// (slurm, parallel).
     #[arg(long, value_name = "NUMBER")]
     throttle: Option<NonZero<usize>>,
-    /// Most tasks of an array job, `MaxArraySize` of Slurm's configuration; 1001 without (slurm).
+    /// Maximum number of tasks in an array job, `MaxArraySize` in Slurm's configuration; by default
+    /// 1001 (slurm).
     #[arg(long, value_name = "NUMBER")]
     array_limit: Option<NonZero<usize>>,
 }
@@ -34,31 +37,31 @@ pub(super) struct EmitArgs {
 /// Scheduler of the chunks.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Engine {
-    /// A shell script that submits array jobs and, behind them, one that collects the table.
+    /// A shell script that submits array jobs, followed by a job that collects the table.
     Slurm,
-    /// A shell script that runs as many chunks at a time as there are cores, by GNU parallel.
+    /// A shell script that runs as many chunks at a time as there are cores, with GNU parallel.
     Parallel,
     /// A shell script that submits a task array.
     Hyperqueue,
-    /// A Python script that runs chunks as tasks of a Dask cluster.
+    /// A Python script that runs the chunks as tasks of a Dask cluster.
     Dask,
-    /// A Python script that runs chunks in one job of many nodes, by `PyLauncher`.
+    /// A Python script that runs the chunks in one job on many nodes, with `PyLauncher`.
     Pylauncher,
 }
 
-/// Quotes a word of a shell command.
+/// Quotes a word for a shell command.
 fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
-/// Returns an absolute path, since jobs start in folders of their own.
+/// Returns an absolute path, because jobs start in other folders.
 fn absolute(path: &Path) -> anyhow::Result<String> {
     let whole = std::path::absolute(path)
         .with_context(|| format!("cannot find the absolute path of {}", path.display()))?;
     Ok(whole.display().to_string())
 }
 
-/// Data of a job file.
+/// Data for a job file.
 struct Job {
     program: String,
     study: String,
@@ -67,7 +70,7 @@ struct Job {
 }
 
 impl Job {
-    /// Returns the shell command of a chunk, whose number is given as shell words.
+    /// Returns the shell command that runs a chunk, whose number is given as shell words.
     fn chunk(&self, number: &str) -> String {
         let [program, study, out] = [&self.program, &self.study, &self.out].map(|w| quoted(w));
         format!("{program} study run-chunk {study} --chunk {number} --out {out}")
@@ -89,7 +92,7 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
     ] {
         if given && !known {
             bail!(
-                "--{option} says nothing to this engine; leave it out, and set it where the engine is started"
+                "--{option} does not apply to this scheduler; leave it out, and set it when the scheduler is started"
             );
         }
     }
@@ -125,18 +128,18 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
     let time =
         args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
     let most = args.throttle.map_or_else(String::new, |most| format!("%{most}"));
-    // The throttle applies to each array: with several, they run one after another.
+    // The throttle applies to each array, so several arrays run one after another.
     let after = if args.throttle.is_some() { " ${job:+--dependency=afterany:$job}" } else { "" };
     let mut text = format!(
         "#!/bin/sh\n\
-         # Submits {} chunks, one task each in arrays of at most {limit}, and behind them a job that collects the\n\
-         # table: sh THIS-FILE. Options for sbatch such as --partition may stand behind the name of the file.\n\
+         # Submits {} chunks, one task each in arrays of at most {limit}, followed by a job that collects the\n\
+         # table: sh THIS-FILE. Options for sbatch such as --partition may follow the name of the file.\n\
          set -eu\njobs= job=\n\
          submit() {{ # number of the first chunk, last task, options\n\
          \x20   first=$1 last=$2; shift 2\n\
          \x20   job=$(sbatch --parsable --requeue --cpus-per-task=1{time} --array=\"0-$last{most}\"{after} \"$@\" <<END\n\
          #!/bin/sh\n\
-         # What was killed on its node is run again, up to three times.\n\
+         # A chunk that was killed on its node is run again, up to three times.\n\
          for again in 1 2 3; do\n\
          \x20   {} && exit 0\n\
          \x20   [ \\$? -gt 128 ] || exit 1\n\
@@ -152,7 +155,8 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
         let last = limit.min(job.chunks - first) - 1;
         let _ = writeln!(text, "submit {first} {last} \"$@\"");
     }
-    // After any end: the collected table states which chunks are missing.
+    // The job runs after the arrays end in any way: the collected table states which chunks are
+    // missing.
     let _ = writeln!(
         text,
         "sbatch --parsable --cpus-per-task=1 --dependency=\"afterany$jobs\" \"$@\" <<'END'\n\
@@ -183,7 +187,7 @@ fn hyperqueue(job: &Job) -> String {
     )
 }
 
-/// Returns a text as a literal of Python, of which JSON strings are a subset.
+/// Returns a text as a Python literal, which a JSON string is.
 fn literal(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
@@ -199,8 +203,8 @@ fn dask(job: &Job) -> String {
         r#"#!/usr/bin/env python3
 """Runs the chunks of a study as tasks of a Dask cluster: python THIS-FILE [ADDRESS OF THE SCHEDULER].
 
-Without an address the cores of this machine are the cluster. For others, change the line of the client: SLURMCluster,
-PBSCluster and so on of dask-jobqueue start workers in jobs. All workers must see the folders below.
+Without an address, the cores of this machine are the cluster. For another cluster, change the line of the client:
+SLURMCluster, PBSCluster and so on of dask-jobqueue start workers in jobs. All workers need access to the folders below.
 """
 import subprocess
 import sys
@@ -218,7 +222,7 @@ def run(chunk):
 
 if __name__ == "__main__":
     client = Client(*sys.argv[1:2])
-    # A chunk whose worker died is given to another; one that failed is tried again.
+    # A chunk whose worker died is given to another worker; a chunk that failed is tried again.
     tasks = client.map(run, range(CHUNKS), retries=3, pure=False)
     progress(tasks, notebook=False)
     client.gather(tasks)
@@ -231,7 +235,7 @@ if __name__ == "__main__":
 fn pylauncher(job: &Job) -> String {
     format!(
         r#"#!/usr/bin/env python3
-"""Runs the chunks of a study in one job of many cores by PyLauncher: python THIS-FILE, inside the job."""
+"""Runs the chunks of a study in one job on many cores with PyLauncher: python THIS-FILE, inside the job."""
 import shlex
 import subprocess
 

@@ -1,4 +1,4 @@
-//! Progress line of a running study, and Ctrl-C that keeps finished chunks.
+//! Progress line of a running study, and handling of Ctrl-C, which keeps finished chunks.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -25,15 +25,15 @@ pub(super) struct Live {
     waiting: Waiting,
 }
 
-/// Reports once the holder of a chunk for which this process has waited for a while: a stopped process holds its chunk
-/// indefinitely.
+/// Reports, once, the process that holds a chunk for which this process has been waiting: a
+/// suspended process holds its chunk indefinitely.
 pub(super) struct Waiting {
     folder: PathBuf,
-    /// The chunk, the start of the wait, and `true` if it was reported.
+    /// The chunk, the start of the wait, and whether it was reported.
     state: Mutex<Option<(usize, Instant, bool)>>,
 }
 
-/// Waiting time before the report.
+/// Waiting time before the holder is reported.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Waiting {
@@ -42,7 +42,7 @@ impl Waiting {
         Self { folder: folder.to_owned(), state: Mutex::new(None) }
     }
 
-    /// Updates the awaited chunk, if any; called many times a second.
+    /// Updates the awaited chunk, if any; called many times per second.
     pub(super) fn at(&self, chunk: Option<usize>) {
         let Ok(mut state) = self.state.lock() else { return };
         let Some(chunk) = chunk else { return };
@@ -55,15 +55,15 @@ impl Waiting {
         drop(state);
         if let Some(Holder { who, age }) = holder(&self.folder, chunk) {
             printer::warning(&format!(
-                "waiting for chunk {chunk}, which {who} has held for {}; if that process is stopped or hangs, let it go on \
-                 (kill -CONT) or end it, and its chunk goes to another",
+                "waiting for chunk {chunk}, which {who} has held for {}; if that process is suspended or hangs, continue it \
+                 (kill -CONT) or end it, and another process takes its chunk",
                 age_in_words(age)
             ));
         }
     }
 }
 
-/// Formats a time for display: "40 s", "12 min", "3 h".
+/// Formats a time for display, such as "40 s", "12 min" or "3 h".
 fn age_in_words(age: Duration) -> String {
     match age.as_secs() {
         seconds @ ..120 => format!("{seconds} s"),
@@ -73,7 +73,7 @@ fn age_in_words(age: Duration) -> String {
 }
 
 impl Live {
-    /// Starts the display; shows a line only if requested and only on a terminal.
+    /// Starts the display, which shows a line only if requested and only on a terminal.
     pub(super) fn new(show: bool, sample: bool, folder: &Path) -> Self {
         let bar = Bar::new(show, || {
             let bar = ProgressBar::no_length();
@@ -114,7 +114,7 @@ impl Live {
                     "{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}",
                 ));
                 bar.set_position(progress.before);
-                // The rate is that of this run.
+                // The rate counts only the cases of this run.
                 bar.reset_eta();
             }
             bar.set_length(progress.cases);

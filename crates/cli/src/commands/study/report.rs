@@ -23,13 +23,13 @@ pub(super) struct ReportArgs {
     /// A folder that `barrelstack study` wrote, finished or not.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Hazard curve of the site: adds annual rates and expected losses.
+    /// Hazard curve of the site; adds annual rates and expected losses.
     #[arg(long, value_name = "FILE")]
     hazard: Option<PathBuf>,
-    /// Years for which chances are given.
+    /// Number of years for which probabilities are given.
     #[arg(long, value_name = "NUMBER", default_value_t = 50, requires = "hazard", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     years: u32,
-    /// Where to write the page, in place of the folder of the study.
+    /// Folder for the page, in place of the folder of the study.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print one JSON document in place of the summary.
@@ -37,7 +37,7 @@ pub(super) struct ReportArgs {
     json: bool,
 }
 
-/// Reads the folder, writes the page, prints a summary.
+/// Reads the folder, writes the page, and prints a summary.
 pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     let hazard = args.hazard.as_deref().map(SiteHazard::load).transpose()?;
     let request = Request { hazard, years: Some(f64::from(args.years)) };
@@ -54,9 +54,10 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes the page of a study that was run.
+/// Writes the page of a study after it was run.
 ///
-/// A study without a single verdict has none, which is not an error: its table states the reasons.
+/// A study without a single verdict has no page, which is not an error: its table states the
+/// reasons.
 pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
     match decide_folder(out, &Request::default()) {
         Ok((decision, _)) => {

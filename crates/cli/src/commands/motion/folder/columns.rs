@@ -1,11 +1,11 @@
-//! The columns of the table of records: data of the header, of the flatfile, and measures.
+//! Columns of the table of records: header data, flatfile data and measures.
 
 use barrelstack_campaign::study::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_motion::{ClassifiedPulse, FlatRow, Measured, MeasuredComponent};
 
 use super::{Source, Worked, stage_of};
 
-/// Data of a row.
+/// Data of a record for a row of the table.
 pub(super) struct Found<'a> {
     pub(super) source: &'a Source,
     pub(super) worked: &'a Worked,
@@ -16,9 +16,11 @@ pub(super) struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Returns the file of a horizontal, counted from 0, and its channel there: `#1` for the first.
+    /// Returns the file of a horizontal component, counted from 0, and its channel in the file,
+    /// such as `#1` for the first.
     ///
-    /// `None` where several files hold several channels each, so that file names do not identify them.
+    /// `None` if several files have several channels each, because file names do not identify the
+    /// channels then.
     fn place(&self, horizontal: usize) -> Option<(String, String)> {
         let (paths, channels) = (self.source.paths(), &self.worked.record.channels);
         let flat = channels.iter().enumerate().filter(|(_, channel)| !channel.is_vertical());
@@ -32,7 +34,7 @@ impl Found<'_> {
     }
 }
 
-/// A column with its value in a row.
+/// A column, with its value in a row.
 type Cell = (ColumnSpec, Option<Value>);
 
 fn spec(name: String, unit: &str, role: Role, kind: ValueKind) -> ColumnSpec {
@@ -54,7 +56,7 @@ fn integer(name: impl Into<String>, value: Option<usize>) -> Cell {
     (spec(name.into(), "", Role::Motion, ValueKind::Integer), value)
 }
 
-/// Returns all columns in order, with the values of a row, if given.
+/// Returns all columns in order, with the values of a row if `found` is given.
 pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     let mut cells = header(found);
     let horizontal = |k: usize| found.and_then(|f| f.measured.horizontals.get(k));
@@ -170,7 +172,7 @@ fn component(cells: &mut Vec<Cell>, place: &str, measured: Option<&MeasuredCompo
     cells.push(number(of("fiv3_1s"), "m/s", im, measured.map(|m| m.fiv3)));
 }
 
-/// Adds the pulse class (1 or 0), its indicator, and the period.
+/// Adds the pulse class (1 or 0), the pulse indicator, and the pulse period.
 fn pulse(cells: &mut Vec<Cell>, how: &str, pulse: Option<&ClassifiedPulse>) {
     let im = Role::Intensity;
     cells.push(integer(format!("pulse_{how}"), pulse.map(|p| usize::from(p.pulse_like))));

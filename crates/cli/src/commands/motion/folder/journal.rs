@@ -1,4 +1,4 @@
-//! Journal of finished records, one line each, so that an interruption loses nothing.
+//! Journal of finished records, one line each, so that an interruption loses no work.
 
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
@@ -14,18 +14,19 @@ use serde_json::json;
 
 use crate::commands::motion::input;
 
-/// One record: its row, if any, and the files that were refused.
+/// Result of one record: its row, if any, and the files that were refused.
 #[derive(Debug)]
 pub(super) struct Entry {
     pub(super) record: String,
-    /// Fingerprint of the bytes of its files.
+    /// Fingerprint of the bytes of the files of the record.
     pub(super) hash: u64,
     pub(super) row: Option<Vec<Option<Value>>>,
-    /// File and reason.
+    /// Refused files, with reasons.
     pub(super) refused: Vec<(String, String)>,
 }
 
-/// The journal file. Only the positions of lines are kept in memory: thousands of lines would fill it.
+/// The journal file. Only the positions of its lines are kept in memory, because the lines
+/// themselves could fill it.
 pub(super) struct Journal {
     path: PathBuf,
     specs: Vec<ColumnSpec>,
@@ -43,7 +44,8 @@ impl Inner {
     fn append(&mut self, text: &str) -> anyhow::Result<()> {
         self.file.seek(SeekFrom::Start(self.length)).map_err(input::plain)?;
         if let Err(error) = self.file.write_all(text.as_bytes()) {
-            // Of a full disk; where even this is refused, the cut line counts as not done.
+            // The disk may be full. If even truncating fails, the incomplete line counts as not
+            // done.
             let _ = self.file.set_len(self.length);
             return Err(input::plain(error));
         }
@@ -52,7 +54,7 @@ impl Inner {
     }
 }
 
-/// The last line of a record.
+/// Position of the last line of a record.
 #[derive(Clone, Copy)]
 struct Line {
     hash: u64,
@@ -63,7 +65,7 @@ struct Line {
 impl Journal {
     /// Opens the journal of a folder, or creates one.
     ///
-    /// A truncated line, as a killed process leaves it, counts as not done.
+    /// An incomplete line, as left by a killed process, counts as not done.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
         let path = out.join("rows.jsonl");
         let cannot = |what: &str| format!("cannot {what} {}", path.display());
@@ -72,10 +74,10 @@ impl Journal {
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
         let file =
             system::open_to_change(&path).map_err(input::plain).with_context(|| cannot("write"))?;
-        // File systems without locks cannot keep two commands apart.
+        // On file systems without locks, two commands cannot be kept apart.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let out = out.display();
-            bail!("another command is at work in {out}: wait for it, or name another folder");
+            bail!("another command is working in {out}: wait for it, or give another folder");
         }
         let head = format!("{head}\n");
         let (mut at, mut lines) = (0, BTreeMap::new());
@@ -86,16 +88,16 @@ impl Journal {
             let read = reader.read_until(b'\n', &mut line).map_err(input::plain);
             let read = read.with_context(|| cannot("read"))? as u64;
             let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
-            // A truncated head, as a killed process leaves it, is ours as well.
+            // An incomplete head, as left by a killed process, is also ours.
             if at == 0 && !head.as_bytes().starts_with(&line) {
                 let ours = found.as_ref().is_some_and(|first| first["settings"].is_string());
                 let whose = if ours {
                     "the table of another command, of other options or of another version"
                 } else {
-                    "a rows.jsonl that is none of this program"
+                    "a rows.jsonl of another program"
                 };
                 bail!(
-                    "{} holds {whose}: name another folder, or remove rows.jsonl there",
+                    "{} contains {whose}: give another folder, or remove rows.jsonl there",
                     out.display()
                 );
             }
@@ -117,8 +119,8 @@ impl Journal {
         Ok(Self { path, specs, inner: Mutex::new(inner) })
     }
 
-    /// Returns `true` if a record is in the journal and was measured; `None` if it is not, or if its files have
-    /// changed.
+    /// Returns `true` if a record is in the journal and was measured, `false` if it was refused;
+    /// `None` if it is not in the journal, or if its files have changed.
     pub(super) fn known(&self, record: &str, hash: u64) -> Option<bool> {
         let inner = self.inner.lock().ok()?;
         inner.lines.get(record).filter(|line| line.hash == hash).map(|line| line.measured)
@@ -136,7 +138,8 @@ impl Journal {
 
     /// Reads the entry of a record.
     pub(super) fn entry(&self, record: &str) -> anyhow::Result<Entry> {
-        let damaged = || format!("{} was changed meanwhile: run it again", self.path.display());
+        let damaged =
+            || format!("{} was changed meanwhile: run the command again", self.path.display());
         let Ok(inner) = self.inner.lock() else { bail!(damaged()) };
         let line = inner.lines.get(record).with_context(damaged)?;
         let mut reader = BufReader::new(&inner.file);
@@ -168,7 +171,7 @@ impl Entry {
         line
     }
 
-    /// Parses a line; `None` if it is not as it was written.
+    /// Parses a line; `None` if its fingerprint or its values do not match.
     fn of(found: &serde_json::Value, specs: &[ColumnSpec]) -> Option<Self> {
         let mut bare = found.clone();
         let stated = bare.as_object_mut()?.remove("line")?;
@@ -191,13 +194,14 @@ impl Entry {
     }
 }
 
-/// Returns the fingerprint of a line without the field of the fingerprint.
+/// Returns the fingerprint of a line, computed without the field of the fingerprint itself.
 fn seal(line: &serde_json::Value) -> String {
     format!("{:016x}", fnv1a(line.to_string().as_bytes()))
 }
 
-/// Parses a value of a column's kind; the outer `None` if it is of another kind.
-#[expect(clippy::option_option, reason = "no value and a wrong value are two things")]
+/// Parses a value of the type of a column; the outer `None` means that the value has a different
+/// type.
+#[expect(clippy::option_option, reason = "a missing value differs from a wrong one")]
 fn cell(value: &serde_json::Value, kind: ValueKind) -> Option<Option<Value>> {
     if value.is_null() {
         return Some(None);

@@ -1,4 +1,5 @@
-//! Batch processing of whole folders: every record is read, processed and measured, one row of a table each.
+//! Batch processing of folders: reads, processes and measures every record, and writes one table
+//! row each.
 
 mod columns;
 mod journal;
@@ -37,11 +38,11 @@ const NAMED: usize = 5;
 /// Options for folders.
 #[derive(Debug, clap::Args)]
 pub(super) struct FolderArgs {
-    /// Flatfile as CSV: of NGA-West2, joined by the record sequence number in the names of files, or of
+    /// Flatfile (CSV) of NGA-West2, joined by the record sequence number in the file names, or of
     /// ESM, joined by event and station.
     #[arg(long, value_name = "FILE.csv")]
     pub(super) flatfile: Option<PathBuf>,
-    /// Periods of the table's spectra in seconds between commas, or with a unit each.
+    /// Periods of the spectra in the table, in seconds or each with a unit, separated by commas.
     #[arg(long = "table-periods", value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
     /// Show no progress.
@@ -66,24 +67,24 @@ impl FolderArgs {
     }
 }
 
-/// Processing of all records of folders.
+/// Processing of all records in given folders.
 pub(super) struct Batch<'a> {
     /// Files and folders.
     pub(super) input: &'a Input,
-    /// Folder of all output.
+    /// Folder for all output.
     pub(super) out: &'a Path,
-    /// Flatfile, periods.
+    /// Options for folders: flatfile and periods.
     pub(super) folder: &'a FolderArgs,
-    /// Settings on which the rows depend besides the files, as text: another text is another table.
+    /// Settings that affect the rows, as text; different settings make a different table.
     pub(super) settings: String,
-    /// Periods (s) of the spectra; those of the arguments by default.
+    /// Periods (s) of the spectra, in place of those of the options.
     pub(super) periods: Option<Vec<f64>>,
-    /// Extension of the file made of every record: a missing file is made again.
+    /// Extension of the output file of each record; if the file is missing, the record is processed again.
     pub(super) ending: Option<String>,
 }
 
 impl<'a> Batch<'a> {
-    /// Creates a batch that only measures records, with the periods of the arguments.
+    /// Creates a batch that only measures records, with the periods of the options.
     pub(super) fn new(
         input: &'a Input,
         out: &'a Path,
@@ -94,22 +95,22 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// A record to be measured, with the processing for that.
+/// A record to be measured, with the processing to apply first.
 pub(super) struct Worked {
-    /// The record, processed.
+    /// The record, possibly processed.
     pub(super) record: Record,
-    /// Further processing before it is measured.
+    /// Further processing before the record is measured.
     pub(super) before: Processing,
 }
 
 impl Worked {
-    /// Wraps a record as read, measured after the default processing of a scenario.
+    /// Wraps a record as read; it is measured after the default processing of a scenario.
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
     }
 
-    /// Wraps a processed record, measured as it is.
+    /// Wraps a processed record; it is measured unchanged.
     pub(super) fn done(record: Record) -> Self {
         Self { record, before: Processing::none() }
     }
@@ -121,26 +122,27 @@ pub(super) struct Measurements {
     pub(super) table: StudyTable,
     pub(super) refused: Vec<(String, String)>,
     before: usize,
-    /// `true` if it was stopped before its end.
+    /// `true` if the batch was stopped before its end.
     stopped: bool,
     out: PathBuf,
 }
 
 /// Result of one record.
 enum Done {
-    /// It is in the journal.
+    /// The record is in the journal.
     Noted,
-    /// Refused, with files and reasons, and tried again the next time.
+    /// Refused files with reasons; the record is tried again next time.
     Unsure(Vec<(String, String)>),
-    /// The command was stopped before.
+    /// The command was stopped before this record was finished.
     Stopped,
 }
 
-/// Applies `work` to every record, on all cores, and writes the table: `records.csv`,
-/// `records.parquet`, and `refused.csv` with the reasons.
+/// Applies `work` to every record, on all cores, and writes the table.
 ///
-/// Each finished record is added to `rows.jsonl`, with the fingerprint of the bytes of its files: the same command
-/// resumes after an interruption, and repeats records that have changed.
+/// The files are `records.csv`, `records.parquet`, and `refused.csv` with the reasons.
+///
+/// Each finished record is added to `rows.jsonl`, with the fingerprint of the bytes of its files.
+/// The same command continues after an interruption, and repeats records that have changed.
 pub(super) fn run(
     batch: &Batch<'_>,
     work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
@@ -166,7 +168,7 @@ pub(super) fn run(
     });
     let lines = Lines::new(!batch.folder.quiet);
     crate::interrupt::keeps(format!(
-        "what was done is in {}: the same command goes on from there",
+        "finished records are in {}: the same command continues from there",
         batch.out.display()
     ));
     let interrupt = Interrupt::listen();
@@ -233,9 +235,9 @@ impl Measurements {
         store(&self.out.join("refused.csv"), text.as_bytes())
     }
 
-    /// Prints a summary and returns the exit status: 130 if it was stopped.
+    /// Prints a summary and returns the exit status, which is 130 if the batch was stopped.
     pub(super) fn print_summary(&self) -> anyhow::Result<ExitCode> {
-        let before = (self.before > 0).then(|| format!(" ({} of them before)", self.before));
+        let before = (self.before > 0).then(|| format!(" ({} of them earlier)", self.before));
         let mut lines = vec![format!(
             "{} measured{}, {} refused",
             printer::counted(self.table.rows() as u64, "record"),
@@ -250,17 +252,18 @@ impl Measurements {
         lines.push(format!("written: {out}, with records.csv, records.parquet and refused.csv"));
         printer::lines(lines)?;
         if self.stopped {
-            printer::note("stopped; the same command goes on from here");
+            printer::note("stopped; the same command continues from here");
             return Ok(ExitCode::from(130));
         }
         if self.table.rows() == 0 {
-            bail!("no record could be read; refused.csv has the reasons");
+            bail!("no record could be read; refused.csv lists the reasons");
         }
         Ok(ExitCode::SUCCESS)
     }
 }
 
-/// Returns the fingerprint of the bytes of the files of a source; an unreadable file counts as empty.
+/// Returns the fingerprint of the bytes of the files of a record; an unreadable file counts as
+/// empty.
 fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
     for path in source.paths() {
@@ -272,8 +275,8 @@ fn fingerprint_of(source: &Source) -> u64 {
 
 /// Reads, processes and measures one record.
 ///
-/// Files that cannot be read, and records that cannot be processed, are refused with the reason; failures that
-/// may be due to the disk are not final, and are tried again the next time.
+/// Files that cannot be read, and records that cannot be processed, are refused with the reason.
+/// Failures that may be due to the disk are not final, and are tried again next time.
 fn entry(
     input: &Input,
     source: &Source,
@@ -297,11 +300,11 @@ fn entry(
     }
     let whole =
         source.paths().iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    // The reason, and `true` if it is final.
+    // The reason, and whether it is final.
     let refused = |reason: String, sure: bool| (format!("{whole}: {reason}"), sure);
     let row = input
         .unite(&records)
-        .map_err(|error| refused(format!("no record together: {error:#}"), true))
+        .map_err(|error| refused(format!("the files do not form one record: {error:#}"), true))
         .and_then(|record| work(source, &record).map_err(|e| refused(format!("{e:#}"), false)))
         .and_then(|worked| {
             let measured = measure(&worked.record, &worked.before, periods)
@@ -329,7 +332,7 @@ fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
     Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
 }
 
-/// Returns stage and processing in words; raw records are processed for the measures.
+/// Returns stage and processing in words; raw records are processed before they are measured.
 fn stage_of(worked: &Worked) -> (String, &'static str) {
     let processing = match (worked.record.stage, worked.before.is_none()) {
         (Stage::Raw, false) => "compact, for the measures",

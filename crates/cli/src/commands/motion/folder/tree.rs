@@ -1,4 +1,4 @@
-//! The files under folders, in the same order on every machine.
+//! Files below given folders, in the same order on every machine.
 
 use std::path::{Path, PathBuf};
 
@@ -7,32 +7,33 @@ use barrelstack_motion::{RecordFiles, group_files};
 
 use crate::commands::motion::{archives, input};
 
-/// Maximum depth of folders; stops cycles of links.
+/// Maximum depth of folders, which stops cycles of links.
 const DEEPEST: usize = 32;
 
-/// The files of one record and the folder that they were found under.
+/// The files of one record, and the folder below which they were found.
 #[derive(Clone, Debug)]
 pub(in crate::commands::motion) struct Source {
     root: PathBuf,
-    /// Name and files, relative to the folder.
+    /// Name of the record and its files, relative to the folder.
     pub(in crate::commands::motion) record: RecordFiles,
 }
 
 impl Source {
-    /// Returns its files.
+    /// Returns the paths of the files of the record.
     pub(in crate::commands::motion) fn paths(&self) -> Vec<PathBuf> {
         self.record.files.iter().map(|file| self.root.join(file)).collect()
     }
 
-    /// Returns the path of an output file under a folder: its own name with another extension.
+    /// Returns the path of an output file in a folder: the name of the record with another
+    /// extension.
     pub(in crate::commands::motion) fn beside(&self, out: &Path, ending: &str) -> PathBuf {
         let name = self.record.name.replace('?', "X");
         out.join(format!("{name}.{ending}"))
     }
 }
 
-/// Returns the records of files and folders, those of every folder sorted; skips hidden files and those under
-/// `out`.
+/// Returns the records of given files and folders; those of each folder are sorted. Hidden files
+/// and files below `out` are skipped.
 pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source>> {
     let out =
         out.canonicalize().map_err(input::plain).context("cannot find the folder to write")?;
@@ -50,7 +51,7 @@ pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source
                 None => walk(root, "", &out, 0, &mut files)?,
             }
             let name = root.file_name().map(|name| name.to_string_lossy().into_owned());
-            // Records of two folders may have the same name.
+            // Records of different folders may have the same name.
             let label = name.filter(|_| folders > 1).map_or_else(String::new, |n| format!("{n}/"));
             (root.to_owned(), label)
         } else {
@@ -70,7 +71,10 @@ pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source
     for pair in sources.windows(2) {
         if pair[0].record.name == pair[1].record.name {
             let [one, two] = [&pair[0], &pair[1]].map(|s| s.root.display().to_string());
-            bail!("{} is found under {one} and {two}: give them one by one", pair[0].record.name);
+            bail!(
+                "{} is in both {one} and {two}: give the folders one by one",
+                pair[0].record.name
+            );
         }
     }
     Ok(sources)
@@ -85,7 +89,7 @@ fn walk(
 ) -> anyhow::Result<()> {
     let refused = || format!("cannot read the folder {}", folder.display());
     if depth > DEEPEST {
-        bail!("{}: it lies more than {DEEPEST} folders deep", refused());
+        bail!("{}: it is more than {DEEPEST} folders deep", refused());
     }
     let entries = std::fs::read_dir(folder).map_err(input::plain).with_context(refused)?;
     for entry in entries {

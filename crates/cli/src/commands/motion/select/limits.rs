@@ -1,10 +1,10 @@
-//! Eligibility of records: ranges of magnitude, distance and site, and the pulse class.
+//! Eligibility of records: ranges of magnitude, distance and site velocity, and the pulse class.
 
 use std::str::FromStr;
 
 use barrelstack_campaign::study::StudyTable;
 
-/// A range, open where an end is left out.
+/// A range; an end that is left out is open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     from: f64,
@@ -26,7 +26,7 @@ impl FromStr for Range {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let refuse =
-            || "expected two numbers with .. between, such as 6..7.5, 6.. or ..30".to_owned();
+            || "expected two numbers separated by .., such as 6..7.5, 6.. or ..30".to_owned();
         let (from, to) = text.split_once("..").ok_or_else(refuse)?;
         let end = |text: &str, open: f64| match text.trim() {
             "" => Ok(open),
@@ -40,20 +40,20 @@ impl FromStr for Range {
     }
 }
 
-/// Limits that are in force.
+/// Limits on eligible records.
 #[derive(Debug, clap::Args)]
 pub(super) struct Limits {
-    /// Magnitudes, from the flatfile or the header.
+    /// Range of magnitudes, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) magnitude: Option<Range>,
-    /// Distances in km: to the rupture, from the flatfile; where it is not known, to the epicenter, from the
-    /// header.
+    /// Range of distances in km: to the rupture, from the flatfile, or else to the epicenter, from
+    /// the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) distance: Option<Range>,
-    /// Vs30 in m/s, from the flatfile or the header.
+    /// Range of Vs30 in m/s, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) vs30: Option<Range>,
-    /// Which pulse class (Shahi and Baker 2014; Baker 2007 where there is one horizontal).
+    /// Pulse class of eligible records (Shahi and Baker 2014; Baker 2007 for a single horizontal).
     #[arg(long, value_enum, default_value_t = Pulses::Any)]
     pulses: Pulses,
 }
@@ -61,24 +61,25 @@ pub(super) struct Limits {
 /// Pulse class of eligible records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Pulses {
-    /// All.
+    /// All records.
     Any,
-    /// Pulse-like ones.
+    /// Pulse-like records only.
     Only,
-    /// Records without a pulse.
+    /// Records without a pulse only.
     None,
 }
 
-/// Numbers of records excluded by each limit, and of those without the data for it.
+/// For each limit, the number of records that it excludes and the number of records without the
+/// data for it.
 #[derive(Debug, Default)]
 pub(super) struct LeftOut {
-    /// Number of records whose distance is that to the epicenter.
+    /// Number of records whose distance is measured to the epicenter.
     by_epicenter: usize,
     counts: Vec<(&'static str, usize, usize)>,
 }
 
 impl Limits {
-    /// Returns the rows within all limits, and counts of the others.
+    /// Returns the rows within all limits, and the counts of the excluded rows.
     pub(super) fn rows(&self, table: &StudyTable) -> (Vec<usize>, LeftOut) {
         let mut rows: Vec<usize> = (0..table.rows()).collect();
         let mut left_out = LeftOut::default();
@@ -135,7 +136,7 @@ impl LeftOut {
         self.counts.push((name, outside, unknown));
     }
 
-    /// Describes the number of candidates among all records, and the reasons for excluding the others.
+    /// Describes how many records are candidates, and why the others are excluded.
     pub(super) fn sentence(&self, all: usize, candidates: usize, spectrum: &str) -> String {
         let mut reasons = Vec::new();
         let mut lost = 0;
@@ -152,12 +153,12 @@ impl LeftOut {
         }
         if self.by_epicenter > 0 {
             reasons.push(format!(
-                "distances of {} are to the epicenter, as no flatfile states those to the rupture",
+                "distances of {} are to the epicenter, because no flatfile states the distance to the rupture",
                 self.by_epicenter
             ));
         }
         let why =
             if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join(", ")) };
-        format!("{candidates} of {all} records may be chosen{why}")
+        format!("{candidates} of {all} records are eligible{why}")
     }
 }

@@ -1,4 +1,4 @@
-//! `barrelstack motion select`: a set of records for a target, ready for a study.
+//! `barrelstack motion select`: a set of records for a target spectrum, ready for a study.
 
 mod limits;
 mod page;
@@ -21,10 +21,10 @@ use limits::{Limits, Range};
 /// End of the help.
 const AFTER_HELP: &str = "\
 Targets:
-  FILE.csv     a ground-motion model's table: \"period (s), median (g), sigma\", sigma that of ln Sa;
+  FILE.csv     a ground-motion model's table: \"period (s), median (g), sigma\", sigma of ln Sa;
                with --at and --level or --epsilon the spectrum conditional on one period
-               (correlations of Baker and Jayaram 2008), else the model's own
-  asce7:…, ec8:…, …   a code spectrum, which all records shall follow; see motion match --help
+               (correlations of Baker and Jayaram 2008), otherwise the model's own spectrum
+  asce7:…, ec8:…, …   a code spectrum, which every record should follow; see motion match --help
 Example:
   barrelstack motion select records --flatfile NGA.csv --target model.csv --at 1.0 --epsilon 2 \\
     --count 30 --scale 0.25..4 --magnitude 6.. --out set
@@ -36,10 +36,10 @@ Example:
 pub(super) struct SelectArgs {
     #[command(flatten)]
     input: Input,
-    /// Target of the spectra; the kinds are below.
+    /// Target of the spectra; the kinds of targets are listed below.
     #[arg(long, value_name = "TARGET")]
     target: String,
-    /// Period at which Sa is given, one of the table's.
+    /// Period at which Sa is given; one of the periods of the table.
     #[arg(long, value_name = "TIME")]
     at: Option<String>,
     /// Sa at that period, such as "0.6 g".
@@ -48,47 +48,47 @@ pub(super) struct SelectArgs {
     /// Sa at that period, as standard deviations of ln Sa above the median.
     #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true)]
     epsilon: Option<f64>,
-    /// Shortest period that counts.
+    /// Shortest period to match.
     #[arg(long, value_name = "TIME", default_value = "0.05 s")]
     shortest: String,
-    /// Longest period that counts.
+    /// Longest period to match.
     #[arg(long, value_name = "TIME", default_value = "5 s")]
     longest: String,
-    /// Number of records; without it 30, or as many as there are and reach the target.
+    /// Number of records; by default 30, or fewer if fewer reach the target.
     #[arg(long, value_name = "NUMBER")]
     count: Option<usize>,
-    /// Which spectrum of a record counts.
+    /// Spectrum of each record that is compared with the target.
     #[arg(long, value_enum, default_value_t = Spectrum::Rotd50)]
     spectrum: Spectrum,
-    /// Smallest and largest factor.
+    /// Smallest and largest scale factor.
     #[arg(long, value_name = "FROM..TO", default_value = "0.25..4")]
     scale: Range,
     #[command(flatten)]
     limits: Limits,
-    /// Most records of one event.
+    /// Maximum number of records of one event.
     #[arg(long, value_name = "NUMBER")]
     most_of_event: Option<usize>,
-    /// Seed of the spectra that are simulated.
+    /// Seed of the simulated spectra.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
-    /// The scenario that the study shakes.
+    /// Scenario that the study runs.
     #[arg(long, value_name = "SCENARIO", default_value = "candia-8-barrels")]
     base: String,
-    /// Where set, study and page go, with the table of all records.
+    /// Folder for the set, the study, the page and the table of all records.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
     folder: FolderArgs,
 }
 
-/// Spectrum of a record to be matched.
+/// Spectrum of a record that is compared with the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Spectrum {
-    /// Median over all directions of both horizontals.
+    /// Median over all directions of the two horizontals.
     Rotd50,
-    /// Largest over all directions of both horizontals.
+    /// Largest value over all directions of the two horizontals.
     Rotd100,
-    /// First horizontal component.
+    /// The first horizontal component.
     H1,
 }
 
@@ -110,7 +110,7 @@ impl Spectrum {
     }
 }
 
-/// Measures, chooses, writes.
+/// Measures the records, selects a set, and writes it.
 pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let target = target::target(args)?;
     let periods = target.periods().to_vec();
@@ -144,8 +144,8 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let selection = selection.inspect_err(|_| printer::note(&statement))?;
     if args.count.is_none() && selection.chosen.len() < USUAL_COUNT {
         let few = format!(
-            "; a set has {USUAL_COUNT} where there are as many, this one has the {} that can be \
-             brought to the target",
+            "; a set usually has {USUAL_COUNT} records, but this one has only the {} that can be \
+             scaled to the target",
             selection.chosen.len()
         );
         statement.push_str(&few);
@@ -161,7 +161,7 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
 /// Default size of a set.
 const USUAL_COUNT: usize = 30;
 
-/// Returns the largest set up to the default size that the candidates allow.
+/// Returns the largest set, up to the default size, that the candidates allow.
 fn as_many_as_there_are(
     target: &SelectionTarget,
     candidates: &[Candidate],
@@ -174,7 +174,7 @@ fn as_many_as_there_are(
     first.or_else(|error| smaller().ok_or(error))
 }
 
-/// Returns rows with a complete spectrum, as candidates; records of one event form a group.
+/// Returns the rows with a complete spectrum as candidates, grouped by event.
 fn candidates(
     args: &SelectArgs,
     table: &StudyTable,

@@ -1,4 +1,4 @@
-//! The page of a selection: spectra against the target, spread, and the records.
+//! Page of a selection: spectra against the target, their spread, and the records.
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
@@ -54,7 +54,7 @@ fn document(
         ("magnitude", limit(args.limits.magnitude)),
         ("distance (km)", limit(args.limits.distance)),
         ("Vs30 (m/s)", limit(args.limits.vs30)),
-        ("most of one event", args.most_of_event.map_or("no limit".to_owned(), |n| n.to_string())),
+        ("maximum per event", args.most_of_event.map_or("no limit".to_owned(), |n| n.to_string())),
         ("seed", args.seed.to_string()),
         ("method", "Jayaram, Lin and Baker (2011)".to_owned()),
         ("correlations", "Baker and Jayaram (2008)".to_owned()),
@@ -73,7 +73,8 @@ fn document(
     }
 }
 
-/// Plots all chosen spectra, the set's median and the target's with two standard deviations.
+/// Plots all selected spectra, and the medians of the set and of the target with two standard
+/// deviations.
 fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) -> Figure {
     let periods = target.periods().to_vec();
     let line = |label: &str, values: Vec<f64>, style: SeriesStyle| Series {
@@ -85,7 +86,7 @@ fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) ->
     };
     let color = |index: usize| SeriesStyle { index: Some(index), ..SeriesStyle::default() };
     let muted = SeriesStyle { muted: true, ..SeriesStyle::default() };
-    #[expect(clippy::disallowed_methods, reason = "a place in a picture needs no last digit")]
+    #[expect(clippy::disallowed_methods, reason = "a position in a picture needs few digits")]
     let in_g = |log: f64| log.exp() / STANDARD_GRAVITY;
     let moments = |mean: &[f64], deviation: &[f64], by: f64| -> Vec<f64> {
         mean.iter().zip(deviation).map(|(m, s)| in_g(m + by * s)).collect()
@@ -138,7 +139,7 @@ fn spread(set: &Set<'_>, target: &SelectionTarget) -> Figure {
         ],
         ..Plot::default()
     };
-    let caption = "Spread of the set against the target's, period by period.".to_owned();
+    let caption = "Spread of the set and of the target at each period.".to_owned();
     Figure::new("spread", caption, plot)
 }
 
@@ -155,7 +156,8 @@ fn records(set: &Set<'_>) -> Table {
         ("PGV", "cm/s"),
         ("D5-95", "s"),
     ];
-    let mut table = Table::new("The set; PGA and PGV as scaled, first horizontal", &head);
+    let mut table =
+        Table::new("Records of the set, with PGA and PGV of the first horizontal as scaled", &head);
     for (row, chosen) in set.chosen() {
         let number = |column: &str, factor: f64, digits: usize| {
             set.number(column, row).map_or(Cell::text(""), |v| Cell::Number(factor * v, digits))

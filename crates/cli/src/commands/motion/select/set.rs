@@ -1,4 +1,4 @@
-//! A set as files: its table, and a study that uses it directly.
+//! Files of a set: its table, and a study that uses the set directly.
 
 use std::fmt::Write as _;
 
@@ -9,28 +9,28 @@ use barrelstack_selection::{Chosen, Selection, SelectionTarget};
 use super::SelectArgs;
 use crate::store::store;
 
-/// A set with its source.
+/// A selected set, with the table of candidates.
 pub(super) struct Set<'a> {
     pub(super) args: &'a SelectArgs,
     pub(super) table: &'a StudyTable,
-    /// Row of every candidate in the table.
+    /// Row in the table for each candidate.
     pub(super) rows: &'a [usize],
     pub(super) selection: &'a Selection,
 }
 
 impl Set<'_> {
-    /// Returns the records with their rows of the table.
+    /// Returns the selected records with their rows in the table.
     pub(super) fn chosen(&self) -> impl Iterator<Item = (usize, &Chosen)> {
         self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
     }
 
-    /// Returns a text of the table.
+    /// Returns a text from the table.
     pub(super) fn text(&self, column: &str, row: usize) -> &str {
         let texts = self.table.texts(column).unwrap_or_default();
         texts.get(row).and_then(Option::as_deref).unwrap_or_default()
     }
 
-    /// Returns a number of the table.
+    /// Returns a number from the table.
     pub(super) fn number(&self, column: &str, row: usize) -> Option<f64> {
         self.table.numbers(column)?.get(row).copied().flatten()
     }
@@ -65,12 +65,13 @@ impl Set<'_> {
         text
     }
 
-    /// Returns a study of the set: every horizontal is a motion of its own, with the factor of its record.
+    /// Returns a study of the set as TOML: every horizontal component is a separate motion, with
+    /// the factor of its record.
     fn study(&self) -> anyhow::Result<String> {
         let a = self.args;
         let mut text = format!(
-            "# {} records chosen for {}, seed {}, as shaken by their factors.\n\
-             # Records are named with their whole paths; move them and this file must follow.\n\
+            "# {} records selected for {}, seed {}, scaled by their factors.\n\
+             # Records are given with their full paths; adjust these if the records are moved.\n\
              schema = 1\ntitle = {}\nseed = {}\n\n[base]\nextends = {}\n\n\
              [design]\nkind = \"full-factorial\"\n",
             self.selection.chosen.len(),
@@ -105,7 +106,7 @@ impl Set<'_> {
         Ok(text)
     }
 
-    /// Summarizes the set and its fit in words.
+    /// Summarizes the set and its fit in sentences.
     pub(super) fn summary(&self, target: &SelectionTarget) -> Vec<String> {
         let out = self.args.out.display();
         vec![
@@ -115,12 +116,12 @@ impl Set<'_> {
         ]
     }
 
-    /// Describes the fit of the set.
+    /// Describes the fit of the set to the target.
     pub(super) fn fit(&self, target: &SelectionTarget) -> String {
         let selection = self.selection;
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         format!(
-            "{} chosen of {} that reach the target within the factors: median within {:.1} % of the \
+            "{} selected of {} that reach the target within the factors: median within {:.1} % of the \
              target, {}, after {} rounds of exchanges",
             selection.chosen.len(),
             selection.eligible,
@@ -143,6 +144,6 @@ impl Set<'_> {
 
 /// Quotes a text for TOML.
 fn quoted(text: &str) -> anyhow::Result<String> {
-    // A JSON string is a basic string of TOML.
+    // A JSON string is also a basic string in TOML.
     Ok(serde_json::to_string(text)?)
 }

@@ -1,4 +1,4 @@
-//! The target of a selection, from the options.
+//! Target of a selection, from the options of the command.
 
 use std::path::Path;
 
@@ -18,13 +18,15 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
     let is_code = args.target.split_once(':').is_some_and(|(name, _)| name.len() > 1);
     if is_code {
         if args.at.is_some() {
-            bail!("--at: a code's spectrum has no spread that could be conditional");
+            bail!(
+                "--at: a code spectrum has no spread, so it cannot be made conditional: leave --at out"
+            );
         }
         let spectrum = code::target(&args.target)?;
         let periods: Vec<f64> = PERIODS.into_iter().filter(|t| counts(*t)).collect();
         return Ok(SelectionTarget::of_spectrum(&spectrum, &periods)?);
     }
-    let columns = "a period, a median and the standard deviation of ln Sa with commas between";
+    let columns = "a period, a median and the standard deviation of ln Sa, separated by commas";
     let header = "period (s), median (g), sigma";
     let mut model = code::rows(Path::new(&args.target), columns, header, |_, _| Ok(()))?;
     let at = args.at.as_deref().map(|text| number_or("--at", text, Dimension::TIME)).transpose()?;
@@ -38,7 +40,7 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
             let place = periods.iter().position(|t| *t == period).ok_or_else(|| {
                 let listed: Vec<String> = periods.iter().map(f64::to_string).collect();
                 anyhow!(
-                    "--at: {period} s is none of the periods that count: {} s",
+                    "--at: {period} s is not one of the matched periods: {} s",
                     listed.join(", ")
                 )
             })?;
@@ -50,7 +52,9 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
                 (None, Some(epsilon)) => {
                     Condition::at_epsilon(period, median[place], sigma[place], epsilon)
                 }
-                (None, None) => bail!("--at: give Sa there, with --level \"0.6 g\" or --epsilon 2"),
+                (None, None) => {
+                    bail!("--at: give Sa at that period, with --level \"0.6 g\" or --epsilon 2")
+                }
             })
         }
     };
