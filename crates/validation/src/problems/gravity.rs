@@ -1,4 +1,4 @@
-//! Equilibrium under gravity: forces, penetration, overhangs, and stability of rest.
+//! Equilibrium under gravity: contact forces, penetration, overhangs, and bodies that stay at rest.
 
 use std::ops::ControlFlow;
 
@@ -20,7 +20,7 @@ const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
-/// Distance (m) of nodes from the ends, so that equal bricks can stand on each other.
+/// Distance (m) of the nodes from the ends of a brick, so that equal bricks can stand on each other.
 pub(super) const INSET: f64 = 0.02;
 
 fn firm() -> NormalLaw {
@@ -91,7 +91,7 @@ fn sink() -> Problem {
         .by(|_| Ok(0.1 - column(5)?.state.poses[1].position.z))
 }
 
-/// A disc of a radius (m) on two points of the ground at ± an angle (rad) from straight down.
+/// Creates a disc of a radius (m) on two points of the ground at ± an angle (rad) from straight down.
 pub(super) fn on_two_points(
     disc: Body<Planar>,
     radius: f64,
@@ -109,10 +109,10 @@ fn cradle(angle: f64) -> Problem {
     let exact = mass * GRAVITY / (2.0 * cos(angle));
     setting(
         format!("gravity/cradle-{angle}"),
-        format!("disc of 275 kg on two smooth points at ±{angle} rad"),
+        format!("disc of 275 kg on two frictionless points at ±{angle} rad"),
         SOURCE,
     )
-    // The points touch the sunken disc a little higher; the effect vanishes with stiffness.
+    // The disc sinks, so the points touch it a little higher; the effect vanishes with increasing stiffness.
     .quantity("normal force of one", "N", relative(exact, 1e-4))
     .by(move |_| {
         let (radius, stiffness) = (0.35, 1e9);
@@ -154,7 +154,7 @@ fn rest() -> Problem {
     })
 }
 
-/// `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
+/// Returns `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
     // The lowest lies on a table that ends at x = 0; brick i from the top overhangs the one below by L/2i.

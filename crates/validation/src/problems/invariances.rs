@@ -29,7 +29,7 @@ fn shaken(acceleration: f64) -> Shake {
     Shake::Harmonic { acceleration, omega: 9.0 }
 }
 
-/// Returns the six numbers of each body's motion.
+/// Returns position, rotation, velocity and spin of each body as six numbers.
 fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
     let bodies = state.poses.iter().zip(&state.twists);
     bodies
@@ -39,7 +39,7 @@ fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
         .collect()
 }
 
-/// Returns the largest difference of two scenes, the first scaled component by component.
+/// Returns the largest difference between two states, after scaling the components of the first.
 fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
     numbers(a)
         .iter()
@@ -141,7 +141,9 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
     body
 }
 
-/// All factors are powers of two, so that the runs must agree to the last bit.
+/// Compares a heap with one four times as large.
+///
+/// All factors are powers of two, so the runs must agree to the last bit.
 fn froude(seed: u64) -> Result<f64, Failure> {
     let bodies = heap(seed);
     let large = bodies.iter().map(four_times).collect();
@@ -232,7 +234,11 @@ fn repeat(seed: u64) -> Result<f64, Failure> {
 
 fn balance() -> Problem {
     setting("invariances/energy-balance", "heap on shaking ground, one second", BALANCE)
-        .quantity("error of the balance over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
+        .quantity(
+            "residual of the balance over the energy exchanged",
+            "",
+            absolute(0.0, 1e-4).fast(1e-3),
+        )
         .by(|effort| {
             let worst = |step: f64| -> Result<f64, Failure> {
                 let mut worst = 0.0_f64;
@@ -258,7 +264,7 @@ fn balance() -> Problem {
         })
 }
 
-/// Newton's cradle with elastic contacts, on a frictionless line.
+/// Problem of Newton's cradle: elastic discs in a row without friction.
 fn elastic_row() -> Problem {
     setting(
         "invariances/elastic-row",
