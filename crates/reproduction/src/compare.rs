@@ -21,7 +21,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the words used in tables.
+    /// Returns the text of the verdict in tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",

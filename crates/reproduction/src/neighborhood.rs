@@ -1,5 +1,5 @@
-//! The neighborhood of the reconstructed rack: counts how many slightly different racks, with slightly different contact
-//! parameters, reproduce the findings of the paper.
+//! The neighborhood of the reconstructed rack: counts how many slightly different racks, with slightly different
+//! contact parameters, reproduce the findings of the paper.
 
 use barrelstack::scenario::{Cradle, Scenario, StackSpec};
 use barrelstack::summary::Summary;

@@ -65,7 +65,7 @@ pub(super) struct Tried {
     six: Option<Summary>,
     /// Number of combinations of contact parameters changed by 10 % that keep the mode of the eight barrels.
     pub(super) same_mode: usize,
-    /// Number of combinations.
+    /// Number of combinations that were run.
     pub(super) members: usize,
 }
 

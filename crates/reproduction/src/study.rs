@@ -43,7 +43,8 @@ impl Subject {
         }
     }
 
-    /// Returns the longest duration (s) of a run, and its duration after the collapse, which must include the first fall.
+    /// Returns the longest duration (s) of a run, and its duration after the collapse, which must include the first
+    /// fall.
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),

@@ -37,7 +37,7 @@ const FALLS: [f64; 2] = [0.76, 0.2];
 /// Length of the runs (s).
 const END: f64 = 10.0;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         first_fall(),

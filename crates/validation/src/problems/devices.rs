@@ -15,7 +15,7 @@ use crate::scene::{Scene, disc, floor};
 use crate::swing::{crossings, mean_time, run_crossings};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list: Vec<Problem> = [30.0, 40.0, 55.0].map(rolls_out).into();
     list.push(hill());
@@ -333,7 +333,7 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
     Ok(peaks.fold(0.0, f64::max))
 }
 
-/// Problems that compare the best tuning, found by a search, with Den Hartog's formula.
+/// Creates the problems that compare the best tuning, found by a search, with Den Hartog's formula.
 fn den_hartog(share: f64) -> [Problem; 2] {
     let exact = Tuning::den_hartog(share);
     let source = "Den Hartog 1956, section 3.3";

@@ -11,7 +11,7 @@ use crate::{Failure, GRAVITY, Problem};
 
 use super::devices::{self, displacement, one_level, pressed, push};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![lid(), lid_breaks(), strap()];
     list.extend(walking_stop());
@@ -110,7 +110,8 @@ fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
     counted.map(|(_, body)| body.mass).sum()
 }
 
-/// Problems in which the upper of two levels slides without friction between the stops of the two barrels below.
+/// Creates the problems in which the upper of two levels slides without friction between the stops of the two barrels
+/// below.
 fn walking_stop() -> [Problem; 2] {
     let (gap, stiffness) = (0.01, 1e5);
     let (push_g, seconds) = (0.1, 0.1);
@@ -202,7 +203,7 @@ fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Res
     Ok(run)
 }
 
-/// Problem of the lower or the upper natural frequency of a platform with a mass, without damping.
+/// Creates the problem of the lower or the upper natural frequency of a platform with a mass, without damping.
 fn frequency(upper: usize) -> Problem {
     let (mass, tuning) = (150.0, Tuning { frequency: 0.9, damping_ratio: 0.0 });
     let whole = SPRINGS / ABOARD;
@@ -240,8 +241,8 @@ fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
 
-/// Problem of the largest dynamic amplification of the displacement of a platform with a mass that is tuned by Den
-/// Hartog's formula, over all frequencies of the ground.
+/// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass that is tuned
+/// by Den Hartog's formula, over all frequencies of the ground.
 ///
 /// The exact answer is a closed form; ours comes from the response to an impulse, which excites all frequencies.
 fn tuned(share: f64) -> Problem {

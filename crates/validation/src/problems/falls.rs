@@ -12,7 +12,7 @@ use crate::problem::{absent, relative, setting};
 use crate::scene::Scene;
 use crate::{Failure, GRAVITY, Problem};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     [1.0, 5.0].map(stopped).into()
 }

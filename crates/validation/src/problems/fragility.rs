@@ -23,7 +23,7 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// Problem of one number of the fit of the eight stripes, exact to half a unit of its last published digit.
+/// Creates the problem of one number of the fit of the eight stripes, exact to half a unit of its last published digit.
 fn number(
     id: &str,
     quantity: &'static str,
@@ -84,7 +84,7 @@ fn covered(
         .by(move |effort| coverage(effort, band))
 }
 
-/// Problem of the annual rate of failure for the hazard `λ(x) = k₀ x⁻ᵏ`, which is `k₀ θ⁻ᵏ exp(k²β²/2)`.
+/// Creates the problem of the annual rate of failure for the hazard `λ(x) = k₀ x⁻ᵏ`, which is `k₀ θ⁻ᵏ exp(k²β²/2)`.
 fn power_law() -> Problem {
     let (k0, k, ln_median) = (1e-4, 2.5, -0.7);
     let curve = Lognormal { median: exp(ln_median), dispersion: 0.45 };
@@ -106,7 +106,7 @@ fn power_law() -> Problem {
     })
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         number("median", "median θ", 0.426_30, 5e-6, |fit| fit.curve.median),

@@ -53,7 +53,7 @@ fn column(count: u32) -> Result<Scene, Failure> {
     Ok(Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(1e-9)?)
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     list.extend((1..=5).map(level_force));

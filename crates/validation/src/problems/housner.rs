@@ -29,7 +29,7 @@ pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     }
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for alpha in [0.10, 0.25, 0.40] {
@@ -132,7 +132,7 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Problem of the uplift under a slowly growing ground acceleration, with a constant vertical one (g).
+/// Creates the problem of the uplift under a slowly growing ground acceleration, with a constant vertical one (g).
 fn uplift(alpha: f64, vertical: f64) -> Problem {
     let exact = tan(alpha) * (1.0 + vertical);
     let name = if vertical == 0.0 {

@@ -19,7 +19,7 @@ const CYCLES: u32 = 8;
 /// Damping ratio of spectra.
 const DAMPING: f64 = 0.05;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let time = f64::from(CYCLES) * PERIOD;
     let arias = PI / (2.0 * STANDARD_GRAVITY) * AMPLITUDE * AMPLITUDE * time / 2.0;
@@ -107,8 +107,8 @@ fn short_period() -> Problem {
     })
 }
 
-/// Problem of the Housner intensity `∫ PSV dT` from 0.1 s to 2.5 s, with `PSV = S_a T/2π` and equal `S_a` at all
-/// periods.
+/// Creates the problem of the Housner intensity `∫ PSV dT` from 0.1 s to 2.5 s, with `PSV = S_a T/2π` and equal `S_a`
+/// at all periods.
 fn housner_intensity() -> Problem {
     let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
     setting("intensity/housner", "Housner intensity of a lasting push of 1 m/s²", STEP)

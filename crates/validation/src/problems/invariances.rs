@@ -48,7 +48,7 @@ fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         invariance("mirror", "mirrored heap on mirrored ground", 1e-10, mirror),
@@ -264,7 +264,7 @@ fn balance() -> Problem {
         })
 }
 
-/// Problem of Newton's cradle: elastic discs in a row without friction.
+/// Creates the problem of Newton's cradle: elastic discs in a row without friction.
 fn elastic_row() -> Problem {
     setting(
         "invariances/elastic-row",

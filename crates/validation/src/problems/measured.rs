@@ -19,7 +19,7 @@ const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3";
 const BLOCKS: [(&str, f64, f64, Option<f64>); 3] =
     [("s1", 0.25, 1.000, Some(0.936)), ("s2", 0.17, 1.000, Some(0.973)), ("s3", 0.12, 1.000, None)];
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let periods = BLOCKS.into_iter().map(|(name, width, height, _)| period(name, width, height));
     let decays = BLOCKS
@@ -48,7 +48,7 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
     })
 }
 
-/// Problem of the rotation after three impacts of a block whose contact was calibrated at the first impact.
+/// Creates the problem of the rotation after three impacts of a block whose contact was calibrated at the first impact.
 fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let (radius, alpha) = dimensions(width, height);
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));

@@ -24,7 +24,7 @@ const SOURCE: &str =
     "equations of motion, solved by the library differential-equations 0.7, DOP853";
 const MASS: f64 = 100.0;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         rocking("leaning", (0.25, 6.0, 0.3)),
@@ -56,7 +56,7 @@ fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64;
     }
 }
 
-/// Problem of a block that rocks on one corner under one sine cycle of `push` g.
+/// Creates the problem of a block that rocks on one corner under one sine cycle of `push` g.
 ///
 /// The block stays near its rotation of unstable equilibrium, or overturns.
 fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
@@ -81,8 +81,8 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     })
 }
 
-/// Problem of a block on a soft corner, with the full equations of the springs and dampers of the normal and tangential
-/// directions.
+/// Creates the problem of a block on a soft corner, with the full equations of the springs and dampers of the normal
+/// and tangential directions.
 fn corner() -> Problem {
     let (alpha, omega, push, until) = (0.25, 6.0, 0.3, 0.8);
     let block = RockingBlock {
@@ -128,7 +128,8 @@ fn corner() -> Problem {
     })
 }
 
-/// Problem of a block that bounces and pitches on two springs without leaving them, on a floor that moves vertically.
+/// Creates the problem of a block that bounces and pitches on two springs without leaving them, on a floor that moves
+/// vertically.
 fn springs() -> Problem {
     let (half_width, half_height, until) = (0.4, 0.3, 1.0);
     let (frequency, zeta) = (60.0, 0.02);
@@ -200,7 +201,7 @@ fn angle_in_cradle(scene: &Scene) -> f64 {
     atan2(place.x, -place.z)
 }
 
-/// Problem of a disc that rolls without slip in a cradle, at large angles.
+/// Creates the problem of a disc that rolls without slip in a cradle, at large angles.
 fn pendulum() -> Problem {
     let until = 1.1;
     let length = 1.5 * (CRADLE - DISC);
@@ -219,7 +220,7 @@ fn pendulum() -> Problem {
     })
 }
 
-/// Problem of a disc that climbs its cradle and spins so fast that it always slips in the same direction.
+/// Creates the problem of a disc that climbs its cradle and spins so fast that it always slips in the same direction.
 fn bowl() -> Problem {
     let (friction, spin, until) = (0.4, 40.0, 0.6);
     let arm = CRADLE - DISC;
@@ -244,7 +245,8 @@ fn bowl() -> Problem {
     })
 }
 
-/// Problem of a thrown body whose viscous drag, relative to shaking ground, couples translation and rotation.
+/// Creates the problem of a thrown body whose viscous drag, relative to shaking ground, couples translation and
+/// rotation.
 fn flight() -> Problem {
     let until = 1.0;
     let (inertia, push, omega) = (8.0, 3.0, 7.0);
@@ -286,7 +288,7 @@ fn rigid() -> Rocker {
     Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
 }
 
-/// Problem that verifies the integrator of the ensembles over an interval without impact.
+/// Creates the problem that verifies the integrator of the ensembles over an interval without impact.
 fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);
     let rigid = rigid();
@@ -302,8 +304,8 @@ fn own_lean() -> Problem {
             })
 }
 
-/// Problem that verifies the same integrator from rest: uplift, one swing under a half-sine, and the peak that follows
-/// from the energy.
+/// Creates the problem that verifies the same integrator from rest: uplift, one swing under a half-sine, and the peak
+/// that follows from the energy.
 fn own_peak() -> Problem {
     let rigid = rigid();
     let omega = 2.0 * rigid.rate;

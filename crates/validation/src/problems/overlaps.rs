@@ -7,7 +7,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
 
-/// Returns the problem of the deepest overlap of bodies without a common seat, over all frames until rest of stacks of
+/// Creates the problem of the deepest overlap of bodies without a common seat, over all frames until rest of stacks of
 /// all kinds under strong shaking.
 pub(super) fn problem() -> Problem {
     setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")

@@ -51,7 +51,7 @@ impl Form {
 /// without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     list.extend([1.0, 2.0, 3.0, 5.0].map(|ratio| closed(Form::HalfSine, ratio)));

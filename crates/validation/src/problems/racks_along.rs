@@ -10,7 +10,7 @@ use crate::{Failure, Problem};
 
 use super::devices::{push, run_pushed};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![posts()];
     list.extend([(0.0, 1.0), (3.5, 1.0), (3.5, -1.0)].map(|(degrees, side)| slides(degrees, side)));

@@ -43,7 +43,7 @@ fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, boo
     Ok((slip.abs() > 4e-6 / finer, at.orientation.abs() > 1e-5))
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for s in [0.2, 0.25, 1.0] {

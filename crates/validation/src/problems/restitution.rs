@@ -19,7 +19,7 @@ const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021"
 const OMEGA: f64 = 100.0;
 const RADIUS: f64 = 0.1;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     let table = [0.05, 0.0676, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0];
@@ -47,7 +47,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Problem of a disc that strikes a row of four equal discs: elastic contacts must conserve energy.
+/// Creates the problem of a disc that strikes a row of four equal discs: elastic contacts must conserve energy.
 fn newtons_cradle() -> Problem {
     setting(
         "restitution/newtons-cradle",
@@ -203,7 +203,7 @@ fn stays(zeta: f64) -> Problem {
     })
 }
 
-/// Problem of the longest stable step of symplectic Euler for a mass on its node.
+/// Creates the problem of the longest stable step of symplectic Euler for a mass on its node.
 fn stability(zeta: f64) -> Problem {
     let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
     setting(
@@ -226,7 +226,7 @@ fn stability(zeta: f64) -> Problem {
     })
 }
 
-/// Problem of a damping that is calibrated at one amplitude and checked at another.
+/// Creates the problem of a damping that is calibrated at one amplitude and checked at another.
 fn calibrated(target: f64) -> Problem {
     let alpha = 0.25;
     setting(

@@ -68,7 +68,7 @@ fn slip(scene: &Scene) -> f64 {
     (twist.linear.x + RADIUS * twist.angular - ground.linear.x).abs()
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for ratio in RATIOS {

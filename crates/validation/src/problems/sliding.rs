@@ -20,7 +20,7 @@ const COULOMB: &str = "Coulomb";
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 1e6;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let (a, n, duration) = (0.5, 0.2, 0.4);
     let half_sine =

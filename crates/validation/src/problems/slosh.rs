@@ -14,7 +14,7 @@ const NEARLY_EMPTY: &str = "particle in a round trough";
 const NEARLY_FULL: &str = "ice-fishing problem, Fox and Kuttler 1983";
 const ELEMENTS: &str = "potential theory by finite elements";
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![
         frequency("nearly-empty", NEARLY_EMPTY, 1e-4, 1.0, 2e-3),
@@ -202,7 +202,7 @@ fn long() -> Problem {
     })
 }
 
-/// Problem of the wine of a barrel in its cradle, excited by a short push.
+/// Creates the problem of the wine of a barrel in its cradle, excited by a short push.
 fn in_a_stack(filled: f64) -> Problem {
     let wave = scenario(filled)
         .ok()

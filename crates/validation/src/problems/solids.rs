@@ -21,7 +21,7 @@ const MASS: f64 = 270.0;
 const STIFFNESS: f64 = 1.2e9;
 const RESTITUTION: f64 = 0.3;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for height in [1.0, 2.0, 3.3] {
@@ -70,7 +70,7 @@ fn speed_after(height: f64) -> f64 {
     (2.0 * GRAVITY * height).sqrt()
 }
 
-/// Problem of the greatest depth of a falling barrel: `½ m v² + m g δ = ⅖ k δ^2.5`.
+/// Creates the problem of the greatest depth of a falling barrel: `½ m v² + m g δ = ⅖ k δ^2.5`.
 ///
 /// The barrel is much faster than the speed at which the law begins to damp.
 fn depth(height: f64) -> Problem {
@@ -88,7 +88,7 @@ fn depth(height: f64) -> Problem {
     .refined(move |_, level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
 }
 
-/// Problem of the rebound speed, which does not depend on the mass.
+/// Creates the problem of the rebound speed, which does not depend on the mass.
 fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     setting(
         format!("solids/restitution-{}-{height:.1}m", what.replace(' ', "-")),
@@ -104,7 +104,7 @@ fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     })
 }
 
-/// Problem of the rebound with the default step of a stack.
+/// Creates the problem of the rebound with the default step of a stack.
 fn default_step() -> Problem {
     setting(
         "solids/restitution-at-the-default-step",
@@ -192,7 +192,8 @@ fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Fa
     Ok(([wrench.force.x, wrench.force.z, wrench.moment], scratch.contacts.len()))
 }
 
-/// Problem of a box flat on another: it must have two contacts, at the ends of the overlap, in either order of the boxes.
+/// Creates the problem of a box flat on another: it must have two contacts, at the ends of the overlap, in either order
+/// of the boxes.
 fn flat(share: f64, count: f64) -> Problem {
     setting(
         format!("solids/flat-on-flat-{share:.2}"),
@@ -212,7 +213,7 @@ fn flat(share: f64, count: f64) -> Problem {
     })
 }
 
-/// Problem of the smoothness of forces while one box moves over the flats, edges and corners of another.
+/// Creates the problem of the smoothness of forces while one box moves over the flats, edges and corners of another.
 ///
 /// The quantity is the largest jump between neighboring points of a fine path, relative to the change that the
 /// stiffness explains.
@@ -260,7 +261,7 @@ fn smooth() -> Problem {
 /// Displacement (m, rad) to either side in a finite difference.
 const STEP: f64 = 1e-8;
 
-/// Problem of the force as negative gradient of the elastic energy, at poses all around the lower body.
+/// Creates the problem of the force as negative gradient of the elastic energy, at poses all around the lower body.
 ///
 /// If force and gradient agree wherever two bodies press on each other, no path around a corner gains or loses energy.
 /// The quantity is their largest difference in any of the three components, over the force.

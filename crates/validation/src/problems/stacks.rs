@@ -45,7 +45,7 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
 /// Time step (s).
 const STEP: f64 = 1e-5;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         opens("one", &[(0.4, 1.2)]),

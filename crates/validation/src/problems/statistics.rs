@@ -81,7 +81,7 @@ fn median(of: &[f64]) -> f64 {
     0.5 * (sorted[half] + sorted[(sorted.len() - 1) / 2])
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         setting(

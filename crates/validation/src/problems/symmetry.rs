@@ -10,7 +10,7 @@ use crate::{Effort, Outcome, Problem};
 const STEP: f64 = 1e-4;
 const END: f64 = 1.0;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let limit = || absolute(0.0, 1e-9);
     vec![

@@ -90,7 +90,7 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
     Ok(round / end)
 }
 
-/// Problem of a top whose spherical tip rolls, in steady precession.
+/// Creates the problem of a top whose spherical tip rolls, in steady precession.
 fn top(which: &'static str) -> Problem {
     let (quantity, unit, exact) = match which {
         "speed" => ("speed of its center after 1 s", "m/s", 0.344_417_790),
@@ -190,7 +190,7 @@ fn wobble(
     })
 }
 
-/// Problem of a barrel that rocks on its bilge along its length.
+/// Creates the problem of a barrel that rocks on its bilge along its length.
 fn rock(
     (name, mass, about, across): (&'static str, f64, f64, f64),
     degrees: f64,

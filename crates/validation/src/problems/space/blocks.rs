@@ -24,7 +24,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns the forces (N) on the feet of a plate of 981 N on equal springs; `feet` are relative to the center of mass (m).
+/// Returns the forces (N) on the feet of a plate of 981 N on equal springs; `feet` are relative to the center of mass
+/// (m).
 fn loads(feet: &[Vec3]) -> Result<Vec<f64>, Failure> {
     let mut plate = free("plate", 100.0, Vec3::new(10.0, 10.0, 10.0), Vec3::default());
     plate.nodes = vec![points(feet)];
@@ -65,7 +66,7 @@ fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Proble
     exact.into_iter().enumerate().map(of).collect()
 }
 
-/// Problem of a box that is pushed obliquely and tips over the critical edge.
+/// Creates the problem of a box that is pushed obliquely and tips over the critical edge.
 fn tips(degrees: f64, exact: f64) -> Problem {
     setting(
         format!("space-blocks/tips-{degrees}"),

@@ -55,7 +55,7 @@ fn spring() -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness: SOFT, damping: 0.0 }
 }
 
-/// Problem of barrels that are stacked on their heads.
+/// Creates the problem of barrels that are stacked on their heads.
 fn stands(count: u32) -> Problem {
     let exact: f64 = (1..=count).map(|above| f64::from(above) * MASS * G / (4.0 * SOFT)).sum();
     setting(
@@ -130,7 +130,7 @@ fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
     .by(move |_| period(start().1?, of, exact))
 }
 
-/// Problem of a barrel that is released on the rim of its head, at half the angle of unstable equilibrium.
+/// Creates the problem of a barrel that is released on the rim of its head, at half the angle of unstable equilibrium.
 fn rocks(which: &'static str) -> Problem {
     // An almost sharp rim.
     let rounding = 1e-6;
@@ -179,7 +179,7 @@ fn rocks(which: &'static str) -> Problem {
     })
 }
 
-/// Problem of a tube in the groove between two others, in line contact.
+/// Creates the problem of a tube in the groove between two others, in line contact.
 fn groove() -> Problem {
     let (radius, aside) = (0.05, 0.06);
     let slope = asin(aside / (2.0 * radius));
@@ -219,7 +219,7 @@ fn groove() -> Problem {
     })
 }
 
-/// Problem of a tube that rolls down a slope, which must not depend on its azimuth.
+/// Creates the problem of a tube that rolls down a slope, which must not depend on its azimuth.
 fn rolls(degrees: f64) -> Problem {
     let (radius, half_length) = (0.1, 0.7);
     let slope = 5.0_f64.to_radians();

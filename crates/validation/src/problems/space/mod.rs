@@ -31,7 +31,7 @@ enum Role {
     Target,
 }
 
-/// Returns the problems in space.
+/// Returns the problems of all modules in space.
 pub(super) fn problems() -> Vec<Problem> {
     let theories = [
         free::problems(),

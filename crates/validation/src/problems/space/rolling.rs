@@ -94,7 +94,8 @@ fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     scene(vec![ground, ball], firm(stiffness, MASS), friction, gravity)
 }
 
-/// Problems of a stick that travels over the surface of the ball or stays on the floor; the forces must be equal.
+/// Creates the problems of a stick that travels over the surface of the ball or stays on the floor; the forces must be
+/// equal.
 fn carried(role: Role, friction: f64) -> [Problem; 3] {
     let (name, place) = match role {
         Role::Contactor => ("contactor", 10.784_628),
@@ -144,7 +145,7 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     ]
 }
 
-/// Problems of a ball that slips obliquely: it moves on a parabola, then along a straight line.
+/// Creates the problems of a ball that slips obliquely: it moves on a parabola, then along a straight line.
 fn side_spin() -> [Problem; 3] {
     let title = "ball thrown along x with spin (6, 4, 7) rad/s, μ = 0.2";
     let source = "slip keeps its direction; Coriolis 1835";
@@ -181,7 +182,7 @@ fn side_spin() -> [Problem; 3] {
     ]
 }
 
-/// Problems of a ball that bounces while it slides, so that friction is always μ times the normal force.
+/// Creates the problems of a ball that bounces while it slides, so that friction is always μ times the normal force.
 fn bounce() -> [Problem; 3] {
     let problem = |name: &'static str,
                    quantity: &'static str,

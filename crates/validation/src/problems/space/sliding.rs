@@ -190,7 +190,7 @@ fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3
     ]
 }
 
-/// Problems of a ring that slides and spins: each motion reduces the friction against the other.
+/// Creates the problems of a ring that slides and spins: each motion reduces the friction against the other.
 fn ring() -> [Problem; 3] {
     let title = "ring thrown at 1 m/s, spinning with a rim speed of 1.5 m/s, μ = 0.3";
     let source = "sliding ring: Farkas, Bartels, Unger and Wolf 2003";
@@ -236,7 +236,7 @@ impl Drive<Spatial> for Circling {
     }
 }
 
-/// Problems of steady slip on ground that moves in a circle.
+/// Creates the problems of steady slip on ground that moves in a circle.
 fn circling() -> [Problem; 2] {
     let problem = |name: &str, time: f64, place: (f64, f64)| {
         setting(
