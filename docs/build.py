@@ -36,7 +36,7 @@ def items(text: str) -> str:
 
 
 def inline(text: str) -> str:
-    """Converts references and literals of reStructuredText to Markdown; not for code blocks, whose fences look like literals."""
+    """Converts references and literals of reStructuredText to Markdown; not for code, whose fences look like literals."""
     text = re.sub(r":(?:meth|class|func|attr|mod):`([^`]+)`", r"`\1`", text)
     return re.sub(r"``([^`]+)``", r"`\1`", text)
 

@@ -3,7 +3,8 @@
     python3 validation/mujoco/compare.py "three levels, half the motion=cases/three" "four levels=cases/four"
 
 Results are kept next to the cases, and are not computed again; `--set step=0.00025` changes a setting.
-Computations are in the frame of the ground, where the acceleration of the ground is subtracted from gravity.  Lengths are in m, masses in kg, times in s.
+Computations are in the frame of the ground, where the acceleration of the ground is subtracted from gravity.
+Lengths are in m, masses in kg, times in s.
 """
 
 import argparse

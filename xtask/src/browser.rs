@@ -10,7 +10,7 @@ use crate::steps::{build_program, program, target};
 /// Script that checks report pages, in the repository.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 
-/// Script that films the demo for the README.
+/// Script that records the animation of the demo for the README.
 pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 
 /// File that the film is written to.

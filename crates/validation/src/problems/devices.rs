@@ -95,7 +95,7 @@ fn rolls_out(degrees: f64) -> Problem {
         format!("barrels between chocks at {degrees}° under a lasting push"),
         "statics: roll-out at a/g = tan φ",
     )
-    .quantity("push from which a barrel rolls out", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("least push that makes a barrel roll out", "g", relative(exact, 1e-2).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let run = pressed(&chocks(angle), amplitude)?;
         Ok(run.fates.collapse_time().is_some())
@@ -141,7 +141,7 @@ fn hill() -> Problem {
         "barrels between chocks at 40°, pushed for 0.05 s",
         "energy: m g r (1 − cos φ) over the end of a chock",
     )
-    .quantity("push from which a barrel rolls out", "g", relative(exact, 2e-2).fast(3e-2))
+    .quantity("least push that makes a barrel roll out", "g", relative(exact, 2e-2).fast(3e-2))
     .at_border(0.05, move |amplitude| {
         let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
         // Beyond the chock it falls onto the beam.

@@ -74,7 +74,7 @@ fn lid_breaks() -> Problem {
         "a barrel in a cradle of 28° under a lid that breaks at 1 kN",
         HELD,
     )
-    .quantity("push from which the barrel rolls out", "g", relative(exact, 5e-3).fast(2e-2))
+    .quantity("least push that makes the barrel roll out", "g", relative(exact, 5e-3).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let mut settings = lids();
         settings.push(format!("stack.lid.strength=\"{strength} N\""));

@@ -113,7 +113,7 @@ fn cradle(angle: f64) -> Problem {
         SOURCE,
     )
     // The disc sinks, so the points touch it a little higher; the effect vanishes with increasing stiffness.
-    .quantity("normal force of one", "N", relative(exact, 1e-4))
+    .quantity("normal force of one point", "N", relative(exact, 1e-4))
     .by(move |_| {
         let (radius, stiffness) = (0.35, 1e9);
         let barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
@@ -126,7 +126,7 @@ fn cradle(angle: f64) -> Problem {
         let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
         let there = mass * GRAVITY / (2.0 * cos(steeper));
         Ok(Outcome::of(found).noted(format!(
-            "of the force at the sunken place: {:.1e}",
+            "relative error for the geometry after sinking: {:.1e}",
             (found / there - 1.0).abs()
         )))
     })

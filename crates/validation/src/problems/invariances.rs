@@ -56,7 +56,7 @@ pub(super) fn problems() -> Vec<Problem> {
         invariance("mass-unit", "heap and contacts 1024 times as heavy", 0.0, mass_unit),
         invariance("galilean", "heap on ground that moves at 3 m/s", 1e-8, galilean),
         invariance("order", "heap with bodies and nodes in reverse order", 1e-10, order),
-        invariance("time-shift", "heap at rest ground, clock started at 64 s", 1e-9, time_shift),
+        invariance("time-shift", "heap on ground at rest, clock started at 64 s", 1e-9, time_shift),
         invariance("repeat", "the same heap run twice", 0.0, repeat),
         balance(),
         elastic_row(),
