@@ -1,4 +1,4 @@
-"""Builds the site: pages as they are, references from the code, notebooks with what they show; warnings are errors."""
+"""Builds the site from pages, references generated from the code, and executed notebooks; warnings are errors."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SECTION = re.compile(r"^(Parameters|Returns|Raises|Warns|Notes|Examples|Attribut
 
 
 def items(text: str) -> str:
-    """Entries of a section of numpydoc as a list."""
+    """Converts the entries of a numpydoc section to a list."""
     lines = []
     for line in text.splitlines():
         if line and not line.startswith(" "):
@@ -36,13 +36,13 @@ def items(text: str) -> str:
 
 
 def inline(text: str) -> str:
-    """References and literals of reStructuredText as Markdown; not for blocks of code, whose fences look like literals."""
+    """Converts references and literals of reStructuredText to Markdown; not for code, whose fences look like literals."""
     text = re.sub(r":(?:meth|class|func|attr|mod):`([^`]+)`", r"`\1`", text)
     return re.sub(r"``([^`]+)``", r"`\1`", text)
 
 
 def docstring(text: str) -> str:
-    """A docstring of numpydoc as Markdown."""
+    """Converts a numpydoc docstring to Markdown."""
     parts = SECTION.split(re.sub(r"^::\n", "", text, flags=re.MULTILINE))
     out = [inline(parts[0].strip())]
     for name, body in zip(parts[1::2], parts[2::2], strict=True):
@@ -57,7 +57,7 @@ def docstring(text: str) -> str:
 
 
 def signature(thing: Any) -> str:
-    """Names and defaults; types are in the stubs."""
+    """Returns the signature with names and defaults, without types, which are in the stubs."""
     parameters = []
     for parameter in inspect.signature(thing).parameters.values():
         if parameter.name not in ("self", "cls"):
@@ -66,7 +66,7 @@ def signature(thing: Any) -> str:
 
 
 def members(thing: Any) -> list[str]:
-    """Methods and properties of a class, in their order."""
+    """Returns the documentation of the methods and properties of a class, in their order."""
     found = []
     for name, value in vars(thing).items():
         if name.startswith("_"):
@@ -81,7 +81,7 @@ def members(thing: Any) -> list[str]:
 
 
 def fields(thing: Any) -> str:
-    """The fields of a named tuple with what the source says of each."""
+    """Returns the fields of a named tuple with their comments in the source."""
     if not hasattr(thing, "_fields"):
         return ""
     told, rows = [], []
@@ -98,7 +98,7 @@ def fields(thing: Any) -> str:
 
 
 def api() -> str:
-    """The reference of the package."""
+    """Returns the reference of the package."""
     text = ["# The package\n", docstring(inspect.getdoc(barrelstack) or "")]
     for name in barrelstack.__all__:
         thing = getattr(barrelstack, name)
@@ -112,19 +112,19 @@ def api() -> str:
 
 
 def summary() -> str:
-    """The keys of the summary of a run."""
+    """Returns the reference of the summary of a run."""
     rows = [f"| `{path}` | {unit} | {meaning} |" for path, unit, meaning in _native.fields()]
-    head = "# The summary of a run\n\nWhat `barrelstack run --json` prints and `Run.summary` holds.\n\n"
+    head = "# The summary of a run\n\nThe keys that `barrelstack run --json` prints and `Run.summary` contains.\n\n"
     return head + "| key | unit | meaning |\n|---|---|---|\n" + "\n".join(rows) + "\n"
 
 
 def code(text: str) -> str:
-    """Angle brackets of text that is no markup."""
+    """Escapes angle brackets of text that is not markup."""
     return re.sub(r"<(?=[a-z])", "&lt;", text)
 
 
 def notebook(path: Path, out: Path) -> None:
-    """A notebook, executed, as a page: its words, its code, and what its cells show."""
+    """Executes a notebook and writes it as a page: its text, its code, and the output of its cells."""
     book = nbformat.read(path, as_version=4)
     where = {"metadata": {"path": str(TARGET)}}
     nbclient.NotebookClient(book, timeout=600, kernel_name="python3", resources=where).execute()
@@ -140,7 +140,7 @@ def notebook(path: Path, out: Path) -> None:
             if "image/png" in data:
                 picture = f"{path.stem}-{number}-{at}.png"
                 (out / picture).write_bytes(base64.b64decode(data["image/png"]))
-                text.append(f"![What the cell draws]({picture})")
+                text.append(f"![Figure of this cell]({picture})")
             elif "text" in output or "text/plain" in data:
                 told = output.get("text", data.get("text/plain", ""))
                 text.append(f"```text\n{told.rstrip()}\n```")
@@ -148,8 +148,8 @@ def notebook(path: Path, out: Path) -> None:
 
 
 def main() -> int:
-    """Gathers the pages and builds them."""
-    # Notebooks draw into their cells, whatever the tests draw into.
+    """Collects the pages and builds the site."""
+    # The tests may set another backend of matplotlib, but notebooks must draw into their cells.
     os.environ.pop("MPLBACKEND", None)
     source = TARGET / "source"
     shutil.rmtree(source, ignore_errors=True)

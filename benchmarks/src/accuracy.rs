@@ -1,4 +1,4 @@
-//! Work and precision: how far from the converged motion each method and step is, and what it costs.
+//! Error against the converged motion, and cost, of each integration method at several time steps.
 
 use std::ops::ControlFlow;
 
@@ -7,20 +7,21 @@ use barrelstack_dynamics::{Method, Planar, Scratch, Simulation, State, look, sim
 use crate::scene::Scene;
 use crate::{Failure, time};
 
-/// A step (s) so short that a shorter one changes nothing that is printed.
+/// Time step (s) of the reference run; a shorter one changes no printed digit.
 const CONVERGED: f64 = 0.015_625e-3;
 
 /// Drop (m) at which a barrel counts as fallen.
 const DROP: f64 = 0.2;
 
-/// Times (s) at which trajectories are compared.
+/// Interval (s) between the times at which trajectories are compared.
 const SAMPLE: f64 = 4e-3;
 
-/// What is asked of a step: error of the motion before the fall, and of the time of the fall (s).
+/// Largest error of a step that counts as precise enough: of the displacements before the fall, relative, and
+/// of the time of the fall (s).
 const MOST_ERROR: f64 = 0.01;
 const MOST_DELAY: f64 = 0.010;
 
-/// Prints the table and gives the longest step (s) of the default method that is precise enough.
+/// Prints the table and returns the longest step (s) of the default method that is precise enough.
 pub(crate) fn work_and_precision(scene: &Scene) -> Result<f64, Failure> {
     let exact = watched(scene, Method::VelocityVerlet, CONVERGED)?;
     let fall = exact.fall.ok_or("nothing falls in the converged run")?;
@@ -31,7 +32,7 @@ pub(crate) fn work_and_precision(scene: &Scene) -> Result<f64, Failure> {
     );
     println!("  the first barrel falls after {fall:.4} s");
     println!("  method                 step     largest error of any barrel   fall    × real time");
-    println!("                         ms       before the fall, % of its way  ms later  one run");
+    println!("                         ms       before the fall, % of its path ms later  one run");
     let mut chosen = CONVERGED;
     let methods = [Method::VelocityVerlet, Method::SemiImplicitEuler, Method::RungeKutta4];
     for method in methods {
@@ -69,21 +70,21 @@ fn cost(scene: &Scene, method: Method, step: f64, end_time: f64) -> f64 {
         let (mut state, mut scratch) = (scene.rest.clone(), Scratch::new(&scene.model));
         let ground = Scene::ground(1.0);
         let ended = simulate(&scene.model, &ground, &mut state, &mut scratch, &simulation, &mut ());
-        assert!(ended.is_ok(), "the run breaks down");
+        assert!(ended.is_ok(), "the run fails");
     })
 }
 
-/// Where the bodies were, and when the first one fell.
+/// The trajectories of a run, and the time at which the first body fell.
 struct Seen {
     /// Heights (m) at rest.
     rest: Vec<f64>,
-    /// Displacements (m) of all bodies along x against the ground at every sample.
+    /// Displacements (m) of all bodies along `x` relative to the ground, sample by sample.
     ways: Vec<Vec<f64>>,
     fall: Option<f64>,
 }
 
 impl Seen {
-    /// The largest difference of any body before a time (s), as a share of the largest way of that body.
+    /// Returns the largest error of any body before a time (s), relative to the largest displacement of that body.
     fn error_against(&self, exact: &Self, until: f64) -> f64 {
         let samples = (until / SAMPLE) as usize;
         let bodies = exact.rest.len();
@@ -103,7 +104,7 @@ fn watched(scene: &Scene, method: Method, step: f64) -> Result<Seen, Failure> {
     let rest: Vec<f64> = state.poses.iter().map(|pose| pose.position.z).collect();
     let (mut ways, mut fall) = (Vec::new(), None);
     let mut observer = look(|state: &State<Planar>, _, _| {
-        // Samples fall on steps: all steps compared divide the sampling time.
+        // Every sample falls on a step, since all time steps divide the sampling interval.
         if state.time > (ways.len() as f64 - 1e-6) * SAMPLE {
             let ground = state.poses[0].position.x;
             ways.push(state.poses.iter().map(|pose| pose.position.x - ground).collect());

@@ -1,4 +1,4 @@
-//! How much arithmetic a step takes, how much of the machine's peak that is, and what lanes hold.
+//! Arithmetic operations of a step, the share of the machine's peak that they reach, and the memory of the lanes.
 
 use barrelstack_dynamics::lanes::{Case, Batch, End, Task, Width, run_batch};
 use barrelstack_dynamics::real::Real;
@@ -9,7 +9,7 @@ use barrelstack_validation::drive::Shake;
 use crate::scene::Scene;
 use crate::{memory, time};
 
-/// Prints the operations of a step, and the share of the machine's peak that lanes reach.
+/// Prints the operations of a step and, for every width of the lanes, the share of the machine's peak.
 pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
     let end_time = 1.0;
     let Work { steps, touching, operations } = Work::of(method, case(scene, step, end_time));
@@ -23,16 +23,16 @@ pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
     println!("  comparisons, choices, signs    {choices:10.0}");
     let clock = time::clock();
     println!(
-        "  peak: independent additions and multiplications in registers; a core with two vector ports begins \
-         two a cycle, at {:.2} GHz",
+        "  peak: independent additions and multiplications in registers; a core with two vector ports starts \
+         two per cycle, at {:.2} GHz",
         1e-9 * clock
     );
     println!(
-        "  lanes     peak, 10⁹/s   numbers a cycle of those possible   a step reaches   KB held   instructions \
-         a step of a case"
+        "  lanes     peak, 10⁹/s   numbers per cycle, of possible      a step reaches   KB held   instructions \
+         per step and case"
     );
     for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
-        // Bundles of AVX2 are two registers each, of which there are sixteen.
+        // With AVX2 a bundle takes two of the sixteen registers, so six sums fit beside the two constants.
         let (peak, ports) = match width {
             Width::Scalar => (width.run(Peak::<12>), 2.0),
             Width::Avx2 => (width.run(Peak::<6>), 8.0),
@@ -47,7 +47,7 @@ pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
         let instructions = time::instructions(|| {
             marched();
         });
-        let instructions = instructions.map_or("not told".to_owned(), |count| {
+        let instructions = instructions.map_or("not counted".to_owned(), |count| {
             format!("{:.0}", count as f64 / (steps * MANY as f64))
         });
         let reached = plain * steps * MANY as f64 / spent;
@@ -61,11 +61,11 @@ pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
         );
     }
     if time::instructions(|| {}).is_none() {
-        println!("  (this machine, or its system, does not let programs count instructions)");
+        println!("  (this machine or its operating system does not let programs count instructions)");
     }
 }
 
-/// Additions and multiplications a second of so many independent numbers in registers.
+/// Measures the additions and multiplications per second of `COUNT` independent bundles in registers.
 struct Peak<const COUNT: usize>;
 
 impl<const COUNT: usize> Task for Peak<COUNT> {
@@ -84,7 +84,7 @@ impl<const COUNT: usize> Task for Peak<COUNT> {
                             *sum = *sum * factor + step;
                         }
                     }
-                    // Their sum alone leaves the registers: an array that did would be stored every round.
+                    // Only the total is passed to `black_box`: an array would be stored to memory in every round.
                     let mut all = R::zero();
                     for sum in sums {
                         all += sum;
@@ -97,7 +97,7 @@ impl<const COUNT: usize> Task for Peak<COUNT> {
     }
 }
 
-/// Cases in lanes when the peak is compared.
+/// Number of cases that run in lanes.
 const MANY: usize = 64;
 
 struct Many<'a> {
@@ -107,7 +107,7 @@ struct Many<'a> {
 }
 
 impl Task for Many<'_> {
-    /// Bytes that all lanes hold together.
+    /// Bytes in use by all lanes together.
     type Output = usize;
 
     fn run<R: Real>(self) -> usize {

@@ -1,4 +1,4 @@
-//! What a run costs against the size of what runs: it must grow with the contacts, and no faster.
+//! Cost of a run against the number of bodies: it must not grow faster than the number of contacts.
 
 use std::fmt::Write as _;
 
@@ -6,10 +6,10 @@ use barrelstack::Scenario;
 
 use crate::{Failure, time};
 
-/// Nothing has fallen then (s).
+/// Simulated time (s), in which nothing falls.
 const UNTIL: f64 = 0.25;
 
-/// A family of scenes by the number that grows.
+/// A family of scenes of increasing size.
 struct Family {
     name: &'static str,
     sizes: &'static [usize],
@@ -33,19 +33,19 @@ const FAMILIES: [Family; 4] = [
 
 const BODIES: &[usize] = &[10, 50, 200, 500, 1000, 2000, 5000];
 
-/// Prints set-up and cost a contact of all families, and how far the largest is from the least.
+/// Prints, for every family, the set-up time, the cost per contact element, and the ratio of largest to least.
 pub(crate) fn with_size() -> Result<(), Failure> {
     println!(
-        "runs against their size, alone: from text to the first step, and for each contact element tested"
+        "single runs against their size: set-up (from text to the first step), and cost per contact element tested"
     );
     for Family { name, sizes, scenario } in FAMILIES {
-        println!("  {name:24}  bodies  elements   set-up ms   µs a body and log₂   ns an element");
+        println!("  {name:24}  bodies  elements   set-up ms   µs / (n log₂ n)    ns per element");
         let (mut costs, mut shares) = (Vec::new(), Vec::new());
         for size in sizes {
             let long = scenario(*size, UNTIL)?.run()?;
             let elements = long.work.contact_evaluations as f64;
             let count = (long.assembly.parts.len() - 1) as f64;
-            // The first step is part of the set-up.
+            // A run of one step measures the set-up, so the first step counts as part of it.
             let set_up = time::least_of(2, || {
                 let brief = scenario(*size, 1e-4).map(|brief| brief.run());
                 assert!(brief.is_ok_and(|run| run.is_ok()), "it runs");
@@ -66,7 +66,7 @@ pub(crate) fn with_size() -> Result<(), Failure> {
             shares.push(share);
         }
         println!(
-            "  largest over least: {:.2} of an element, {:.2} of the set-up",
+            "  largest over least: {:.2} per element, {:.2} for the set-up",
             spread(&costs),
             spread(&shares)
         );
@@ -93,7 +93,7 @@ fn row(count: usize, until: f64) -> Result<Scenario, Failure> {
     free((0..count).map(|at| (0.5 * at as f64, 0.2)), shape, "corners", until)
 }
 
-/// Hexagonal, about as high as it is wide.
+/// Builds a heap of discs in a hexagonal packing, about as high as it is wide.
 fn heap(count: usize, until: f64) -> Result<Scenario, Failure> {
     let across = (count as f64).sqrt().ceil() as usize;
     let place = |at: usize| {
@@ -104,7 +104,7 @@ fn heap(count: usize, until: f64) -> Result<Scenario, Failure> {
     free((0..count).map(place), "{ type = \"circle\", radius = \"0.2 m\" }", "rolling", until)
 }
 
-/// Bodies of one shape at places (m) of their centers.
+/// Builds a free scene of equal bodies with their centers at given places (m).
 fn free(
     places: impl Iterator<Item = (f64, f64)>,
     shape: &str,

@@ -1,23 +1,24 @@
-//! The work of a few runs beside that of the last release, so that a slower commit shows on any machine.
+//! Counts of work of a few runs, compared with those of the last release.
 //!
-//! Cases and counts are those of the suites that hold them: `crates/barrelstack/tests/golden` for whole runs,
+//! Counts do not depend on the machine, so a commit that adds work shows on any of them.
+//! Cases and counts are taken from two test suites: `crates/barrelstack/tests/golden` for whole runs, and
 //! `crates/validation/tests/arithmetic.rs` for single steps.
 
 #[path = "../../crates/validation/tests/arithmetic.rs"]
-#[allow(dead_code, reason = "its test is run where it stands")]
+#[allow(dead_code, reason = "its test runs in its own crate")]
 mod arithmetic;
 #[path = "../../crates/barrelstack/tests/golden/mod.rs"]
-#[allow(dead_code, reason = "what compares bits is used where it stands")]
+#[allow(dead_code, reason = "the comparison of bits is used in its own crate")]
 mod golden;
 
 use std::path::Path;
 
 use crate::{Failure, time};
 
-/// Where the counts are kept.
+/// File that keeps the counts of every release.
 const FILE: &str = "history.csv";
 
-/// What a row says.
+/// Header line of that file.
 const HEAD: &str = "version,case,count,value";
 
 /// One count of one case.
@@ -27,8 +28,9 @@ struct Count {
     value: u64,
 }
 
-/// Prints the counts of now beside the last that are kept, and which of them differ; `keep` writes them down under
-/// the version of now.
+/// Prints the present counts beside the last ones on file, and how many differ.
+///
+/// With `keep` the present counts are written to the file under the present version.
 pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(FILE);
     let kept = std::fs::read_to_string(&path).unwrap_or_else(|_| format!("{HEAD}\n"));
@@ -51,9 +53,9 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
         let last = last.map_or("none".to_owned(), |last| last.to_string());
         println!("{case:30} {count:22} {value:14} {last:>14}  {change:>8}  {since}");
     }
-    println!("{changed} of {} counts differ from the last that are kept", now.len());
+    println!("{changed} of {} counts differ from the last ones on file", now.len());
     if now.iter().all(|count| count.count != "instructions") {
-        println!("(this machine, or its system, does not let programs count instructions)");
+        println!("(this machine or its operating system does not let programs count instructions)");
     }
     if keep {
         let others = rows.iter().filter(|row| row[0] != version).map(|row| row.join(","));
@@ -63,12 +65,12 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
         let lines: Vec<String> =
             std::iter::once(HEAD.to_owned()).chain(others).chain(own).collect();
         std::fs::write(&path, lines.join("\n") + "\n")?;
-        println!("kept in {} as those of version {version}", path.display());
+        println!("written to {} as the counts of version {version}", path.display());
     }
     Ok(())
 }
 
-/// The version of the workspace, which this program is no part of.
+/// Returns the version of the workspace, read from its manifest since this program is not a member.
 fn release() -> Result<String, Failure> {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml");
     let text = std::fs::read_to_string(&manifest)?;
@@ -84,7 +86,7 @@ fn counts() -> Vec<Count> {
     };
     for line in golden::Table::now().lines {
         add(&line.name, "steps", line.work.steps);
-        // Lanes do not count what they test.
+        // Runs in lanes do not count their evaluations.
         if line.work.evaluations > 0 {
             add(&line.name, "evaluations", line.work.evaluations);
             add(&line.name, "contact evaluations", line.work.contact_evaluations);

@@ -1,4 +1,4 @@
-//! Many cases in lanes, against their width.
+//! Cost of many cases in lanes, against the width of the lanes.
 
 use barrelstack_dynamics::lanes::{Case, Batch, End, Task, Width, run_batch};
 use barrelstack_dynamics::real::Real;
@@ -8,13 +8,13 @@ use barrelstack_validation::drive::Shake;
 use crate::scene::Scene;
 use crate::time;
 
-/// Cases of a batch; more than any bundle has lanes.
+/// Number of cases in the batch, more than any bundle has lanes.
 const CASES: usize = 64;
 
-/// Until then (s) the stack stands.
+/// Simulated time (s), during which the stack stands.
 const STANDING: f64 = 1.2;
 
-/// What the widest lanes take for a simulated second of a case (s).
+/// Returns the processor time (s) per simulated second of a case in the widest lanes.
 pub(crate) fn of_widest(scene: &Scene, step: f64) -> f64 {
     let run = || Width::widest().run(InLanes { scene, step });
     time::least(|| {
@@ -22,13 +22,13 @@ pub(crate) fn of_widest(scene: &Scene, step: f64) -> f64 {
     }) / (CASES as f64 * STANDING)
 }
 
-/// Prints the cost against the width.
+/// Prints the cost for every width of the lanes.
 pub(crate) fn against_width(scene: &Scene, step: f64) {
     println!(
         "lanes: {CASES} such stacks with amplitudes from 0.8 to 1.2, before they fall, steps of {} ms",
         1e3 * step
     );
-    println!("  lanes     × real time   µs a step of a case   against scalar");
+    println!("  lanes     × real time   µs per step and case   against scalar");
     let simulated = CASES as f64 * STANDING;
     let mut scalar = None;
     for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
@@ -46,7 +46,7 @@ pub(crate) fn against_width(scene: &Scene, step: f64) {
     }
 }
 
-/// Cases that differ in the amplitude of the ground.
+/// Runs cases that differ in the amplitude of the ground motion.
 struct InLanes<'a> {
     scene: &'a Scene,
     step: f64,
@@ -93,7 +93,7 @@ impl<'a, R: Real> Batch<'a, R> for Cases<'a> {
     }
 
     fn end(&mut self, _: usize, end: End) {
-        assert!(end.finish.is_ok(), "a case breaks down");
+        assert!(end.finish.is_ok(), "a case fails");
         self.ended += 1;
     }
 }

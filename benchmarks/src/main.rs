@@ -1,17 +1,16 @@
-//! How fast stacks are computed: one run, many in lanes, and a game engine on the same scenes.
+//! Benchmarks: one run, many runs in lanes, and a game engine on the same scenes.
 //!
 //! ```sh
-//! cargo xtask bench                     # all of it; the last table says what was promised and what is
-//! cargo xtask bench --cases 10000       # the study of that many cases in full, which takes minutes
-//! cargo xtask bench table               # the last table alone
-//! cargo xtask bench growth              # cost against size alone
-//! cargo xtask bench history             # the work of some runs beside that of the last release
-//! cargo xtask bench history keep        # writes it down in benchmarks/history.csv
+//! cargo xtask bench                     # all benchmarks; the last table compares targets with measurements
+//! cargo xtask bench --cases 10000       # runs all 10,000 cases of the study, which takes minutes
+//! cargo xtask bench table               # only the last table
+//! cargo xtask bench growth              # only the cost against the size
+//! cargo xtask bench history             # counts of work of some runs, compared with the last release
+//! cargo xtask bench history keep        # writes these counts to benchmarks/history.csv
 //! ```
 //!
-//! All figures are of one process, so that their ratios hold on a machine that others use, too;
-//! times are those the processor spent on it where the system tells them, and of one core where
-//! nothing else is said.
+//! One process measures all figures, so their ratios hold on a busy machine, too. Times are processor
+//! times where the operating system reports them, and of one core unless a table states otherwise.
 
 mod accuracy;
 mod count;
@@ -29,7 +28,7 @@ use barrelstack_dynamics::Method;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Cases of the study of ten thousand that are run where nothing else is said.
+/// Number of cases of the study of ten thousand that are run by default.
 const CASES: usize = 128;
 
 fn main() -> Result<(), Failure> {
@@ -43,7 +42,7 @@ fn main() -> Result<(), Failure> {
         ["history"] => history::compare(false),
         ["history", "keep"] => history::compare(true),
         other => Err(format!(
-            "cargo xtask bench: there is no `{}`; expected nothing, `--cases NUMBER`, `table`, `growth`, \
+            "cargo xtask bench: unknown argument `{}`; expected nothing, `--cases NUMBER`, `table`, `growth`, \
              `history` or `history keep`",
             other.join(" ")
         )

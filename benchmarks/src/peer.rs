@@ -1,26 +1,26 @@
-//! The same bodies in Rapier, in single and in double precision.
+//! The same scenes in the game engine Rapier, in single and in double precision.
 
 use barrelstack_dynamics::{Model, Nodes, Planar, Shape, State, Vec2};
 
 use crate::time;
 
-/// Step (s) of a game at 240 Hz, the coarsest with which stacks stand in it.
+/// Time step (s) of a game at 240 Hz, the longest with which stacks stand in Rapier.
 pub(crate) const COARSE: f64 = 1.0 / 240.0;
 
 /// Simulated time (s).
 const END: f64 = 1.2;
 
-/// Bodies at rest on ground that moves.
+/// A scene for Rapier: bodies at rest on moving ground.
 pub(crate) struct Stage<'a> {
     pub(crate) model: &'a Model<Planar>,
     pub(crate) rest: &'a State<Planar>,
-    /// Place (m) of the ground along x at a time (s).
+    /// Displacement (m) of the ground along `x` at a time (s).
     pub(crate) ground: &'a dyn Fn(f64) -> f64,
-    /// Friction on the ground, and between bodies.
+    /// Friction coefficients: on the ground, and between bodies.
     pub(crate) friction: [f64; 2],
 }
 
-/// What the peer takes for a simulated second (s), in 32 and in 64 bits.
+/// Returns the processor time (s) of Rapier per simulated second, in 32 and in 64 bits.
 pub(crate) fn costs(stage: &Stage<'_>, step: f64) -> [f64; 2] {
     [
         time::least(|| single::shake(stage, step)) / END,
@@ -28,13 +28,13 @@ pub(crate) fn costs(stage: &Stage<'_>, step: f64) -> [f64; 2] {
     ]
 }
 
-/// What of a body the peer collides: circles, convex polygons by their corners, and nodes as small balls.
+/// A collider of Rapier: a ball by center and radius, or a convex polygon by its corners.
 enum Piece {
     Ball(Vec2, f64),
     Hull(Vec<Vec2>),
 }
 
-/// Radius (m) of the ball that stands for a node.
+/// Radius (m) of the ball that represents a node.
 const NODE: f64 = 0.005;
 
 fn pieces(model: &Model<Planar>, body: usize) -> Vec<Piece> {
@@ -50,7 +50,7 @@ fn pieces(model: &Model<Planar>, body: usize) -> Vec<Piece> {
         }
     };
     let mut pieces: Vec<Piece> = body.surfaces.iter().map(of_surface).collect();
-    // Where a scene has supports and nothing solid around them, its first nodes are those.
+    // A body without other solid parts rests on its first set of nodes.
     if let (1, Some(Nodes::Fixed(nodes))) = (body.surfaces.len(), body.nodes.first()) {
         pieces.extend(nodes.iter().map(|node| Piece::Ball(node.position, NODE)));
     }

@@ -1,4 +1,4 @@
-//! The scene of the comparison: eight barrels on four levels under a sine of the ground.
+//! The scene of the comparison: eight barrels on four levels under a sinusoidal ground motion.
 
 use std::f64::consts::TAU;
 
@@ -12,14 +12,14 @@ use crate::Failure;
 pub(crate) const AMPLITUDE: f64 = 0.1016;
 pub(crate) const PERIOD: f64 = 1.0748;
 
-/// A stack at rest, and what shakes it.
+/// A stack at rest.
 pub(crate) struct Scene {
     pub(crate) model: Model<Planar>,
     pub(crate) rest: State<Planar>,
 }
 
 impl Scene {
-    /// The scene that five independent codes agree on, with cradle supports at ± an angle (degrees).
+    /// Returns the scene on which five independent codes agree, with cradle supports at ± an angle (degrees).
     pub(crate) fn consensus(degrees: f64) -> Result<Self, Failure> {
         let model = consensus::eight_barrels(degrees)?;
         let mut rest = State::initial(&model);
@@ -27,7 +27,7 @@ impl Scene {
         Ok(Self { model, rest })
     }
 
-    /// The ground, its amplitude multiplied by a factor.
+    /// Returns the ground motion with its amplitude multiplied by a factor.
     pub(crate) fn ground(factor: f64) -> Shake {
         Shake::Swing { amplitude: factor * AMPLITUDE, omega: TAU / PERIOD }
     }

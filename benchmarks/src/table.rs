@@ -1,4 +1,4 @@
-//! What was promised and what is: every row measured in one run with the peer.
+//! Targets of performance and present measurements, with the peer (Rapier) measured in the same run.
 
 use std::f64::consts::TAU;
 
@@ -9,16 +9,16 @@ use barrelstack_dynamics::{Scratch, State, settle};
 use crate::scene::{AMPLITUDE, PERIOD, Scene};
 use crate::{Failure, lanes, peer, user};
 
-/// The step (s) of the row of the library.
+/// Time step (s) of the row that measures the library.
 const STEP: f64 = 0.5e-3;
 
-/// Cases that the study of the table has.
+/// Number of cases in the study of the table.
 const MANY: f64 = 10_000.0;
 
-/// Simulated time (s) of each.
+/// Simulated time (s) of each case.
 const LENGTH: f64 = 20.0;
 
-/// Prints the table; `cases` are run of the study of ten thousand.
+/// Prints the table; only `cases` of the ten thousand cases of the study are run.
 pub(crate) fn print(cases: usize) -> Result<(), Failure> {
     let sine = |amplitude: f64| move |time: f64| amplitude * (TAU / PERIOD * time).sin();
     let scene = Scene::consensus(20.0)?;
@@ -32,7 +32,7 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
     };
     let [peers_single, peers_double] = peer::costs(&peers, peer::COARSE);
 
-    // What the user runs: the paper's stack, with its solid racks.
+    // The scene that a user runs: the paper's stack with its solid racks.
     let assembly = assemble(&Scenario::builtin("candia-8-barrels", &[])?)?;
     let mut rest = State::initial(&assembly.model);
     settle(&assembly.model, &mut rest, &mut Scratch::new(&assembly.model), 1e-9)?;
@@ -45,14 +45,14 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
     let half = user::study(user::HALF)?;
     let settling = user::settling()?;
     let (cores, clock) = user::on_all_cores(cases)?;
-    // The demo looks at both planes; alone runs the one in which it falls.
+    // The demo runs in both planes; here only in the one in which it falls.
     let along = ["stack.view=longitudinal".to_owned()];
     let (eight, demo) = (user::single("candia-8-barrels", &[])?, user::single("demo-napa", &along)?);
     let all = clock * MANY / cases as f64;
 
     let (peers, users) = (peers_single.min(peers_double), users_single.min(users_double));
     println!(
-        "Rapier in steps of {:.1} ms, ms a simulated second on one core: the peers' scene {:.2} (32-bit), {:.2} \
+        "Rapier in steps of {:.1} ms, ms per simulated second on one core: the peers' scene {:.2} (32-bit), {:.2} \
          (64-bit); eight barrels on their racks {:.2}, {:.2}",
         1e3 * peer::COARSE,
         1e3 * peers_single,
@@ -61,12 +61,12 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
         1e3 * users_double
     );
     println!(
-        "the study under the larger motions: {:.0} % of the cases collapse; that of {MANY} cases: {cases} were run, on \
+        "study under the larger motions: {:.0} % of the cases collapse; study of {MANY} cases: {cases} were run, on \
          {cores} cores",
         100.0 * half.collapsed
     );
     println!();
-    let ms = |seconds: f64| format!("{:.2} ms a simulated s", 1e3 * seconds);
+    let ms = |seconds: f64| format!("{:.2} ms per simulated s", 1e3 * seconds);
     let ratio = |peer: f64, ours: f64| format!("{:.2}", peer / ours);
     let rows = [
         ("lanes through the library, peers' scene, 0.5 ms", ms(lanes), "0.4", ratio(peers, lanes)),
@@ -84,9 +84,9 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
         ),
         (
             "study, cases that differ in friction: building and settling",
-            format!("{:.2} ms a case", 1e3 * settling),
+            format!("{:.2} ms per case", 1e3 * settling),
             "0.5",
-            // The peer has no equilibrium to start from.
+            // Rapier computes no equilibrium to start from.
             "-".to_owned(),
         ),
         (
@@ -103,13 +103,13 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
         ),
         ("single run, demo", format!("{demo:.0} × real time"), "250", ratio(users, 1.0 / demo)),
         (
-            "cheapest peer's coarse step ÷ ours, for the user",
+            "cheapest run of the peer ÷ our costlier study",
             ratio(users, standing.second.max(half.second)),
             "3",
             "-".to_owned(),
         ),
     ];
-    println!("  {:60} {:>24} {:>12} {:>13}", "what", "now", "to reach", "peer ÷ ours");
+    println!("  {:60} {:>24} {:>12} {:>13}", "quantity", "measured", "target", "peer ÷ ours");
     for (what, now, reach, ratio) in rows {
         println!("  {what:60} {now:>24} {reach:>12} {ratio:>13}");
     }

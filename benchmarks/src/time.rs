@@ -1,26 +1,26 @@
-//! Processor time, which other users of the machine do not spoil.
+//! Measurement of processor time, which other programs on the machine hardly affect.
 
 use std::time::Instant;
 
-/// How often a figure is measured; the least is printed, since nothing makes a program faster.
+/// Number of measurements of a figure; the least is printed, since disturbances only add time.
 const REPEATS: usize = 5;
 
-/// Time (s) that this process has computed; the clock's where the system does not say.
+/// Returns the processor time (s) used so far, or the wall time since `start` if the system does not report it.
 fn spent(start: Instant) -> f64 {
     let told = std::fs::read_to_string("/proc/self/schedstat").ok();
     let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
     nanoseconds.map_or_else(|| start.elapsed().as_secs_f64(), |ns| 1e-9 * ns)
 }
 
-/// The system tells processor time in steps of a few milliseconds: work is repeated until this (s).
+/// Shortest measurement (s): the system updates processor time only every few milliseconds, so work is repeated.
 const LONG: f64 = 0.1;
 
-/// The least processor time (s) of some work on this thread.
+/// Returns the least processor time (s) of `work` on this thread, of [`REPEATS`] measurements.
 pub(crate) fn least(work: impl FnMut()) -> f64 {
     least_of(REPEATS, work)
 }
 
-/// The same of so many measurements.
+/// Returns the least processor time (s) of `work` on this thread, of a given number of measurements.
 pub(crate) fn least_of(repeats: usize, mut work: impl FnMut()) -> f64 {
     let start = Instant::now();
     let mut least = f64::INFINITY;
@@ -36,7 +36,7 @@ pub(crate) fn least_of(repeats: usize, mut work: impl FnMut()) -> f64 {
     least
 }
 
-/// The clock of this core now (cycles a second), by a chain of operations whose cycles are known.
+/// Returns the present clock rate of this core (cycles per second), from a chain of operations of known duration.
 pub(crate) fn clock() -> f64 {
     const ROUNDS: u64 = 20_000_000;
     let spent = least(|| {
@@ -47,12 +47,13 @@ pub(crate) fn clock() -> f64 {
         }
         std::hint::black_box(value);
     });
-    // A rotation takes a cycle, a multiplication three.
+    // A rotation takes one cycle, a multiplication three.
     4.0 * ROUNDS as f64 / spent
 }
 
-/// How many instructions some work takes on this thread; none, and nothing is done, where the system does not
-/// count them.
+/// Returns the number of instructions that `work` executes on this thread.
+///
+/// `None` if the system does not count instructions; `work` may then not have run.
 #[cfg(target_os = "linux")]
 pub(crate) fn instructions(work: impl FnOnce()) -> Option<u64> {
     use perf_event::Builder;
@@ -65,7 +66,7 @@ pub(crate) fn instructions(work: impl FnOnce()) -> Option<u64> {
     counter.read().ok().filter(|count| *count > 0)
 }
 
-/// Elsewhere nobody counts.
+/// Returns `None`: instructions are counted on Linux only.
 #[cfg(not(target_os = "linux"))]
 pub(crate) fn instructions(_: impl FnOnce()) -> Option<u64> {
     None

@@ -1,4 +1,4 @@
-//! What a user runs: studies of eight barrels, and single runs.
+//! Typical work of a user: studies of eight barrels, and single runs.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -12,26 +12,27 @@ use crate::{Failure, time};
 /// The stack of the paper.
 const STACK: &str = "candia-8-barrels";
 
-/// Cases of a study whose cost is taken: four bundles.
+/// Number of cases of a measured study: four bundles.
 const CASES: usize = 32;
 
-/// Simulated time (s) of each.
+/// Simulated time (s) of each case.
 const DURATION: f64 = 20.0;
 
-/// Its motions: amplitudes (m) of the paper's sine under which it stands, and under which half of the cases
-/// collapse.
+/// Ranges of the amplitude (m) of the paper's sine: the stack stands in the first, half of the cases collapse in
+/// the second.
 pub(crate) const STANDING: [f64; 2] = [0.01, 0.02];
 pub(crate) const HALF: [f64; 2] = [0.0165, 0.0265];
 
-/// What a study takes.
+/// Cost of a study.
 pub(crate) struct Cost {
-    /// For a simulated second (s).
+    /// Processor time (s) per simulated second of a case.
     pub(crate) second: f64,
     /// Share of the cases that collapsed.
     pub(crate) collapsed: f64,
 }
 
-/// A study of one stack under motions of amplitudes in a range (m), on one core, its fates and demands watched.
+/// Measures a study of one stack on one core, with its outcomes and demands, under motions whose amplitudes (m)
+/// span a range.
 pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
     let scenario = Arc::new(Scenario::builtin(STACK, &[format!("run.duration=\"{DURATION} s\"")])?);
     let case = |at: usize| {
@@ -49,14 +50,14 @@ pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
     Ok(Cost { second: spent / simulated.get(), collapsed: fallen.get() as f64 / CASES as f64 })
 }
 
-/// What it takes (s) to build and settle a case that differs from others in its friction.
+/// Returns the time (s) to build and settle a case that differs from the others in its friction.
 pub(crate) fn settling() -> Result<f64, Failure> {
     let cases = differing(CASES, 1e-3)?;
     Ok(time::least(|| drop(on_one_core(&cases))) / CASES as f64)
 }
 
-/// A study of so many cases that differ in their friction and stand, on all cores: how many those are, and the
-/// time on the clock (s).
+/// Runs a study of standing cases that differ in their friction on all cores; returns the number of cores and the
+/// wall time (s).
 pub(crate) fn on_all_cores(cases: usize) -> Result<(usize, f64), Failure> {
     let ensemble = Ensemble { cases: differing(cases, DURATION)?, ..Ensemble::default() };
     let start = Instant::now();
@@ -66,7 +67,7 @@ pub(crate) fn on_all_cores(cases: usize) -> Result<(usize, f64), Failure> {
     Ok((cores, start.elapsed().as_secs_f64()))
 }
 
-/// How many times faster than real time a built-in scenario runs alone, all that a run keeps kept.
+/// Returns how many times faster than real time a single run of a built-in scenario is, with all its recordings.
 pub(crate) fn single(name: &str, settings: &[String]) -> Result<f64, Failure> {
     let scenario = Scenario::builtin(name, settings)?;
     let run: Run = scenario.run()?;
@@ -78,7 +79,7 @@ fn on_one_core(cases: &[Prepared]) -> Vec<barrelstack::ensemble::CaseResult> {
     simulate(cases, &mut audience).unwrap_or_default()
 }
 
-/// Cases of a duration (s) that differ in two frictions, and stand.
+/// Returns cases of a duration (s) that differ in two friction coefficients and stand.
 fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
     let case = |at: usize| {
         let share = |turn: f64| (at as f64 * turn).fract();
@@ -94,7 +95,7 @@ fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
     (0..cases).map(case).collect()
 }
 
-/// The paper's motion with an amplitude (m), as long as the run.
+/// Returns the settings of the paper's motion with an amplitude (m), as long as the run.
 fn shaking(amplitude: f64) -> Vec<String> {
     vec![format!("motion.sine.amplitude=\"{amplitude} m\""), "motion.sine.cycles=20".to_owned()]
 }

@@ -1,11 +1,10 @@
-"""Runs the cases that `cargo run --example cases` wrote in MuJoCo, on the same geometry, and lays both verdicts beside
-each other.
+"""Runs the cases of `cargo run --example cases` in MuJoCo, with the same geometry, and compares the verdicts.
 
     python3 validation/mujoco/compare.py "three levels, half the motion=cases/three" "four levels=cases/four"
 
-What was run is kept beside the cases and not run again; `--set step=0.00025` and the like vary a setting.
-Everything is worked in the frame of the ground, where a ground that moves without turning is gravity less its
-acceleration.  Lengths are in m, masses in kg, times in s.
+Results are kept next to the cases, and are not computed again; `--set step=0.00025` changes a setting.
+Computations are in the frame of the ground, where the acceleration of the ground is subtracted from gravity.
+Lengths are in m, masses in kg, times in s.
 """
 
 import argparse
@@ -19,37 +18,37 @@ try:
     import mujoco
     import numpy as np
 except ImportError as missing:
-    raise SystemExit(f"{missing}; type `pip install mujoco==4.0.0 numpy`") from None
+    raise SystemExit(f"{missing}; run `pip install mujoco==4.0.0 numpy`") from None
 
 SETTINGS = {
     # Time step (s).
     "step": 5e-4,
-    # How much of a constraint is hard: MuJoCo's `d`, small for springs and dampers of stated constants.
+    # Impedance of constraints, MuJoCo's `d`; small values give springs and dampers of the stated constants.
     "impedance": 0.05,
-    # How much harder friction is than normals: sticking is a damper this many times that of the normal.
+    # Ratio of the impedances of friction and normal force: sticking friction is a stiff damper.
     "impratio": 1e5,
     "noslip": 0,
     "iterations": 100,
     "tolerance": 1e-10,
-    # Without motion before the record starts (s).
+    # Time without motion before the record starts (s).
     "settle": 1.0,
-    # Instead of the record nothing for this time (s), which tells what creeps; 0 for the record.
+    # Time without the record (s), to measure creep; 0 to run the record.
     "creep_time": 0.0,
-    # Vertices of a barrel around its axis, along its stave, and over the rounding of each chime.
+    # Numbers of vertices of a barrel: around its axis, along its stave, and over the rounding of each chime.
     "around": 180,
     "along": 61,
     "chime": 4,
-    # Damping of seats over what takes as much from a swing as that of ours.
+    # Damping of seats, relative to the value that dissipates as much in an oscillation as ours.
     "damping": 1.0,
 }
-# A fall onto another body that linear stands for the 3/2 power of impacts (m/s).
+# Impact speed (m/s) at which the linear spring is as deep as our law of power 3/2.
 IMPACT_SPEED = 2.0
-# Between two looks at what has left its seat (s).
+# Interval between two checks of lost seats (s).
 LOOK = 2e-3
 
 
 def barrel_profile(solid, along, over):
-    """Places along the axis and radii of the vertices of a barrel, from one head to the other."""
+    """Returns the axial positions and radii of the vertices of a barrel, from one head to the other."""
     half, head = solid["half_length"], solid["head_radius"]
     arc, offset, rounding = solid["stave_radius"], solid["stave_offset"], solid["rounding"]
     # The normal of the stave where the chime begins.
@@ -66,7 +65,7 @@ def barrel_profile(solid, along, over):
 
 
 def barrel_vertices(solid, settings):
-    """Vertices of a barrel about `x`, so far out that facets err as much outward as inward."""
+    """Returns the vertices of a barrel about `x`, placed so that facets err as much outward as inward."""
     x, r = barrel_profile(solid, settings["along"], settings["chime"])
     around = settings["around"]
     r = r / math.sqrt(math.cos(math.pi / around))
@@ -77,22 +76,22 @@ def barrel_vertices(solid, settings):
 
 
 def quaternion(matrix):
-    """The quaternion of a rotation."""
+    """Returns the quaternion of a rotation."""
     result = np.zeros(4)
     mujoco.mju_mat2Quat(result, np.asarray(matrix, dtype=float).ravel())
     return result
 
 
-# Turns the axis `z` of MuJoCo's capsules to our `x`.
+# Rotates the axis `z` of MuJoCo's capsules to our `x`.
 Z_TO_X = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 
 
 def spring_and_damper(law, mass, settings):
-    """Stiffness (N/m) and damping (N s/m) of a spring and a damper that act both ways, for a law of ours.
+    """Returns stiffness (N/m) and damping (N s/m) of a spring and a damper that represent one of our laws.
 
-    Our damper of seats acts on approach alone, so half of it in both directions takes as much from a swing.
-    An impact of ours is a spring of the power 3/2 with a restitution; here it is a linear one, as deep at
-    IMPACT_SPEED, with the damping of that restitution.
+    The damper acts in both directions. Our damper of seats acts on approach only, so half of it in both
+    directions dissipates as much in an oscillation. Our impact law is a spring of power 3/2 with a restitution;
+    here it is a linear spring that is as deep at IMPACT_SPEED, with the damping of that restitution.
     """
     if law["kind"] == "speed-gap":
         return law["stiffness"], settings["damping"] * 0.5 * law["damping"]
@@ -109,7 +108,7 @@ def spring_and_damper(law, mass, settings):
 
 
 def build(case, settings):
-    """The model of a case."""
+    """Builds the model of a case."""
     spec = mujoco.MjSpec()
     option = spec.option
     option.timestep = settings["step"]
@@ -122,7 +121,7 @@ def build(case, settings):
     option.tolerance = settings["tolerance"]
     option.ccd_tolerance = 1e-9
     option.ccd_iterations = 100
-    # One point for every contact, as ours; and what loses its numbers is not put back on its feet.
+    # One point per contact, as in our program; and MuJoCo must not reset a state that is not finite.
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MULTICCD | mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     option.noslip_iterations = settings["noslip"]
     bodies = case["bodies"]
@@ -161,10 +160,10 @@ def build(case, settings):
     d = settings["impedance"]
     for a, tube, b, surface, interface in case["pairs"]:
         law = case["interfaces"][interface]
-        # The inverse mass that MuJoCo sees at a contact of two free bodies; the ground has none.
+        # The inverse mass that MuJoCo uses at a contact of two free bodies; that of the ground is zero.
         inverse = sum(0.0 if bodies[i]["kind"] == "ground" else 1.0 / bodies[i]["mass"] for i in (a, b))
         stiffness, damping = spring_and_damper(law["normal"], 1.0 / inverse, settings)
-        # Sticking is a damper of `damping * inverse / d`, which a step must not carry beyond rest.
+        # Sticking friction is a damper of `damping * inverse / d`, which must be stable in a step.
         own = max(d, 2.0 * damping * inverse * settings["step"])
         scale = (1.0 - own) * inverse
         friction = law["friction"]
@@ -182,7 +181,7 @@ def build(case, settings):
 
 
 class Fates:
-    """What has left its seat, by the rules of `crates/space/src/fate.rs`."""
+    """Losses of seat and falls, by the rules of `crates/space/src/fate.rs`."""
 
     def __init__(self, case, places, turns):
         self.case, self.rest, self.upright = case, places.copy(), turns.copy()
@@ -192,12 +191,12 @@ class Fates:
         self.peak_displacement = 0.0
 
     def seen_from(self, frame, body, places, turns):
-        """How a body has moved in the frame of another."""
+        """Returns the displacement of a body in the frame of another."""
         arm = turns[frame].T @ (places[body] - places[frame])
         return self.upright[frame] @ arm - (self.rest[body] - self.rest[frame])
 
     def slips(self, i, places, turns):
-        """How far a body has moved on each of what it stands on."""
+        """Returns the displacements of a body on each of its supports."""
         body = self.bodies[i]
         if body["carrier"] is not None:
             return np.array([self.seen_from(body["carrier"], i, places, turns)])
@@ -206,11 +205,11 @@ class Fates:
         return np.array([-self.seen_from(i, b, places, turns) for b in body["supports"]])
 
     def up(self, i, turns):
-        """What was up in a body at rest."""
+        """Returns the direction in a body that pointed up at rest."""
         return turns[i] @ self.upright[i][2]
 
     def lost(self, i, places, turns):
-        """How a body has left its seat; none where it has not."""
+        """Returns how a body has left its seat; None if it has not."""
         body, limits = self.bodies[i], self.case["thresholds"]
         slips = self.slips(i, places, turns)
         mean = slips.mean(axis=0)
@@ -230,7 +229,7 @@ class Fates:
         return "dropped" if i in self.fell else None
 
     def observe(self, now, places, turns):
-        """Looks at a state."""
+        """Updates losses of seat and falls from a state."""
         moved = places - self.rest
         for i in range(1, len(self.bodies)):
             if -moved[i][2] > self.case["thresholds"]["fall_drop"]:
@@ -244,12 +243,12 @@ class Fates:
                     break
 
     def barrels_fallen(self):
-        """When the barrels fell that fell."""
+        """Returns the times at which barrels fell, in order."""
         return sorted(at for i, at in self.fell.items() if self.bodies[i]["kind"] == "barrel")
 
 
 def ground_acceleration(motion, step, end):
-    """The acceleration of the ground in every step, such that its velocity is met exactly at their ends."""
+    """Returns the ground acceleration in every step, such that the velocity is exact at the ends of steps."""
     velocity = np.array(motion["velocity"])
     known = motion["step"] * np.arange(len(velocity))
     times = step * np.arange(round(end / step) + 1)
@@ -258,7 +257,7 @@ def ground_acceleration(motion, step, end):
 
 
 def lost_numbers(data):
-    """Whether MuJoCo has said that a state is none."""
+    """Returns whether MuJoCo has reported a state that is not finite."""
     bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
     return any(data.warning[int(which)].number for which in bad)
 
@@ -323,7 +322,7 @@ def run_file(task):
 
 
 def results(folder, numbers, settings, processes):
-    """The cases of a folder and what became of them in MuJoCo; runs those that are missing."""
+    """Returns the cases of a folder with their results in MuJoCo; runs those that are missing."""
     changed = [f"{key}-{value:g}" for key, value in settings.items() if value != SETTINGS[key]]
     kept = folder / ("_".join(["mujoco", *changed]) + ".jsonl")
     done = {}
@@ -341,7 +340,7 @@ def results(folder, numbers, settings, processes):
 
 
 def wilson(count, of, z=1.959964):
-    """Wilson's interval of 95 % of a share."""
+    """Returns Wilson's 95 % interval of a share."""
     share = count / of
     middle = (share + z * z / (2 * of)) / (1 + z * z / of)
     half = z / (1 + z * z / of) * math.sqrt(share * (1 - share) / of + z * z / (4 * of * of))
@@ -349,14 +348,14 @@ def wilson(count, of, z=1.959964):
 
 
 def mcnemar(one, other):
-    """How likely (two-sided, exact) so uneven a split of the cases that differ is by chance."""
+    """Returns the probability (two-sided, exact) that cases that differ are split so unevenly by chance."""
     many = one + other
     tail = sum(math.comb(many, k) for k in range(min(one, other) + 1)) / 2.0**many
     return min(1.0, 2.0 * tail)
 
 
 def two_shares(one, other, of):
-    """How likely (two-sided) shares that lie so far apart are of one share, cases taken as independent."""
+    """Returns the probability (two-sided) that two shares differ so much by chance, for independent cases."""
     pooled = (one + other) / (2 * of)
     if pooled in (0.0, 1.0):
         return 1.0
@@ -365,23 +364,23 @@ def two_shares(one, other, of):
 
 
 def fell(one):
-    """Whether a case fell."""
+    """Returns whether a case fell."""
     return one["kind"] == "collapse"
 
 
 def told(many, of):
-    """A share with its interval."""
+    """Formats a share with its interval."""
     low, high = wilson(many, of)
     return f"{many} of {of}, {100 * many / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
 
 
 def middle(values, digits=1):
-    """The median, as it is printed."""
+    """Formats a median."""
     return f"{np.median(values):.{digits}f}" if len(values) else "-"
 
 
 def alone(of_one):
-    """What the cases of one engine say by themselves."""
+    """Summarizes the cases of one engine."""
     fallen = [one for one in of_one if fell(one)]
     firsts = [one["first"] for one in fallen]
     counts = sorted(((firsts.count(first), first) for first in set(firsts)), reverse=True)
@@ -394,14 +393,14 @@ def alone(of_one):
 
 
 def beside(pairs):
-    """What the cases of two engines say beside each other."""
+    """Prints a comparison of the cases of two engines."""
     both = [(a, b) for _, a, b in pairs if fell(a) and fell(b)]
     ours = [number for number, a, b in pairs if fell(a) and not fell(b)]
     theirs = [number for number, a, b in pairs if fell(b) and not fell(a)]
     many = len(both), len(ours), len(theirs), len(pairs) - len(both) - len(ours) - len(theirs)
-    print(f"    both {many[0]}, ours alone {many[1]} {ours}, MuJoCo alone {many[2]} {theirs}, neither {many[3]}")
+    print(f"    both {many[0]}, only ours {many[1]} {ours}, only MuJoCo {many[2]} {theirs}, neither {many[3]}")
     shares = two_shares(many[0] + many[1], many[0] + many[2], len(pairs))
-    print(f"    chance of so uneven a split (McNemar) {mcnemar(many[1], many[2]):.2g}; of such shares {shares:.2g}")
+    print(f"    probability of such a split by chance (McNemar) {mcnemar(many[1], many[2]):.2g}, of such shares {shares:.2g}")
     if both:
         apart = np.array([b["time"] - a["time"] for a, b in both])
         same = sum(a["first"] == b["first"] for a, b in both)
@@ -414,7 +413,7 @@ def beside(pairs):
 
 
 def report(name, found):
-    """Prints what the cases of a stack say."""
+    """Prints the results of the cases of a stack."""
     print(name)
     print(f"  MuJoCo: {alone([theirs for _, _, theirs in found])}")
     for title, key in (("as stated", "outcome"), ("with seats as in MuJoCo", "alike")):
@@ -431,7 +430,7 @@ def report(name, found):
 
 
 def main():
-    """Runs the cases of every folder and prints what they say."""
+    """Runs the cases of every folder and prints the results."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("stacks", nargs="+", help="a name and a folder of cases, as `name=folder`")
     parser.add_argument("--set", action="append", default=[], help="a setting, as `step=0.00025`")

@@ -1,4 +1,4 @@
-//! The checks of pages in a browser: what they need, and how they are run.
+//! Checks of pages in a browser: their scripts, their requirements, and the commands that run them.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -7,46 +7,47 @@ use anyhow::Context as _;
 
 use crate::steps::{build_program, program, target};
 
-/// Where the checks of report pages stand in the repository.
+/// Script that checks report pages, in the repository.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 
-/// Script that films the demo for the README.
+/// Script that records the animation of the demo for the README.
 pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 
-/// The film.
+/// File that the film is written to.
 const FILMED: &str = "docs/pictures/demo.gif";
 
-/// Where those of the engine in a page stand.
+/// Script that checks the page of the engine, in the repository.
 pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
 
-/// Where their modules are.
+/// Folder of the Node.js modules that the checks use.
 const MODULES: &str = "crates/report/tests/browser";
 
-/// Command that installs the modules of the checks, typed in the root of the repository.
+/// Command that installs these modules, to be run in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
 
-/// Names under which systems install a browser that can be driven.
+/// Program names of the browsers that a script can control.
 const BROWSERS: [&str; 4] =
     ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Checks that open pages in a browser.
+/// A script that opens pages in a browser.
 pub(crate) struct Check {
     root: PathBuf,
     script: &'static str,
 }
 
-/// The checks, where the repository has them.
+/// Returns the check with this script; `None` if the repository does not contain the script.
 pub(crate) fn find(root: &Path, script: &'static str) -> Option<Check> {
     root.join(script).is_file().then(|| Check { root: root.to_path_buf(), script })
 }
 
 impl Check {
-    /// The command, with the path of the browser in the variable `CHROMIUM` and that of the
-    /// program that makes the pages in `BARRELSTACK`; or why it cannot be run here.
+    /// Returns the command, or the reason why it cannot be run here.
+    ///
+    /// The variable `CHROMIUM` has the path of the browser, and `BARRELSTACK` that of the program that writes
+    /// the pages.
     pub(crate) fn command(&self) -> Result<Command, String> {
         let browser = BROWSERS.into_iter().find_map(on_path).ok_or(
-            "no chromium on the PATH; install the package `chromium` of your system to check pages \
-             in it",
+            "no chromium on the PATH; install the package `chromium` of your system to check pages",
         )?;
         if on_path("node").is_none() {
             return Err("no node on the PATH; install Node.js 20 or newer to check pages".into());
@@ -69,35 +70,35 @@ impl Check {
         Ok(command)
     }
 
-    /// Builds the program in release.
+    /// Builds the program in the release profile.
     pub(crate) fn build(&self) -> anyhow::Result<()> {
         build_program(&self.root)
     }
 
-    /// Films the demo for the README.
+    /// Records the animation of the demo for the README.
     pub(crate) fn film(&self) -> anyhow::Result<ExitCode> {
         let mut command = self.command().map_err(anyhow::Error::msg)?;
         self.build()?;
         let folder = target(&self.root).join("browser").join("film");
         let mut demo = Command::new(program(&self.root));
         demo.args(["run", "demo-napa", "--quiet", "--overwrite", "--out"]).arg(&folder);
-        // Its status says whether the stack falls.
-        demo.status().context("the program does not start")?;
+        // The exit status is not checked: it reports whether the stack falls.
+        demo.status().context("cannot start the program")?;
         let report = folder.join("report.html");
-        let status = command.arg(report).arg(FILMED).status().context("node does not start")?;
+        let status = command.arg(report).arg(FILMED).status().context("cannot start node")?;
         Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 
-    /// Keeps the looks of all pages as they are now.
+    /// Saves the present look of all pages as the reference of later checks.
     pub(crate) fn renew(&self) -> anyhow::Result<ExitCode> {
         let mut command = self.command().map_err(anyhow::Error::msg)?;
         self.build()?;
-        let status = command.arg("--renew").status().context("node does not start")?;
+        let status = command.arg("--renew").status().context("cannot start node")?;
         Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 }
 
-/// A program on the search path.
+/// Returns the path of a program on the search path.
 fn on_path(name: &str) -> Option<PathBuf> {
     let folders = std::env::var_os("PATH")?;
     let file = format!("{name}{}", std::env::consts::EXE_SUFFIX);

@@ -1,26 +1,27 @@
-//! The bundle of three.js in pages: packed by esbuild from a pinned release, and compared with the one that is kept.
+//! The bundle of three.js in report pages: packed by esbuild from a pinned release, and compared with the committed
+//! bundle.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, ensure};
 
-/// Where modules and entry of the bundle are.
+/// Folder of the modules and the entry point of the bundle.
 const SOURCE: &str = "crates/report/bundle";
 
-/// Where pages take the bundle from.
+/// Folder of the committed bundle, which pages include.
 const KEPT: &str = "crates/report/assets/vendor";
 
-/// Command that installs the modules, typed in the root of the repository.
+/// Command that installs the modules, to be run in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/bundle";
 
-/// Packs the bundle.
+/// The bundle of three.js, ready to be packed.
 pub(crate) struct Bundle {
     root: PathBuf,
 }
 
 impl Bundle {
-    /// Returns the bundle, or what is missing here and how to come by it.
+    /// Returns the bundle, or a message that names what is missing and how to install it.
     pub(crate) fn find(root: &Path) -> Result<Self, String> {
         let modules = Command::new("node")
             .args(["--eval", "require.resolve('esbuild'), require.resolve('three')"])
@@ -30,12 +31,12 @@ impl Bundle {
             .status();
         match modules {
             Ok(status) if status.success() => Ok(Self { root: root.to_path_buf() }),
-            Ok(_) => Err(format!("the modules of the bundle are not installed; type `{INSTALL}`")),
+            Ok(_) => Err(format!("the modules of the bundle are not installed; run `{INSTALL}`")),
             Err(_) => Err("no node on the PATH; install Node.js 20 or newer".into()),
         }
     }
 
-    /// Writes bundle and license to where pages take them from.
+    /// Packs the bundle and writes it and its license to the folder that pages include.
     pub(crate) fn write(&self) -> anyhow::Result<()> {
         for (name, bytes) in self.packed()? {
             let path = self.root.join(KEPT).join(name);
@@ -46,19 +47,19 @@ impl Bundle {
         Ok(())
     }
 
-    /// Compares bundle and license with those that are kept, byte for byte.
+    /// Compares bundle and license with the committed files, byte for byte.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         for (name, bytes) in self.packed()? {
             let path = self.root.join(KEPT).join(name);
             let kept =
                 std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
             ensure!(kept == bytes, "{} differs from its sources", path.display());
-            println!("{}: {} bytes, as rebuilt", path.display(), bytes.len());
+            println!("{}: {} bytes, equal to its sources", path.display(), bytes.len());
         }
         Ok(())
     }
 
-    /// Packs the bundle; returns the files with their names.
+    /// Packs the bundle; returns the names and contents of the files.
     fn packed(&self) -> anyhow::Result<[(&'static str, Vec<u8>); 2]> {
         let folder = self.root.join(SOURCE);
         let output = Command::new("node")
@@ -66,8 +67,8 @@ impl Bundle {
             .current_dir(&folder)
             .stderr(Stdio::inherit())
             .output()
-            .context("node does not start")?;
-        ensure!(output.status.success(), "the bundle is not packed: see above");
+            .context("cannot start node")?;
+        ensure!(output.status.success(), "packing the bundle failed: see above");
         let license = folder.join("node_modules/three/LICENSE");
         let license = std::fs::read(&license)
             .with_context(|| format!("cannot read {}", license.display()))?;

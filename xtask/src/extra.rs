@@ -1,4 +1,4 @@
-//! Checks that need more than the toolchain: done where that is at hand, skipped in so many words elsewhere.
+//! Checks that need more than the Rust toolchain; where a requirement is missing, the check is reported as skipped.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -7,33 +7,33 @@ use crate::bundle::Bundle;
 use crate::steps::cargo;
 use crate::{browser, python, web};
 
-/// A check that not every machine can do.
+/// A check that not every machine can run.
 pub(crate) struct Extra {
-    /// Name as announced.
+    /// Name in the heading of the step.
     pub(crate) name: &'static str,
-    /// The command, or what is missing and how to come by it.
+    /// The command, or a message that names what is missing and how to install it.
     pub(crate) command: Result<Command, String>,
-    /// The next move after a failure.
+    /// Advice after a failure.
     pub(crate) remedy: &'static str,
-    /// Pages that are made by the program, which is built first.
+    /// Check of pages that the program writes, so the program is built first.
     pub(crate) pages: Option<browser::Check>,
 }
 
 /// The oldest toolchain that builds the workspace: `rust-version` in `Cargo.toml`.
 pub(crate) const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// All of them, the quickest first.
+/// Returns all extra checks, the quickest first.
 pub(crate) fn all(root: &Path) -> Vec<Extra> {
     let licenses = Extra {
         name: "cargo deny check",
         command: if succeeds(Command::new(cargo()).args(["deny", "--version"])) {
             Ok(with(Command::new(cargo()), &["deny", "check"]))
         } else {
-            Err("no cargo-deny; type `cargo install cargo-deny` to check licenses, advisories and \
-                 sources of what is built in"
+            Err("no cargo-deny; run `cargo install cargo-deny` to check licenses, advisories and \
+                 sources of the dependencies"
                 .into())
         },
-        remedy: "see above; what is allowed stands in deny.toml",
+        remedy: "see above; deny.toml lists what is allowed",
         pages: None,
     };
     let oldest = Extra {
@@ -41,10 +41,10 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         command: if succeeds(Command::new("rustup").args(["run", OLDEST, "rustc", "--version"])) {
             Ok(with(Command::new("rustup"), &["run", OLDEST, "cargo", "check", "--workspace"]))
         } else {
-            Err(format!("no toolchain {OLDEST}; type `rustup toolchain install {OLDEST}`"))
+            Err(format!("no toolchain {OLDEST}; run `rustup toolchain install {OLDEST}`"))
         },
-        remedy: "write what that toolchain knows, or raise rust-version in Cargo.toml and say so in \
-                 CHANGELOG.md",
+        remedy: "use only features of that toolchain, or raise rust-version in Cargo.toml and note it \
+                 in CHANGELOG.md",
         pages: None,
     };
     let own = || std::env::current_exe().map(Command::new).map_err(|error| error.to_string());
@@ -53,7 +53,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         command: Bundle::find(root)
             .and_then(|_| own())
             .map(|command| with(command, &["bundle", "check"])),
-        remedy: "run `cargo xtask bundle` and commit what it writes",
+        remedy: "run `cargo xtask bundle` and commit the files that it writes",
         pages: None,
     };
     let web = Extra {
@@ -68,7 +68,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         remedy: "see above",
         pages: Some(check),
     });
-    // What the step before has built, where there is one.
+    // This check uses the module and the page that `cargo xtask web` has built before.
     let engine = browser::find(root, browser::ENGINE).map(|check| Extra {
         name: "node crates/web/tests/check.mjs",
         command: web::Build::find(root).and_then(|_| check.command()).map(|mut command| {
@@ -81,8 +81,8 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
     let package = Extra {
         name: "tests of the Python package",
         command: python::find(root),
-        remedy: "see above; `cargo xtask python` runs this step alone, `cargo xtask python heavy` also what needs ObsPy, \
-                 OpenQuake, Pelicun, Dask and Slurm",
+        remedy: "see above; `cargo xtask python` runs this step alone, `cargo xtask python heavy` also the tests that need \
+                 ObsPy, OpenQuake, Pelicun, Dask and Slurm",
         pages: None,
     };
     [licenses, oldest, bundle, web]
@@ -98,7 +98,7 @@ fn with(mut command: Command, words: &[&str]) -> Command {
     command
 }
 
-/// Returns `true` if a command is there and succeeds.
+/// Returns `true` if a command exists and succeeds.
 fn succeeds(command: &mut Command) -> bool {
     let status = command.stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())

@@ -1,13 +1,13 @@
-//! Lines of product code by crate, and the longest files: a list to judge by, not a limit.
+//! Numbers of lines of code by crate, and the longest files, for information.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
-/// Number of the longest files that are listed.
+/// Number of files in the list of the longest ones.
 const LONGEST: usize = 12;
 
-/// Counts of a text.
+/// Numbers of lines of a text.
 #[derive(Clone, Copy, Default)]
 struct Lines {
     code: usize,
@@ -15,7 +15,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// Counts lines that are not blank; the tests of a file, which come last, are left out.
+    /// Counts the lines that are not blank, up to the tests at the end of a file.
     fn of(text: &str) -> Self {
         let mut lines = Self::default();
         let product = text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or(text);
@@ -30,7 +30,7 @@ impl Lines {
     }
 }
 
-/// Prints lines of code and of comments by crate, the longest files, and the sum.
+/// Prints the lines of code and of comments of each crate, their sums, and the longest files.
 pub(crate) fn list(root: &Path) -> anyhow::Result<()> {
     let (mut all, mut files) = (Lines::default(), Vec::new());
     let mut crates: Vec<PathBuf> = entries(&root.join("crates"))?;
@@ -59,7 +59,7 @@ pub(crate) fn list(root: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns what a folder holds; nothing where there is no such folder.
+/// Returns the paths of the entries of a folder; none if the folder does not exist.
 pub(crate) fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !folder.is_dir() {
         return Ok(Vec::new());
@@ -69,7 +69,7 @@ pub(crate) fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     read.map(|entry| Ok(entry?.path())).collect()
 }
 
-/// Returns the Rust files of a folder and of those in it.
+/// Returns the Rust files of a folder and its subfolders.
 pub(crate) fn sources(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for path in entries(folder)? {

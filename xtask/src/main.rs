@@ -1,8 +1,8 @@
-//! Project tasks: `cargo xtask test`, the one test command at home and in CI.
+//! Project tasks, such as `cargo xtask test`, which runs all tests, locally and in CI.
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "a program for people at a terminal"
+    reason = "a program that prints to a terminal"
 )]
 
 mod browser;
@@ -24,18 +24,18 @@ usage: cargo xtask TASK
 
 tasks:
   test       formatting, lints, documentation, and all tests; stops at the first failure
-  golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
-  golden bits  keeps what results are now, to the last bit, once their version is raised
-  film       films the demo for the README, in three dimensions
-  web        one page that holds the program, as WebAssembly, and works without a network; says how large it is
-  bundle     packs what pages use of three.js, with esbuild; `check` compares it with the one that is kept
-  python     the Python package in an environment of its own under target/: its tests, its notebooks, its site;
-             `heavy` also those that need ObsPy, OpenQuake, Pelicun, Dask and Slurm; `site` the site alone
-  validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
-  bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
-             `history` (the work of runs beside that of the last release; `history keep` writes it down)
-  lines      lines of product code and comments by crate, and the longest files
-  fuzz       damaged files through every reader of records; `--executions N`, `--reader NAME`, `--first K`";
+  golden     saves pictures of all report pages as references for the tests; look at them before you commit
+  golden bits  saves hashes of results as references for the tests, after their version is raised
+  film       records the animation of the demo for the README, in three dimensions
+  web        builds one page that contains the program as WebAssembly and works without a network
+  bundle     packs the parts of three.js that pages use, with esbuild; `check` compares them with the committed bundle
+  python     builds the Python package in an environment under target/ and runs its tests, notebooks and site;
+             `heavy`: also the tests that need ObsPy, OpenQuake, Pelicun, Dask and Slurm; `site`: only the site
+  validate   runs every problem with an exact answer and writes a report; `--out DIR`, `--only TEXT`, `--fast`
+  bench      measures speed, and that of a game engine on the same scenes; `--cases N`, `table`, `growth`,
+             `history` (counts of work compared with the last release; `history keep` saves them)
+  lines      counts lines of code and comments by crate, and lists the longest files
+  fuzz       feeds damaged files to every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -62,18 +62,18 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         other => {
-            eprintln!("xtask: there is no task `{}`\n\n{USAGE}", other.join(" "));
+            eprintln!("xtask: unknown task `{}`\n\n{USAGE}", other.join(" "));
             ExitCode::from(2)
         }
     }
 }
 
-/// The status of a task that is done.
+/// Returns the exit status of a completed task.
 fn done((): ()) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Returns the status of a task; prints the reason of a failure.
+/// Returns the exit status of a task, and prints the reason if it failed.
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     result.unwrap_or_else(|error| {
         eprintln!("xtask: {error:#}");
@@ -81,7 +81,7 @@ fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     })
 }
 
-/// Runs a program of the workspace in release and passes its words and its status on.
+/// Runs a program of the workspace in the release profile with some arguments, and returns its exit status.
 fn release(program: &[&str], words: &[&str]) -> ExitCode {
     let run = ["run", "--quiet", "--release"];
     match std::process::Command::new(steps::cargo())
@@ -94,7 +94,7 @@ fn release(program: &[&str], words: &[&str]) -> ExitCode {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {
-            eprintln!("xtask: cargo does not start: {error}");
+            eprintln!("xtask: cannot start cargo: {error}");
             ExitCode::FAILURE
         }
     }

@@ -1,4 +1,4 @@
-//! The Python package: built by pip into an environment of its own, tested there, its site built.
+//! The Python package: built by pip in a virtual environment and tested there, and the site of its documentation.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 
 use crate::steps::{build_program, cargo, program, target};
 
-/// What the tests need beside the package.
+/// Packages that the tests need.
 const TESTS: [&str; 16] = [
     "maturin>=1.9,<2",
     "numpy",
@@ -27,10 +27,12 @@ const TESTS: [&str; 16] = [
     "distributed",
 ];
 
-/// What some of them need that takes long to install.
+/// Packages that only the heavy tests need, and that take long to install.
 const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
 
-/// Pelicun, and the packages that `OpenQuake` imports; its full list would have pip build GDAL.
+/// Pelicun, and the packages that `OpenQuake` imports.
+///
+/// `OpenQuake` is installed without its own list of dependencies, for which pip would have to build GDAL.
 const OTHERS: [&str; 14] = [
     "alpha_shapes",
     "decorator",
@@ -48,7 +50,7 @@ const OTHERS: [&str; 14] = [
     "toml",
 ];
 
-/// The step of the test command, where there is a Python; else what is missing.
+/// Returns the command that builds and tests the package, or a message that names what is missing.
 pub(crate) fn find(root: &Path) -> Result<Command, String> {
     if !root.join("pyproject.toml").is_file() {
         return Err("there is no pyproject.toml".to_owned());
@@ -60,7 +62,7 @@ pub(crate) fn find(root: &Path) -> Result<Command, String> {
     Ok(command)
 }
 
-/// A Python that makes environments, 3.10 or later.
+/// Returns the name of a Python of version 3.10 or later that can create virtual environments.
 fn interpreter() -> Result<&'static str, String> {
     let check = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 10))";
     let answers = |name: &&&str| {
@@ -73,14 +75,16 @@ fn interpreter() -> Result<&'static str, String> {
     })
 }
 
-/// Builds and tests; with `heavy` also what takes long to install, with `site` the site alone.
+/// Builds the package, then builds its site and runs its tests.
+///
+/// With `heavy` the tests include those that take long to install; with `site` only the site is built.
 pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     let Some(python) = environment(root, what == Some("heavy"))? else {
-        println!("skipped: pip cannot install maturin; is there a net?");
+        println!("skipped: pip cannot install maturin; is there a network connection?");
         println!("0 passed, 0 failed, 1 skipped");
         return Ok(());
     };
-    // What numbers are held against; built already where the tests of the workspace ran before.
+    // The tests compare the numbers of the package with those of the program.
     build_program(root)?;
     checked(inside(&python).arg("docs/build.py").current_dir(root), "the site")?;
     if what == Some("site") {
@@ -88,7 +92,7 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     }
     let mut tests = inside(&python);
     tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "crates/python/tests"]);
-    // Two files at a time: most tests wait for a single process.
+    // Two files at a time, since most tests keep only one core busy.
     if installed(&python, "pytest-xdist") {
         tests.args(["-n", "2", "--dist", "loadfile"]);
     }
@@ -100,7 +104,7 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if what == Some("heavy") { run_others(root) } else { Ok(()) }
 }
 
-/// Runs `OpenQuake` and Pelicun on exported files, from an environment of their own: Pelicun needs an older pandas.
+/// Runs `OpenQuake` and Pelicun on exported files, in a second environment since Pelicun needs an older pandas.
 fn run_others(root: &Path) -> anyhow::Result<()> {
     let python = environment_at(&target(root).join("python-others"))?;
     for words in [&OTHERS[..], &["--no-deps", "openquake-engine"]] {
@@ -112,7 +116,7 @@ fn run_others(root: &Path) -> anyhow::Result<()> {
     checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
 }
 
-/// The Python of the environment in a folder, which is made if it is not there.
+/// Returns the Python of the virtual environment in a folder, and creates the environment if it does not exist.
 fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     let bin = if cfg!(windows) { "Scripts" } else { "bin" };
     let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));
@@ -123,7 +127,9 @@ fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     Ok(python)
 }
 
-/// The environment with the package as it is now, kept from run to run; none without the net.
+/// Returns the Python of the environment with the present package; `None` if maturin cannot be installed.
+///
+/// The environment is kept between runs.
 fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     let python = environment_at(&target(root).join("python"))?;
     let mut needed = TESTS.to_vec();
@@ -136,21 +142,21 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     };
     for name in needed.iter().filter(|name| !installed(&python, name)) {
         if !install(&[*name]) {
-            // Tests say by themselves what they lack.
-            println!("pip cannot install {name}; is there a net?");
+            // Tests report by themselves which packages they miss.
+            println!("pip cannot install {name}; is there a network connection?");
         }
     }
     if !installed(&python, "maturin") {
         return Ok(None);
     }
-    // With the environment's own maturin, so that no net is asked for what is there.
+    // The environment has maturin already, so pip needs no network to build the package.
     if !install(&["--no-build-isolation", "--no-deps", "--force-reinstall", "."]) {
         bail!("`pip install .` failed: see above");
     }
     Ok(Some(python))
 }
 
-/// Returns `true` if an environment has a package, so that the net is not needed for it.
+/// Returns `true` if an environment contains a package.
 fn installed(python: &Path, requirement: &str) -> bool {
     let name = requirement.split(['<', '>', '=']).next().unwrap_or(requirement);
     let show = ["-m", "pip", "--disable-pip-version-check", "show", "--quiet", name];
@@ -158,14 +164,14 @@ fn installed(python: &Path, requirement: &str) -> bool {
     run.is_ok_and(|status| status.success())
 }
 
-/// The installation command of an environment.
+/// Returns the command `pip install` of an environment.
 fn pip(python: &Path) -> Command {
     let mut pip = inside(python);
     pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]);
     pip
 }
 
-/// A Python of an environment, whose programs it finds before those of others.
+/// Returns the command of a Python whose own environment comes first on the search path.
 fn inside(python: &Path) -> Command {
     let mut command = Command::new(python);
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -177,7 +183,7 @@ fn inside(python: &Path) -> Command {
 }
 
 fn checked(command: &mut Command, what: &str) -> anyhow::Result<()> {
-    let status = command.status().with_context(|| format!("{what}: it does not start"))?;
+    let status = command.status().with_context(|| format!("cannot start {what}"))?;
     if !status.success() {
         bail!("{what} failed: see above");
     }

@@ -1,4 +1,4 @@
-//! The steps of the test command: announced, run in order, stopped at the first failure.
+//! The steps of `cargo xtask test`, run in order up to the first failure.
 
 use std::ffi::OsString;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -14,17 +14,17 @@ use crate::extra;
 use crate::tally::Tally;
 use crate::web;
 
-/// One command and what to do when it fails.
+/// One command, with advice for the case that it fails.
 struct Step {
-    /// The command, after `cargo`.
+    /// Arguments of `cargo`.
     arguments: &'static [&'static str],
-    /// `true` if warnings of the documentation are errors.
+    /// `true` if warnings of rustdoc are errors.
     strict_docs: bool,
-    /// The next move after a failure.
+    /// Advice after a failure.
     remedy: &'static str,
 }
 
-/// Cheap steps first, so that a slip shows before anything is compiled.
+/// The steps that need only the Rust toolchain, the quickest first.
 const STEPS: [Step; 5] = [
     Step {
         arguments: &["fmt", "--all", "--check"],
@@ -44,16 +44,16 @@ const STEPS: [Step; 5] = [
     Step {
         arguments: &["test", "--workspace", "--no-fail-fast"],
         strict_docs: false,
-        remedy: "see the failed tests above, named once more at the end of the step",
+        remedy: "see the failed tests above; they are listed again at the end of the step",
     },
     Step {
         arguments: &["test", "--release", "--package", "barrelstack", "--test", "bits"],
         strict_docs: false,
-        remedy: "results depend on optimization: see the failed test above, which passes with debug assertions",
+        remedy: "results depend on the optimization level: see the failed test above, which passes with debug assertions",
     },
 ];
 
-/// Runs all steps; the last line printed is the sum of all closing lines of the test runners.
+/// Runs all steps and prints the numbers of tests that passed, failed and were skipped on the last line.
 pub(crate) fn test() -> anyhow::Result<()> {
     let root = root();
     let start = Instant::now();
@@ -109,39 +109,39 @@ pub(crate) fn test() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Builds the page that holds the engine.
+/// Builds the page that contains the engine.
 pub(crate) fn web() -> anyhow::Result<()> {
     let build = web::Build::find(&root()).map_err(anyhow::Error::msg)?;
     build.run()
 }
 
-/// Packs the bundle of three.js, or compares it.
+/// Packs the bundle of three.js and applies `use_it`, which writes or compares the result.
 pub(crate) fn bundle(use_it: fn(&Bundle) -> anyhow::Result<()>) -> anyhow::Result<()> {
     use_it(&Bundle::find(&root()).map_err(anyhow::Error::msg)?)
 }
 
-/// Films the demo for the README.
+/// Records the animation of the demo for the README.
 pub(crate) fn film() -> anyhow::Result<ExitCode> {
     let check = browser::find(&root(), browser::FILM)
-        .context("there is nothing that films pages in this repository")?;
+        .context("this repository does not contain the script that records pages")?;
     check.film()
 }
 
-/// Keeps how all report pages look now.
+/// Saves the present look of all report pages as the reference of later checks.
 pub(crate) fn golden() -> anyhow::Result<ExitCode> {
     let check = browser::find(&root(), browser::REPORTS)
-        .context("there are no checks of pages in this repository")?;
+        .context("this repository does not contain the script that checks pages")?;
     check.renew()
 }
 
-/// Formats the time since the begin of a step: ", 83 s".
+/// Formats the time since the start of a step, such as ", 83 s".
 fn after(begin: Instant) -> String {
     format!(", {:.0} s", begin.elapsed().as_secs_f64())
 }
 
-/// Prints the sum and the time of each step, then the sum of all, alone on its line.
+/// Prints the counts and the time of each step, and the total counts on the last line.
 ///
-/// Prints nothing where no test ran: `0 passed, 0 failed` would read like a success.
+/// Prints nothing if no test ran, since `0 passed, 0 failed` would look like a success.
 fn close(closing: &[String], total: Tally, start: Instant) {
     if total == Tally::default() {
         return;
@@ -153,8 +153,8 @@ fn close(closing: &[String], total: Tally, start: Instant) {
     println!("{total}");
 }
 
-/// Runs a command with its output passed on as it comes; says whether it succeeded, and what the
-/// test runners in it counted.
+/// Runs a command and prints its output as it arrives; returns whether the command succeeded, and the counts of
+/// the test runners in its output.
 fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
     let program = Path::new(command.get_program()).display().to_string();
     let mut child = command
@@ -176,33 +176,33 @@ fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
     Ok((passed, Tally::of(lines.iter().map(String::as_str))))
 }
 
-/// The cargo that started this program, so that a chosen toolchain stays chosen.
+/// Returns the cargo that started this program, so that all steps use the same toolchain.
 pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// Where cargo builds.
+/// Returns the folder in which cargo builds.
 pub(crate) fn target(root: &Path) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     root.join(target.unwrap_or_else(|| PathBuf::from("target")))
 }
 
-/// Builds the program in release.
+/// Builds the program in the release profile.
 pub(crate) fn build_program(root: &Path) -> anyhow::Result<()> {
     let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
     let status = Command::new(cargo()).args(build).current_dir(root).status();
-    if !status.context("cargo does not start")?.success() {
-        bail!("the program does not build: see above");
+    if !status.context("cannot start cargo")?.success() {
+        bail!("building the program failed: see above");
     }
     Ok(())
 }
 
-/// Where [`build_program`] leaves the program.
+/// Returns the path of the program that [`build_program`] builds.
 pub(crate) fn program(root: &Path) -> PathBuf {
     target(root).join("release").join(format!("barrelstack{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// The root of the repository, from wherever the task is started.
+/// Returns the root of the repository, independent of the working directory.
 pub(crate) fn root() -> PathBuf {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     own.parent().unwrap_or(own).to_path_buf()
@@ -214,7 +214,7 @@ mod tests {
 
     use super::root;
 
-    /// A file beside a `tests/main.rs` that is no module of it would not be run.
+    /// A file beside `tests/main.rs` that is not declared there as a module would not be run.
     #[test]
     #[allow(clippy::unwrap_used, reason = "a test fails by panic")]
     fn every_file_of_tests_is_run() {

@@ -1,4 +1,4 @@
-//! Tests counted from the closing lines of test runners.
+//! Counts of tests, read from the closing lines of test runners.
 
 use std::fmt;
 
@@ -15,8 +15,8 @@ impl Tally {
     ///
     /// Closing lines are `test result: ok. 3 passed; 0 failed; 1 ignored; …` of Rust's runner, and
     /// `3 passed, 0 failed, 1 skipped` of scripts.
-    /// A test that found nothing to test, such as a record that may not be passed on, says so in a line
-    /// with `skipped: ` and ends; the runner takes it for passed, here it is taken for skipped.
+    /// A test whose data are missing, such as a record that cannot be distributed, prints a line with `skipped: `
+    /// and ends. The test runner counts it as passed, this function as skipped.
     pub(crate) fn of<'a>(lines: impl IntoIterator<Item = &'a str>) -> Self {
         let mut total = Self::default();
         let mut notices = 0;
@@ -45,8 +45,8 @@ impl Tally {
     }
 }
 
-/// The counts in parts such as `3 passed`; none where a part says something else, or where nothing
-/// is said of passing.
+/// Returns the counts in parts such as `3 passed`; `None` if a part has another form, or if no part counts
+/// passed tests.
 fn counts_of<'a>(parts: impl Iterator<Item = &'a str>) -> Option<Tally> {
     let mut tally = Tally::default();
     let mut closing = false;
@@ -67,7 +67,7 @@ fn counts_of<'a>(parts: impl Iterator<Item = &'a str>) -> Option<Tally> {
     closing.then_some(tally)
 }
 
-/// `3 passed, 0 failed`, and `, 1 skipped` where there are any.
+/// Writes `3 passed, 0 failed`, and `, 1 skipped` if tests were skipped.
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} passed, {} failed", self.passed, self.failed)?;

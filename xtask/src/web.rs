@@ -1,5 +1,5 @@
-//! The page with the engine in it: the engine is built as WebAssembly by whichever route the machine has, and held to
-//! what a page gives it.
+//! The page that contains the engine: builds the engine as WebAssembly with the tools of this machine, and checks that
+//! it imports only functions that the page provides.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -9,26 +9,26 @@ use anyhow::{Context as _, bail, ensure};
 use crate::extra::OLDEST;
 use crate::steps::{cargo, target};
 
-/// The target of browsers.
+/// Target triple of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Functions that the page provides, the only imports allowed to the engine.
+/// Functions that the page provides, the only ones that the engine may import.
 const GIVEN: [&str; 1] = ["page.progress"];
 
-/// Where Debian's packages `rustc-web` and `libstd-rust-web-dev` put a compiler with this target.
+/// Compiler with this target that Debian's packages `rustc-web` and `libstd-rust-web-dev` install.
 const DEBIAN: &str = "/usr/bin/rustc";
 
-/// Builds the engine for a page.
+/// Build of the engine and its page.
 pub(crate) struct Build {
     root: PathBuf,
     command: Command,
 }
 
 impl Build {
-    /// The build, or what is missing here and how to come by it.
+    /// Returns the build, or a message that names what is missing and how to install it.
     ///
-    /// Where the standard library for the target is installed it is taken; else it is built from Debian's
-    /// `rust-web-src`, by Debian's compiler and with the linker of the toolchain.
+    /// Uses the installed standard library of the target. Without one, builds it from Debian's `rust-web-src`, with
+    /// Debian's compiler and the linker of the toolchain.
     pub(crate) fn find(root: &Path) -> Result<Self, String> {
         let mut command = Command::new(cargo());
         command.args(["build", "--package", "barrelstack-web", "--profile", "web"]);
@@ -36,8 +36,8 @@ impl Build {
         if !has_target() {
             let linker = debian().ok_or_else(|| {
                 format!(
-                    "no target {TARGET}; type `rustup target add {TARGET}`, or install the packages \
-                     rustc-web, rust-web-src and libstd-rust-web-dev of Debian, {OLDEST} or newer"
+                    "no target {TARGET}; run `rustup target add {TARGET}`, or install Debian's packages \
+                     rustc-web, rust-web-src and libstd-rust-web-dev, version {OLDEST} or newer"
                 )
             })?;
             command.args(["-Zbuild-std=std,panic_abort"]);
@@ -47,18 +47,18 @@ impl Build {
         Ok(Self { root: root.to_path_buf(), command })
     }
 
-    /// Builds it and the page around it, and says how large they are.
+    /// Builds the engine and its page, and prints their sizes.
     pub(crate) fn run(mut self) -> anyhow::Result<()> {
-        let status = self.command.status().context("cargo does not start")?;
-        ensure!(status.success(), "the engine does not build: see above");
+        let status = self.command.status().context("cannot start cargo")?;
+        ensure!(status.success(), "building the engine failed: see above");
         let file = module(&self.root);
         let bytes =
             std::fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
         let imported = imports(&bytes).context("the module cannot be read")?;
         if let Some(foreign) = imported.iter().find(|name| !GIVEN.contains(&name.as_str())) {
             bail!(
-                "the module imports {foreign}, which no page provides: some library needs a system; \
-                 build it without that feature"
+                "the module imports {foreign}, which the page does not provide: a dependency needs an \
+                 operating system; build it without that feature"
             );
         }
         println!(
@@ -75,8 +75,8 @@ impl Build {
             .args([file.as_path(), &self.root.join(PARTS), Path::new(TITLE), &page])
             .current_dir(&self.root)
             .status()
-            .context("cargo does not start")?;
-        ensure!(status.success(), "the page cannot be made: see above");
+            .context("cannot start cargo")?;
+        ensure!(status.success(), "writing the page failed: see above");
         let bytes =
             std::fs::read(&page).with_context(|| format!("cannot read {}", page.display()))?;
         println!("{}: {:.2} MB, opens in any browser", page.display(), megabytes(&bytes));
@@ -84,18 +84,18 @@ impl Build {
     }
 }
 
-/// Parts of the page, in the repository.
+/// Folder of the parts of the page, in the repository.
 const PARTS: &str = "crates/web/page";
 
 /// Title of the page.
 const TITLE: &str = "barrelstack: wine barrels in earthquakes";
 
-/// Where the page is once it is made.
+/// Returns the path of the page.
 pub(crate) fn page(root: &Path) -> PathBuf {
     target(root).join("barrelstack.html")
 }
 
-/// Where the module is once it is built.
+/// Returns the path of the WebAssembly module.
 pub(crate) fn module(root: &Path) -> PathBuf {
     target(root).join(TARGET).join("web").join("barrelstack_web.wasm")
 }
@@ -111,7 +111,7 @@ fn has_target() -> bool {
     found.is_some_and(|folder| Path::new(&folder).is_dir())
 }
 
-/// The linker of the toolchain, where Debian's compiler and the sources of its standard library are there.
+/// Returns the linker of the toolchain, if Debian's compiler and the sources of its standard library are installed.
 fn debian() -> Option<PathBuf> {
     let version = said(Command::new(DEBIAN).arg("--version"))?;
     let version = version.split_whitespace().nth(1)?;
@@ -125,20 +125,20 @@ fn debian() -> Option<PathBuf> {
     there.then_some(linker)
 }
 
-/// Returns the first line that a command prints; `None` if it is not there or fails.
+/// Returns the first line that a command prints; `None` if the command does not exist or fails.
 fn said(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     Some(text.lines().next()?.to_owned()).filter(|_| output.status.success())
 }
 
-/// Returns the imports of a module, as `module.name`; `None` if the bytes are no module.
+/// Returns the imports of a WebAssembly module, as `module.name`; `None` if the bytes are not a module.
 ///
 /// Spec: WebAssembly 2.0, sections 5.5.2 and 5.5.5.
 fn imports(bytes: &[u8]) -> Option<Vec<String>> {
-    /// The section of imports.
+    /// Number of the import section.
     const IMPORTS: u8 = 2;
-    /// The kind of import that a function is; its type follows as a number.
+    /// Kind of an imported function; the index of its type follows.
     const FUNCTION: u8 = 0;
     let mut rest = bytes.strip_prefix(b"\0asm\x01\0\0\0")?;
     while let Some((kind, after)) = rest.split_first() {
@@ -156,7 +156,7 @@ fn imports(bytes: &[u8]) -> Option<Vec<String>> {
             let (kind, after) = section.split_first()?;
             section = after;
             if *kind != FUNCTION {
-                // A memory or a table is as foreign as can be, and the rest of the list no matter.
+                // An imported memory or table is refused by its name, so the rest of the list does not matter.
                 return Some(found);
             }
             number(&mut section)?;
@@ -166,7 +166,7 @@ fn imports(bytes: &[u8]) -> Option<Vec<String>> {
     Some(Vec::new())
 }
 
-/// A number of seven bits a byte, the lowest first.
+/// Reads an unsigned LEB128 number: seven bits per byte, the lowest first.
 fn number(bytes: &mut &[u8]) -> Option<usize> {
     let mut value = 0;
     for shift in (0..35).step_by(7) {
@@ -180,7 +180,7 @@ fn number(bytes: &mut &[u8]) -> Option<usize> {
     None
 }
 
-/// A text after its length.
+/// Reads a text that is preceded by its length.
 fn word(bytes: &mut &[u8]) -> Option<String> {
     let length = number(bytes)?;
     let (text, after) = bytes.split_at_checked(length)?;

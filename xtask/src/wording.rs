@@ -1,4 +1,4 @@
-//! Limits on words for which the field has a better one, such as `report`, `request` and `displacement`.
+//! Limits on vague words for which the field has better ones, such as `report`, `request` and `displacement`.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::steps::root;
 /// Maximum number of occurrences of each group of words in the sources.
 const LIMIT: usize = 20;
 
-/// Words that count together.
+/// Groups of words whose occurrences are added up.
 const GROUPS: [&[&str]; 5] = [
     &["told", "tell", "tells"],
     &["asked", "asks", "ask"],
@@ -21,8 +21,9 @@ const GROUPS: [&[&str]; 5] = [
 const PHRASES: [&str; 7] =
     ["by the way", "either way", "all the way", "half way", "give way", "gives way", "gave way"];
 
-/// Returns how often any of some words stands in a line as a whole word, in letters of any case and outside of
-/// [`PHRASES`]; a letter, a digit or an underscore next to it makes it part of a longer word.
+/// Returns how often `words` occur in a line as whole words, in letters of any case and outside of [`PHRASES`].
+///
+/// A word next to a letter, a digit or an underscore is part of a longer word and does not count.
 fn count(line: &str, words: &[&str]) -> usize {
     let mut line = line.to_ascii_lowercase();
     for phrase in PHRASES {
@@ -33,8 +34,7 @@ fn count(line: &str, words: &[&str]) -> usize {
         .count()
 }
 
-/// Returns the lines with some words in the sources of all crates and of this program, as `file:line: text`, one entry
-/// for each occurrence.
+/// Returns the occurrences of `words` in the sources of all crates and of this program, each as `file:line: text`.
 fn places(root: &Path, words: &[&str]) -> anyhow::Result<Vec<String>> {
     let mut folders = entries(&root.join("crates"))?;
     folders.push(root.join("xtask"));

@@ -165,7 +165,7 @@ fn row(what: &str, file: &str, bytes: &[u8]) -> String {
 #[test]
 fn what_is_said_of_formats_and_near_formats_is_as_documented() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-    let mut table = String::from("| file | what is said |\n|---|---|\n");
+    let mut table = String::from("| file | result |\n|---|---|\n");
     for (what, file) in SAMPLES {
         table += &row(what, file, &std::fs::read(data.join(file)).unwrap());
     }

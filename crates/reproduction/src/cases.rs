@@ -10,7 +10,7 @@ use super::ReproduceError;
 /// Peak acceleration (g) of the component PEL360 of RSN995 as published by PEER.
 const PEL360_PGA: f64 = 0.358_34;
 
-/// Tolerance (g) for the peak of a file: two agencies differ in the sixth digit.
+/// Tolerance (g) for the peak of a file, since the peaks that two agencies publish differ in the sixth digit.
 const PGA_TOLERANCE: f64 = 1e-4;
 
 /// The ground motion of the six barrels.
@@ -21,7 +21,7 @@ pub enum Motion {
         /// Name of the file.
         file: String,
     },
-    /// A file with a peak that differs from the paper's record.
+    /// Another record, recognized by a peak acceleration that differs from that of the paper's record.
     Other {
         /// Name of the file.
         file: String,
@@ -33,7 +33,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// `true` if results under it are comparable with the paper's.
+    /// Returns `true` if results under this motion can be compared with the paper's.
     pub fn is_papers(&self) -> bool {
         matches!(self, Self::Paper { .. })
     }
@@ -72,7 +72,7 @@ pub(super) struct Cases {
 }
 
 impl Cases {
-    /// Creates the cases; the record shakes the six barrels.
+    /// Creates the cases; `record` is the ground motion of the six barrels.
     pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
         let change = match record {
             Some(path) => record_of(path),

@@ -12,7 +12,7 @@ pub(super) const CLOSE: f64 = 0.20;
 pub enum Verdict {
     /// Within ±20 % of the published number, or qualitatively equal.
     Agrees,
-    /// Farther than that, but within the wider band of the project.
+    /// Off by more than 20 %, but within the wider band that the project accepts.
     InBand,
     /// Outside both, or qualitatively different.
     Differs,
@@ -21,7 +21,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the words used in tables.
+    /// Returns the text of the verdict in tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
@@ -43,9 +43,9 @@ pub struct Comparison {
     pub published: String,
     /// Our result, with its unit.
     pub ours: String,
-    /// Ours over the published number, minus one; `None` if no number is compared.
+    /// Our number over the published one, minus one; `None` if no number is compared.
     pub difference: Option<f64>,
-    /// The project's own band, in words; `None` without one.
+    /// The wider band that the project accepts, in words, if there is one.
     pub band: Option<&'static str>,
     /// The verdict.
     pub verdict: Verdict,
@@ -60,7 +60,7 @@ pub fn percent(share: f64) -> String {
     format!("{sign}{} %", rounded.abs())
 }
 
-/// Writes all comparisons as one Markdown table, as in `validation/README.md`.
+/// Formats all comparisons as one Markdown table, as in `validation/README.md`.
 pub(super) fn table(rows: &[Comparison]) -> String {
     let mut text = String::from(
         "| quantity | published | ours | difference | band | verdict | why |\n\
@@ -84,16 +84,16 @@ pub(super) fn table(rows: &[Comparison]) -> String {
     text
 }
 
-/// Formats words as a sentence.
+/// Formats a phrase as a sentence: a capital letter first, a period last.
 fn sentence(words: &str) -> String {
     let end = if words.is_empty() || words.ends_with('.') { "" } else { "." };
     format!("{}{end}", capital(words))
 }
 
-/// The project's own band of a number: from, to, and description.
+/// Wider band of a number that the project accepts: from, to, and description.
 pub(super) type Band = (f64, f64, &'static str);
 
-/// Compares a number with the published one, both in a unit; ours is `None` if the event does not occur.
+/// Compares our number with the published one, in the same unit; `ours` is `None` if the event does not occur.
 pub(super) fn number(
     place: &'static str,
     quantity: &str,

@@ -24,7 +24,7 @@ const PARAMETERS: [(&str, Change); 4] = [
     ("μ rack–ground", vary::rack_ground_friction),
 ];
 
-/// Returns the runs: one parameter at a time, then all corners.
+/// Returns the runs: one parameter changed at a time, then all combinations of all four.
 pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
     members()
         .into_iter()
@@ -69,14 +69,14 @@ fn name(factors: [f64; 4]) -> String {
     if changed.is_empty() { "as stated".into() } else { changed.join(", ") }
 }
 
-/// `true` if every barrel of the top level falls.
+/// Returns `true` if every barrel of the top level falls.
 pub(super) fn top_falls(summary: &Summary) -> bool {
     let top = summary.bodies.iter().filter_map(|b| b.level).max();
     let mut barrels = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level == top);
     barrels.all(|b| b.fell_at.is_some())
 }
 
-/// `true` if a barrel of the top level is the first to fall.
+/// Returns `true` if a barrel of the top level is the first to fall.
 pub(super) fn top_falls_first(summary: &Summary) -> bool {
     let fallen = summary.bodies.iter().filter(|b| b.kind == "barrel");
     let first = fallen
@@ -86,7 +86,7 @@ pub(super) fn top_falls_first(summary: &Summary) -> bool {
     first.is_some_and(|(_, level)| level == top)
 }
 
-/// Builds the tables of outcomes: one parameter at a time shown, the corners folded.
+/// Builds the tables of outcomes: one for single parameters, and a folded one for all parameters at once.
 pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
     let names: Vec<String> = self::members().into_iter().map(name).collect();
     let all: Vec<_> = names.iter().map(String::as_str).zip(members).collect();
@@ -97,7 +97,7 @@ pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
             &[&[("as stated", base)], one].concat(),
         )),
         Block::details(
-            "All sixteen corners",
+            "All sixteen combinations",
             vec![Block::Table(table(
                 "The eight barrels with all four contact parameters changed at once.",
                 corners,

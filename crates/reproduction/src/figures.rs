@@ -23,7 +23,7 @@ pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
     })
 }
 
-/// Builds a strip of selected instants.
+/// Builds a row of pictures of selected instants.
 pub(super) fn strip(
     scene: &Arc<Scene>,
     id: &str,
@@ -34,7 +34,7 @@ pub(super) fn strip(
     Block::Figure(Figure::new(id, caption, Strip { scene: Arc::clone(scene), panels }))
 }
 
-/// Selects the instants of a collapse: at rest, before, at and after the loss of seat.
+/// Returns the instants of a collapse with their labels: at rest, and before, at and after the loss of seat.
 pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
     let end = run.end_time;
@@ -55,7 +55,8 @@ pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     panels
 }
 
-/// Selects the instants of a collapse by its events: the loss of seat, and each fall of the top level.
+/// Returns the instants of the events of a collapse with their labels: the loss of seat, and the fall of each barrel
+/// of the top level.
 pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
     let Some(loss) = run.fates.collapse_time() else { return moments(run) };
@@ -93,14 +94,15 @@ fn named(run: &Run, body: usize) -> String {
     }
 }
 
-/// Distance of an arrow's end from the center of a barrel, over the radius: within the circle, clear of the number.
+/// Distance of an arrow's end from the center of a barrel, over its radius; the end does not cover the number.
 const ARROW_END: f64 = 0.5;
 
-/// Start and end (m) of an arrow to the ground, relative to the barrel above: the rack there is too flat for it.
+/// Heights (m) of the start and end of an arrow to the ground; the arrow stands below a barrel, since the rack is too
+/// flat to hold it.
 const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 
-/// Draws the section at rest with the paper's numbers, and an arrow from every contact body to its target
-/// body, as in the paper.
+/// Draws the stack at rest with the paper's body numbers, and an arrow from every contact body to its target body,
+/// as in the paper.
 pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     let assembly = &run.assembly;
     let parts = &assembly.parts;
@@ -138,7 +140,7 @@ pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     Block::Figure(Figure::new(id, caption, diagram))
 }
 
-/// Returns an arrow from a rack vertically into the barrel that it touches, or the reverse.
+/// Returns a vertical arrow from a rack into the barrel that it touches, or from the barrel into the rack.
 fn arrow(
     parts: &[barrelstack::assemble::Part],
     rest: &[Point],
@@ -196,7 +198,7 @@ pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Optio
     Some(Block::Figure(Figure { id: id.to_owned(), caption: caption.to_owned(), ..figure }))
 }
 
-/// Returns the displacement (m) along `x` of a body relative to the ground when it had fallen.
+/// Returns the displacement (m) along `x` of a body relative to the ground at the time of its fall.
 pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let fell = run.fates.fate(body).fell_at?;
@@ -205,8 +207,8 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     channel.values.get(at).copied()
 }
 
-/// Returns the lengths of boundary (m) under stress at rest and at any time while the stack stood, on the upper or
-/// the lower half of a barrel.
+/// Returns the lengths (m) of the boundary of a barrel under stress, on its upper or lower half: at rest, and at any
+/// time until the first loss of seat.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;
@@ -223,7 +225,7 @@ pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> 
     Some(lengths)
 }
 
-/// Builds the table of contact and target bodies of all pairs in contact by design; folded.
+/// Builds the folded table of contact and target bodies of all pairs that touch by design.
 pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     let table = Table::of(
         caption,
@@ -244,7 +246,7 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     Block::details("The pairs as a table, with the forces at rest", vec![Block::Table(table)])
 }
 
-/// Returns contactor, target and force at rest (N) of all pairs in contact by design.
+/// Returns contactor, target and force at rest (N) of all pairs that touch by design.
 fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     let joints = run.recording.joints.iter().map(|history| &history.joint);
     joints.filter(|joint| joint.by_design).filter_map(|joint| {
@@ -256,7 +258,7 @@ fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     })
 }
 
-/// `true` if one body rests on the other.
+/// Returns `true` if one body rests on the other.
 fn is_above(run: &Run, one: usize, other: usize) -> bool {
     run.recording
         .joints
@@ -264,7 +266,7 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// `true` if racks are the contactors of every designed contact of a run.
+/// Returns `true` if racks are the contactors of all contacts by design.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)

@@ -1,7 +1,7 @@
-//! Reproduction of the paper of Candia, de la Llera and Almazán (2008), case by case: published against ours.
+//! Reproduction of the paper of Candia, de la Llera and Almazán (2008): its results compared with ours, case by case.
 //!
-//! All cases use one geometry, the catalog's rack `candia-2008`; nothing is fitted case by case.
-//! If a number differs, studies vary what the paper leaves open and show which quantities affect it.
+//! All cases use one geometry, the catalog's rack `candia-2008`, and no parameter is fitted to a single case.
+//! Where a number differs, studies vary the quantities that the paper does not state and show their effects.
 
 // Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -36,20 +36,20 @@ pub use compare::{Comparison, Verdict, percent};
 /// The comparison of the paper's results with ours.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
-    /// One row for every number and every finding of the paper.
+    /// One row for every number and every qualitative finding of the paper.
     pub comparisons: Vec<Comparison>,
     /// The ground motion of the six barrels.
     pub motion: Motion,
-    /// The page.
+    /// The report.
     pub document: Document,
-    /// `true` if the studies were stopped; then none is included.
+    /// `true` if the studies were stopped; the report then contains none of them.
     pub stopped: bool,
 }
 
-/// The reason why there is no reproduction.
+/// Reasons why the reproduction fails.
 #[derive(Debug, thiserror::Error)]
 pub enum ReproduceError {
-    /// A built-in case cannot be read with its changes.
+    /// The scenario of a case cannot be read.
     #[error(transparent)]
     Scenario(Box<ScenarioError>),
     /// The record cannot be used.
@@ -69,7 +69,7 @@ pub enum ReproduceError {
         /// The case.
         case: String,
     },
-    /// Stopped before every case of the paper was done, so there is no table.
+    /// Stopped before all cases of the paper were completed, so there is no table.
     #[error("the runs were stopped")]
     Stopped {
         /// The completed cases, each with its result.
@@ -89,21 +89,21 @@ impl From<GroundError> for ReproduceError {
     }
 }
 
-/// Runs every case of the paper, and the studies around them, on all cores.
+/// Runs all cases of the paper, and sensitivity studies of them, on all cores.
 ///
 /// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed with
 /// the program.
-/// Without it the six barrels are excited by the bundled record of South Napa, and nothing that depends on
-/// the motion is compared.
-/// `studies` includes the studies: effects of single quantities on each case, and contact parameters changed by 10 %;
-/// they are most of the work.
-/// `progress` is called with the numbers of completed and of all runs, from several threads, and may stop them: once all
-/// cases are done there is a result without the studies.
+/// Without it the six barrels are shaken by the bundled record of South Napa, and results that depend on the motion
+/// are not compared.
+/// With `studies`, the effects of single quantities and of contact parameters changed by 10 % are studied for each
+/// case, which is most of the work.
+/// `progress` is called with the numbers of completed and of all runs, from several threads, and may stop the work.
+/// If it stops the work after all cases are completed, the result has no studies.
 ///
 /// The result depends only on the program, the platform and the record.
 ///
 /// # Errors
-/// If the record cannot be read, or a case cannot be built.
+/// If the record cannot be read, a case cannot be built or run, or the work is stopped before all cases are completed.
 pub fn reproduce(
     record: Option<&Path>,
     studies: bool,
@@ -128,7 +128,7 @@ pub fn reproduce(
     Ok(Reproduction { comparisons, motion: results.motion, document, stopped })
 }
 
-/// Writes the comparisons as one Markdown table.
+/// Formats the comparisons as one Markdown table.
 pub fn table(found: &Reproduction) -> String {
     compare::table(&found.comparisons)
 }

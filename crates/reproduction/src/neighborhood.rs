@@ -1,5 +1,5 @@
-//! The neighborhood of the reconstructed rack: how many slightly different racks, with slightly different contact
-//! parameters, reproduce all findings of the paper.
+//! The neighborhood of the reconstructed rack: counts how many slightly different racks, with slightly different
+//! contact parameters, reproduce the findings of the paper.
 
 use barrelstack::scenario::{Cradle, Scenario, StackSpec};
 use barrelstack::summary::Summary;
@@ -30,8 +30,10 @@ const QUESTIONS: [&str; 5] = [
 /// The findings that a sample reproduces; `None` for those that need the paper's record.
 pub(super) type Kept = [Option<bool>; 5];
 
-/// Returns a coordinate of a sample between −1 and 1: fractional parts of multiples of √primes (Richtmyer 1951),
-/// which fill the box evenly and are the same everywhere.
+/// Returns a coordinate of a sample, between −1 and 1.
+///
+/// Coordinates are fractional parts of multiples of square roots of primes (Richtmyer 1951), which fill the box evenly
+/// and are the same on every machine.
 fn draw(index: usize, dimension: usize) -> f64 {
     const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
     2.0 * ((index + 1) as f64 * PRIMES[dimension].sqrt()).fract() - 1.0
@@ -58,7 +60,8 @@ fn change(stack: &mut StackSpec, index: usize) {
     vary::rack_ground_friction(stack, near(11));
 }
 
-/// Returns the runs of every sample: eight barrels, along the barrels, and six under the paper's record, if given.
+/// Returns the runs of every sample: the eight barrels, the stack along the barrels, and, if the paper's record is
+/// given, the six barrels.
 pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for index in 0..COUNT {
@@ -103,11 +106,11 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
 pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(
-            "The neighborhood of the reconstructed rack: {} racks whose lengths and angles lie within ±5 % \
-             of it, with k and c within ±10 % and both coefficients of friction within ±5 %, drawn evenly.",
+            "The neighborhood of the reconstructed rack: {} racks whose lengths and angles differ from it by \
+             ±5 % at most, k and c by ±10 %, and both coefficients of friction by ±5 %, spread evenly.",
             kept.len()
         ),
-        &[("finding", ""), ("kept by", "of all draws")],
+        &[("finding", ""), ("racks that reproduce it", "")],
     );
     for (at, question) in QUESTIONS.into_iter().enumerate() {
         let count: Option<usize> = kept.iter().map(|answers| answers[at].map(usize::from)).sum();
@@ -115,6 +118,8 @@ pub(super) fn block(kept: &[Kept]) -> Block {
         table.rows.push(vec![Cell::text(question), cell]);
     }
     let all = kept.iter().filter(|answers| answers.iter().all(|answer| answer.unwrap_or(true)));
-    table.rows.push(vec![Cell::text("all that were asked"), Cell::text(all.count().to_string())]);
+    table
+        .rows
+        .push(vec![Cell::text("all that could be checked"), Cell::text(all.count().to_string())]);
     Block::Table(table)
 }

@@ -1,11 +1,11 @@
-//! The paper's body numbers and our names.
+//! Correspondence between the paper's body numbers and our names.
 //!
-//! The paper prints numbers in its figures and never lists them.
-//! Its text fixes them: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the top
+//! The paper shows numbers in its figures but does not list them.
+//! Its text explains some: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the top
 //! barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and along the
 //! barrels body 4 is "the rack from the second level".
-//! One rule satisfies all of these: count level by level from the bottom, the barrels of a level from the
-//! left and then its rack.
+//! One rule satisfies all of these: count level by level from the bottom, first the barrels of a level from the
+//! left, then its rack.
 
 use barrelstack_report::{Cell, Table};
 
@@ -27,7 +27,7 @@ pub(super) fn table() -> Table {
         |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
     Table::of(
         "The paper's body numbers and the names on this page: B level.column for barrels, R level for \
-         racks. The paper lists no numbers; the rule is read off its text.",
+         racks. The paper does not list the numbers; the rule follows from its text.",
         (1..=4).rev(),
         &[
             ("level", "", &|level: &u32| Cell::text(level.to_string())),

@@ -1,4 +1,4 @@
-//! The page: the paper's numbers and figures in its order, compared with ours, and why they differ.
+//! The report: the paper's numbers and figures in its order, compared with ours, and the reasons for differences.
 
 use std::fmt::Write as _;
 
@@ -12,18 +12,18 @@ use super::results::{Ran, Results};
 use super::study::Subject;
 use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
 
-/// Builds the whole page.
+/// Builds the whole report.
 pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) -> Document {
     Document {
         title: "Candia, de la Llera and Almazán (2008): published against ours".into(),
         verdict: Headline {
             headline: headline(rows),
             sentences: vec![
-                "One geometry serves all cases: the paper's text gives no dimension of its racks, so \
-                 the rack is a reconstruction, and nothing is fitted case by case."
+                "All cases use one geometry. The paper's text gives no dimension of its racks, so the \
+                 rack is a reconstruction; no parameter is fitted to a single case."
                     .into(),
-                "Where a number differs, studies below change one quantity at a time and show what \
-                 moves it."
+                "Where a number differs, the studies below change one quantity at a time and show its \
+                 effect."
                     .into(),
             ],
             tone: Tone::Neutral,
@@ -34,8 +34,8 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
         warnings: warnings(&results.motion)
             .into_iter()
             .chain(stopped.then(|| {
-                "The studies were stopped before they were done: every case of the paper was run, and what moves its \
-                 numbers is not said."
+                "The studies were stopped before they were completed. All cases of the paper were run, but the effects of \
+                 single quantities on their numbers are not shown."
                     .to_owned()
             }))
             .collect(),
@@ -67,14 +67,14 @@ fn warnings(motion: &Motion) -> Vec<String> {
     match motion {
         Motion::Paper { .. } => Vec::new(),
         Motion::Other { file, pga } => vec![format!(
-            "{file} is not the paper's record: its peak is {} g, that of PEL360 0.358 g. What depends \
-             on the motion is shown but not compared. The paper's record: {OBTAIN}.",
+            "{file} is not the paper's record: its peak is {} g, that of PEL360 is 0.358 g. Results that \
+             depend on the motion are shown but not compared. To get the paper's record, {OBTAIN}.",
             significant(pga / barrelstack_motion::STANDARD_GRAVITY, 3)
         )],
         Motion::Bundled => vec![format!(
-            "The paper's record may not be passed on with the program and was not named. Its six \
-             barrels are shaken by the bundled record of South Napa in its place; what depends on the \
-             motion is shown but not compared. The paper's record: {OBTAIN}."
+            "The paper's record cannot be distributed with the program, and no file was given. The six \
+             barrels are shaken by the bundled record of South Napa instead; results that depend on the \
+             motion are shown but not compared. To get the paper's record, {OBTAIN}."
         )],
     }
 }
@@ -88,8 +88,8 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
         vec![Block::heading(2, "Published against ours"), Block::Table(overview(rows))];
     blocks.push(text(
         "A number agrees when it is within ±20 % of the published one, a finding when the same thing \
-         happens. Some numbers have a wider band too, which says what the project still accepts, \
-         since the paper leaves its geometry open.",
+         happens. Some numbers also have a wider band that the project accepts, since the paper does \
+         not state its geometry.",
     ));
     let reasons = vec![Block::Table(reasons(rows))];
     blocks.push(Block::details("How each row is measured, and why it differs", reasons));
@@ -100,15 +100,15 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     blocks.extend(along(results));
     if results.studies.is_empty() {
         blocks.push(text(
-            "The studies were left out: what moves our numbers, and contact parameters 10 % off.",
+            "The studies were left out: the effects of single quantities, and contact parameters changed by 10 %.",
         ));
     } else {
-        blocks.push(Block::heading(2, "Contact parameters 10 % off"));
+        blocks.push(Block::heading(2, "Contact parameters changed by 10 %"));
         blocks.extend(ensemble::blocks(&results.eight.summary, &results.ensemble));
         blocks.push(text(
-            "Two courses compete: the top level slides off alone, or level 3 does and carries it along, \
-             as in the six barrels. They differ in what moves against what up to the first fall, not only \
-             in name, so no definition of the mode makes them one. Which is taken hangs on the rack, \
+            "Two mechanisms compete: the top level slides off alone, or level 3 slides off and carries the \
+             top level along, as in the six barrels. Different bodies move up to the first fall, so no \
+             definition of the mode makes the two mechanisms one. Which of them occurs depends on the rack, \
              which the paper's text does not describe:",
         ));
         blocks.push(racks::block(&results.racks));
@@ -120,19 +120,19 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     blocks
 }
 
-/// Results that no run can decide.
+/// Results of the paper that are not compared, with the reasons.
 const NOT_COMPARED: [&str; 5] = [
-    "The curves and drawings of Figs. 6 and 7 point by point: only the text of the paper was read, so \
-     ours stand here for themselves.",
-    "Figs. 1 to 4 define the model; the equations are part of the program's own tests.",
-    "The dimensions of Fig. 2: their numbers are not in the text.",
+    "The curves and drawings of Figs. 6 and 7 point by point: only the text of the paper was available, so \
+     our figures are shown without those of the paper.",
+    "Figs. 1 to 4, which define the model; the program's own tests check the equations.",
+    "The dimensions of Fig. 2, which the text does not state.",
     "The calibration of k, c and μ on barrels and racks, which the paper leaves to its reference 5.",
     "The photographs of the shaking-table test, reference 1 of the paper.",
 ];
 
 fn overview(rows: &[Comparison]) -> Table {
     Table::of(
-        "Every number and every finding that the paper states.",
+        "All numbers and findings that the paper states.",
         rows,
         &[
             ("in the paper", "", &|row| Cell::text(row.place)),
@@ -176,7 +176,7 @@ fn figure_6(results: &Results) -> Vec<Block> {
     blocks.push(figures::player(
         &scene,
         "six-barrels",
-        &format!("The same run to watch: six barrels, μ rack–ground 0.4, under {under}."),
+        &format!("Animation of the same run: six barrels, μ rack–ground 0.4, under {under}."),
     ));
     blocks.push(Block::heading(3, "(b) normal stress on barrel 1"));
     blocks.extend(figures::envelope(
@@ -184,8 +184,8 @@ fn figure_6(results: &Results) -> Vec<Block> {
         1,
         "figure-6b",
         &format!(
-            "Normal stress on barrel 1 (B1.1), per meter of boundary, at rest and the largest while \
-             the stack stands, under {under}."
+            "Normal stress on barrel 1 (B1.1), per meter of boundary: at rest, and the largest until the \
+             first loss of seat, under {under}."
         ),
     ));
     blocks.push(Block::heading(3, "(c) horizontal displacement of barrels 1, 4 and 7"));
@@ -217,8 +217,8 @@ fn stand_in(results: &Results) -> String {
         _ => summary.outcome.kind.to_owned(),
     };
     format!(
-        "This is not the paper's motion, so none of its numbers can be read here. Under {} the six \
-         barrels give: with μ 0.4 {} and {} cm of slip left, with μ 0.1 {} and {} cm.",
+        "This is not the paper's motion, so its numbers cannot be compared. Under {} the six \
+         barrels give: with μ 0.4 {} and {} cm of residual slip, with μ 0.1 {} and {} cm.",
         results.motion.name(),
         what(six),
         slip(six),
@@ -239,7 +239,11 @@ fn figure_7(results: &Results) -> Vec<Block> {
     let moments = figures::moments(full);
     let mut blocks = vec![
         Block::heading(2, "Fig. 7: eight barrels on four levels"),
-        figures::player(&full_scene, "eight-barrels", "Eight barrels at full scale, to watch."),
+        figures::player(
+            &full_scene,
+            "eight-barrels",
+            "Animation of the eight barrels at full scale.",
+        ),
         Block::heading(3, "(a) contact bodies, target bodies, and the collapse"),
         figures::contact_bodies(
             full,
@@ -250,19 +254,19 @@ fn figure_7(results: &Results) -> Vec<Block> {
         figures::strip(
             &full_scene,
             "figure-7a-sequence",
-            "The collapse in the transverse section, by what happens in it.",
+            "The collapse in the transverse section, at its main events.",
             figures::events(full),
         ),
         figures::pairs(
             full,
-            "Bodies that lean on each other by design, by the paper's numbers and ours.",
+            "Bodies that touch by design, with the paper's numbers and our names.",
         ),
     ];
     if figures::racks_carry_the_nodes(full) {
         blocks.push(text(
-            "Racks carry all the nodes, as the paper says of the longitudinal case, where the targets \
-             of every contact body are above and below it. Pairs that meet only in a collapse, such as \
-             barrel on barrel, are in the model too.",
+            "All nodes belong to racks, as the paper states for the longitudinal case, where every contact \
+             body has targets above and below it. The model also has the pairs that meet only in a \
+             collapse, such as barrel on barrel.",
         ));
     }
     blocks.push(Block::heading(3, "(b) half scale at t* against full scale at √2 t*"));
@@ -285,8 +289,8 @@ fn figure_7(results: &Results) -> Vec<Block> {
             number,
             &format!("figure-7c-body-{number}"),
             &format!(
-                "Normal stress on the {what}, per meter of boundary, at rest and the largest while \
-                 the stack stands."
+                "Normal stress on the {what}, per meter of boundary: at rest, and the largest until the \
+                 first loss of seat."
             ),
         ));
     }
@@ -298,7 +302,7 @@ fn along(results: &Results) -> Vec<Block> {
     let scene = scene(run);
     vec![
         Block::heading(2, "Along the barrels: rack sliding"),
-        text("The paper describes this case and does not draw it."),
+        text("The paper describes this case but does not show it in a figure."),
         figures::strip(
             &scene,
             "along",
@@ -306,12 +310,12 @@ fn along(results: &Results) -> Vec<Block> {
              walks off the barrel below.",
             figures::moments(run),
         ),
-        figures::player(&scene, "along-the-barrels", "The same run to watch."),
+        figures::player(&scene, "along-the-barrels", "Animation of the same run."),
         figures::contact_bodies(
             run,
             "along-pairs",
-            "The section along the barrels with the paper's body numbers: the targets of every contact \
-             body are above and below it.",
+            "The section along the barrels with the paper's body numbers; every contact body has targets \
+             above and below it.",
         ),
         figures::pairs(run, "Contact and target bodies along the barrels."),
     ]
@@ -319,11 +323,11 @@ fn along(results: &Results) -> Vec<Block> {
 
 fn studies(results: &Results) -> Vec<Block> {
     let mut blocks = vec![
-        Block::heading(2, "What moves our numbers"),
+        Block::heading(2, "Effects of single quantities"),
         text(
             "The paper gives neither the dimensions of its racks nor the number of its contact \
-             elements, and it does not say how its sine begins. Each of these, and each parameter it \
-             does give, is changed here one at a time.",
+             elements, and it does not state how its sine begins. Here each of these, and each parameter \
+             that it does state, is changed, one at a time.",
         ),
     ];
     for study in &results.studies {

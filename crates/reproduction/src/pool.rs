@@ -1,4 +1,4 @@
-//! Many runs on all cores, with results in the order of the jobs.
+//! Runs jobs on all cores and returns their results in the order of the jobs.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -38,10 +38,10 @@ pub(super) struct Done {
     pub(super) headline: String,
 }
 
-/// Runs all jobs on all cores, in order.
+/// Runs all jobs on all cores and returns their results in order.
 ///
-/// `progress` is called repeatedly with the numbers of completed and of all jobs, and
-/// may stop them: jobs not completed are then `None`.
+/// `progress` is called repeatedly with the numbers of completed and of all jobs, and may stop the work; jobs that
+/// are not completed by then are `None`.
 pub(super) fn run_all(
     jobs: &[Job],
     progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),

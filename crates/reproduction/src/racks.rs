@@ -1,5 +1,5 @@
-//! Other racks set beside that of the catalog: the result and its robustness depend on dimensions that the paper does
-//! not state.
+//! Other racks, compared with that of the catalog: results and their robustness depend on dimensions that the paper
+//! does not state.
 
 use barrelstack::scenario::{Cradle, StackSpec};
 use barrelstack::summary::Summary;
@@ -10,12 +10,13 @@ use super::ensemble;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// A rack: its description, and the change from the regular one.
+/// A rack: its description, and the function that changes the catalog's rack into it.
 type Rack = (&'static str, fn(&mut StackSpec));
 
-/// Solid racks with feet that a random search over cradle, feet, clearance, rails, node spacing and mass
-/// found besides that of the catalog, and three of independent searches, two of which used only the cases across the
-/// barrels. The catalog's was chosen because it reproduces the case along the barrels, too.
+/// Other solid racks with feet that random searches over cradle, feet, clearance, rails, node spacing and mass found.
+///
+/// Some of the searches used only the cases across the barrels. The rack of the catalog was chosen because it
+/// reproduces the case along the barrels, too.
 const RACKS: [Rack; 4] = [
     ("cradle ±30°, feet ±6 cm, clearance 12 cm, 30 kg", |stack| {
         cradle(stack, 30.0);
@@ -60,15 +61,16 @@ pub(super) struct Tried {
     /// Description of the rack.
     pub(super) name: &'static str,
     eight: Summary,
-    /// Six barrels, if under the paper's record.
+    /// Summary of the six barrels, if the paper's record is given.
     six: Option<Summary>,
     /// Number of combinations of contact parameters changed by 10 % that keep the mode of the eight barrels.
     pub(super) same_mode: usize,
-    /// Number of combinations.
+    /// Number of combinations that were run.
     pub(super) members: usize,
 }
 
-/// Returns the runs: for each rack the six barrels, the eight barrels, and these with every combination.
+/// Returns the runs of each rack: the six barrels, the eight barrels, and the eight barrels with every combination of
+/// changed contact parameters.
 pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (name, change) in RACKS {
@@ -106,8 +108,8 @@ pub(super) fn block(found: &[Tried]) -> Block {
     let stress = |summary: &Summary| summary.demands.stress_amplification;
     let drift = |summary: &Summary| summary.demands.top_drift_ratio.map(|drift| 100.0 * drift);
     let table = Table::of(
-        "Other racks, which the paper's text would allow as well. Robust: combinations of contact \
-         parameters 10 % off that keep the mode.",
+        "Other racks that the paper's text allows as well. Robust: number of combinations of contact \
+         parameters changed by 10 % that keep the mode.",
         found,
         &[
             ("rack", "", &|rack| Cell::text(rack.name)),

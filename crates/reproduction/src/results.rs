@@ -1,4 +1,4 @@
-//! The runs of all cases and studies: the plan, and the results.
+//! Planning and collecting the runs of all cases and studies.
 
 use barrelstack::run::Run;
 use barrelstack::scenario::{Scale, Scenario};
@@ -11,15 +11,15 @@ use super::racks::{self, Tried};
 use super::study::{self, Factor, Study, Subject};
 use super::{ReproduceError, ensemble, vary};
 
-/// The paper's measured parameters over its calibrated ones: k is 10 % greater than measured, c 16 %.
+/// The paper's measured k and c over its calibrated ones, which are 10 % and 16 % greater.
 pub(super) const MEASURED: (f64, f64) = (1.0 / 1.10, 1.0 / 1.16);
 
 /// All runs to be done.
 pub(super) struct Plan {
-    /// The jobs, long ones first.
+    /// The jobs, the longest first.
     pub(super) jobs: Vec<Job>,
     studies: Vec<(Subject, Vec<Factor>)>,
-    /// Number of jobs before those of the studies.
+    /// Number of jobs that come before those of the studies.
     single: usize,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Results {
     pub(super) ensemble: Vec<Summary>,
     /// Other racks that reproduce the paper's numbers.
     pub(super) racks: Vec<Tried>,
-    /// Findings of the paper reproduced by racks near the reconstructed one.
+    /// Findings of the paper that racks near the reconstructed one reproduce.
     pub(super) neighborhood: Vec<Kept>,
     /// Effects of single quantities on each case.
     pub(super) studies: Vec<Study>,
@@ -87,7 +87,7 @@ impl Plan {
             return Self { jobs, studies: Vec::new(), single };
         }
         let mut subjects = vec![(Subject::Along, &cases.along), (Subject::Eight, &cases.eight)];
-        // A study explains differences from the paper, which another motion does not allow.
+        // The study explains differences from the paper, which exist only under the paper's own motion.
         if cases.motion.is_papers() {
             subjects.insert(1, (Subject::Six, &cases.six));
         }

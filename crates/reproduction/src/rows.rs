@@ -50,13 +50,13 @@ fn top_gone(summary: &Summary) -> Option<f64> {
     Some(fell(summary, "B4.1")?.max(fell(summary, "B4.2")?))
 }
 
-/// `true` if both barrels of the top of four levels fall before any other.
+/// Returns `true` if both barrels of the top of four levels fall before any other.
 fn top_falls_before_others(summary: &Summary) -> bool {
     let others = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level != Some(4));
     top_gone(summary).is_some_and(|top| others.filter_map(|b| b.fell_at).all(|other| other > top))
 }
 
-/// Describes a study with respect to a published time: the changes that reach it, or the strongest ones.
+/// Describes the changes of a study that bring our time to the published one, or the changes with the largest effect.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
     let time = |summary: &Summary| study.subject.time(summary);
@@ -73,11 +73,14 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
     } else if reached.is_empty() {
         let strongest = study.strongest(2, time, seconds);
         format!(
-            " No single change of the study reaches it; the strongest are {}.{range}",
+            " No single change of the study reaches the published time; the strongest are {}.{range}",
             strongest.join(" and ")
         )
     } else {
-        format!(" Single changes that reach or pass it: {}.{range}", reached.join(", "))
+        format!(
+            " Single changes that reach or pass the published time: {}.{range}",
+            reached.join(", ")
+        )
     }
 }
 
@@ -127,9 +130,9 @@ fn six(results: &Results) -> Vec<Comparison> {
         (2.9, ""),
         stress::average(&results.six.run),
         STRESS_BAND,
-        "The paper reads an average off the envelope of barrel 1: the largest stresses until the first loss of seat, \
-         averaged over the boundary that is loaded at rest, over the average at rest. It was chosen by these words, and \
-         is not the nearest of the definitions in the rows below.",
+        "The paper reads an average off the envelope of barrel 1; here it is the mean of the largest stresses until the \
+         first loss of seat over the mean of the stress at rest, both over the boundary that is loaded at rest. This \
+         definition follows the words of the paper; it is not the one of the rows below that comes nearest.",
     ));
     rows.extend(stress::definitions(&results.six.run, "section 3, Fig. 6b", "six barrels, μ 0.4"));
     let top = figures::footprint(&results.six.run, "B1.1", true);
@@ -147,8 +150,8 @@ fn six(results: &Results) -> Vec<Comparison> {
                 significant(100.0 * bottom, 3)
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
-            "Length of boundary under stress, at rest → at any time while the stack stands; on top \
-             the rack slides. The same if the top gains more than a fifth and more than twice what the bottom gains.",
+            "Length of boundary under stress, at rest → at any time while the stack stands; on top the rack \
+             slides. Agrees if the length on top grows by more than a fifth and by more than twice that at the bottom.",
         ));
     }
     rows.push(number(
@@ -159,8 +162,8 @@ fn six(results: &Results) -> Vec<Comparison> {
         Some((0.0, 5.0, "at most 5 cm")),
         format!(
             "At the end of the run. While the stack stands the rack slips by {} cm at most, and by \
-             {} cm up to the loss of seat: the residual comes from the fall of the upper levels, \
-             whose course small changes alter.",
+             {} cm up to the loss of seat. The residual comes from the fall of the upper levels, \
+             which is sensitive to small changes.",
             centimeters(demands.base_slip_peak),
             centimeters(demands.base_slip_at_collapse)
         ),
@@ -209,7 +212,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
         .bodies
         .iter()
         .filter(|b| b.kind == "barrel" && b.level != Some(4))
-        // What falls after the top level is gone the paper does not follow.
+        // The paper does not follow the motion after the top level has fallen.
         .filter(|b| b.fell_at.is_some_and(|at| second.is_none_or(|gone| at <= gone)))
         .map(|b| b.name.as_str())
         .collect();
@@ -244,7 +247,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (1.5, "s"),
             first,
             Some((1.0, 2.6, "1 to 2.6 s")),
-            format!("First barrel of the top level to have fallen.{}", reasons(study, 1.5)),
+            format!("First fall of a barrel of the top level.{}", reasons(study, 1.5)),
         ),
         number(
             "section 4",
@@ -252,8 +255,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (2.5, "s"),
             second,
             None,
-            "Second barrel of the top level. It lies on the way of the first and of a rack that \
-                  turns over, so it is the less certain of the two.",
+            "Second fall of a barrel of the top level. The first barrel and a rack that turns over are in \
+                  its path, so this time is less certain than the first.",
         ),
         finding(
             "section 4",
@@ -261,8 +264,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             "11, then 10",
             format!("{}; mirrored {}", order(summary), order(mirrored)),
             order(summary) == "11, then 10" || order(mirrored) == "11, then 10",
-            "The paper does not say to which side its sine starts. Stack and motion are symmetric, so \
-             the sides change places with it: mirrored is the run of the opposite sine.",
+            "The paper does not state to which side its sine starts. Stack and motion are symmetric, so a \
+             sine of opposite sign exchanges the sides; \"mirrored\" is the run under that sine.",
         ),
         finding(
             "section 4",
@@ -271,8 +274,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if sides { "to each side" } else { "to the same side" },
             sides,
             format!(
-                "When each has fallen B4.1 is {} m from its place and B4.2 {} m, negative to the left; what \
-                 has fallen rolls on.",
+                "At its own fall B4.1 is {} m from its place and B4.2 {} m, negative to the left; fallen \
+                 barrels roll on.",
                 significant(places[0], 3),
                 significant(places[1], 3)
             ),
@@ -284,8 +287,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if others.is_empty() { "nothing".into() } else { others.join(", ") },
             others.is_empty(),
             format!(
-                "Until the second barrel of the top level has fallen; the run goes on with the ground still \
-                 moving, and the paper does not say when its run ends.{}",
+                "Until the second barrel of the top level has fallen. The ground still moves then and the run goes \
+                 on; the paper does not state when its run ends.{}",
                 alone.unwrap_or_default()
             ),
         ),
@@ -295,7 +298,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (5.2, "%"),
             demands.top_drift_ratio.map(|d| 100.0 * d),
             Some((4.0, 7.0, "4 to 7 %")),
-            "Largest displacement of a top barrel against the ground while the stack stands, over \
+            "Largest displacement of a top barrel relative to the ground while the stack stands, over \
                   the height of the stack.",
         ),
         number(
@@ -305,7 +308,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             demands.stress_amplification,
             STRESS_BAND,
             "The paper compares maximum stresses: the largest stress until the first loss of seat over the largest \
-                  at rest, the greater of both bottom barrels. The rows below have every other definition.",
+                  at rest, for the bottom barrel with the greater ratio. The rows below have all other definitions.",
         ),
     ];
     rows.extend(stress::definitions(&results.eight.run, "section 4, Fig. 7c", "eight barrels"));
@@ -349,9 +352,9 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 format!("{} mm apart at most", significant(1e3 * apart, 3))
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
-            "Largest distance of any body at full scale up to the first loss of seat. The paper sets \
-             its model beside photographs of the test; here both are the model, which similitude makes \
-             the same but for rounding.",
+            "Largest distance of any body at full scale up to the first loss of seat. The paper compares \
+             its model with photographs of the test; here both runs are of the model, and similitude makes \
+             them equal except for rounding.",
         ),
         number(
             "section 4",
@@ -360,7 +363,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
             second,
             None,
             format!(
-                "Second barrel of the top level at half scale. The paper's own model has 2.5/√2 = {}.{}",
+                "Second fall of a barrel of the top level at half scale. The paper's own model gives 2.5/√2 = {}.{}",
                 seconds(2.5 / root),
                 nearest.unwrap_or_default()
             ),
@@ -382,7 +385,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         String::new()
     } else {
         format!(
-            " With other racks this many keep the mode of the case as stated: {}.",
+            " With other racks the number that keeps the mode of the case as stated is: {}.",
             robust.join("; ")
         )
     };
@@ -404,10 +407,10 @@ fn parameters(results: &Results) -> Vec<Comparison> {
             format!("{same_mode} of {members} in the same mode"),
             same_mode == members,
             format!(
-                "The top level comes down in {} of {members}, one of its barrels first of all in {}; the \
-                 first fall is at {} s; drift {} %, stress amplification {}. Two courses compete: as stated \
-                 R4 leaves its seat first and alone, while R3 has walked {} cm of the {} cm of its reach; in \
-                 the others R3 leaves and carries level 4 along.{racks}",
+                "The top level falls in {} of {members}, one of its barrels before all others in {}; the \
+                 first fall is at {} s, drift {} %, stress amplification {}. Two mechanisms compete: in the case \
+                 as stated R4 leaves its seat first and alone, while R3 has walked {} cm of the {} cm of its reach; \
+                 in the other mode R3 leaves its seat and carries level 4 along.{racks}",
                 count(&ensemble::top_falls),
                 count(&ensemble::top_falls_first),
                 span(&|m| m.outcome.first_fall),
@@ -431,8 +434,8 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         band: None,
         verdict: Verdict::NotCompared,
         why: format!(
-            "The calibrated ones are 10 % and 16 % greater: 9.8 kN/cm / 1.10, 22.0 N s/cm / 1.16. The \
-             paper gives no result for the measured ones; with the calibrated ones: {}, first fall {}.",
+            "The calibrated values are 10 % and 16 % greater than the measured ones: 9.8 kN/cm / 1.10, 22.0 N s/cm / \
+             1.16. The paper gives no result for the measured values; with the calibrated ones: {}, first fall {}.",
             mode_of(base),
             base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
         ),

@@ -1,4 +1,4 @@
-//! Every definition of stress amplification that the paper's words allow, with its value.
+//! The definitions of stress amplification that the paper's words allow, with their values.
 
 use barrelstack::run::Run;
 use barrelstack::watch::StressEnvelope;
@@ -7,15 +7,15 @@ use barrelstack_report::significant;
 use super::compare::{Comparison, Verdict};
 use super::numbering;
 
-/// The envelope of one of the paper's barrels.
+/// Returns the stress envelope of a barrel by the paper's number.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     run.stresses.of(body)
 }
 
-/// The largest vertical force until the first loss of seat over that at rest, of what lies on barrel 1 or of what
-/// carries it.
+/// Returns the largest vertical force on barrel 1 until the first loss of seat over that at rest, exerted by the rack
+/// above or by the rack that carries the barrel.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
@@ -25,7 +25,7 @@ fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     Some(joint.until_loss.vertical.0 / joint.at_rest)
 }
 
-/// A definition: its name, its value in a run, and what it is.
+/// A definition: its name, the function that computes its value in a run, and an explanation.
 type Definition = (&'static str, fn(&Run) -> Option<f64>, &'static str);
 
 /// Definitions of the stress amplification of barrel 1.
@@ -33,12 +33,12 @@ const DEFINITIONS: [Definition; 7] = [
     (
         "largest stress over largest at rest",
         |run| envelope(run, 1)?.amplification(),
-        "one point of the envelope over one point at rest, each wherever it is largest",
+        "the largest value of the envelope over the largest stress at rest, at two points of the boundary",
     ),
     (
         "mean of ratios",
         |run| envelope(run, 1)?.mean_ratio(),
-        "the envelope over the stress at rest point by point, averaged over the boundary that is loaded at rest",
+        "the ratio of the envelope to the stress at rest at each point, averaged over the boundary that is loaded at rest",
     ),
     (
         "mean of the envelope over the mean at rest",
@@ -48,7 +48,7 @@ const DEFINITIONS: [Definition; 7] = [
     (
         "mean of the envelope where it is loaded over the mean at rest",
         |run| envelope(run, 1)?.mean_of_envelope(),
-        "the envelope averaged over all of the boundary that it covers, the stress at rest over what is loaded then",
+        "the envelope averaged over the boundary that is loaded at any time, the stress at rest over that loaded at rest",
     ),
     (
         "upper boundary: largest force over that at rest",
@@ -67,13 +67,13 @@ const DEFINITIONS: [Definition; 7] = [
     ),
 ];
 
-/// The largest stresses on barrel 1 until the first loss of seat over those at rest, both averaged over the boundary that
-/// is loaded at rest.
+/// Returns the mean of the largest stresses on barrel 1 until the first loss of seat over the mean of the stress at
+/// rest, both over the boundary that is loaded at rest.
 pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// A row for every definition, of a case that the paper says a number of.
+/// Returns one row for every definition, for a case of which the paper states an amplification.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

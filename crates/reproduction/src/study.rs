@@ -1,4 +1,4 @@
-//! Sensitivity study of a case: one quantity that the paper leaves open changed at a time, down and up.
+//! Sensitivity study of a case: changes one quantity at a time, down and up.
 
 use barrelstack::scenario::{Scenario, StackSpec};
 use barrelstack::summary::Summary;
@@ -27,7 +27,7 @@ impl Subject {
         }
     }
 
-    /// Returns the words for the time that is compared with the paper's.
+    /// Returns the name of the time that is compared with the paper's, for captions.
     pub(super) fn clock(self) -> &'static str {
         match self {
             Self::Six | Self::Along => "first loss of seat",
@@ -35,7 +35,7 @@ impl Subject {
         }
     }
 
-    /// Returns that time (s) of a summary.
+    /// Returns the time (s) of a run that is compared with the paper's.
     pub(super) fn time(self, summary: &Summary) -> Option<f64> {
         match self {
             Self::Six | Self::Along => summary.outcome.time,
@@ -43,7 +43,8 @@ impl Subject {
         }
     }
 
-    /// Returns the longest duration (s) of a member, and that after its collapse, which must include the first fall.
+    /// Returns the longest duration (s) of a run, and its duration after the collapse, which must include the first
+    /// fall.
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),
@@ -53,11 +54,11 @@ impl Subject {
     }
 }
 
-/// One quantity with its changes.
+/// One quantity with its changed values.
 pub(super) struct Factor<Run = Scenario> {
     /// The quantity with its regular value, such as "cradle angle 28°".
     pub(super) name: String,
-    /// Each change, and its run.
+    /// Name of each change, and its scenario or result.
     pub(super) ends: Vec<(String, Run)>,
 }
 
@@ -70,7 +71,7 @@ pub(super) struct Study {
     pub(super) subject: Subject,
     /// The case as stated.
     pub(super) base: Summary,
-    /// Sorted by their effect on the time, the largest first.
+    /// Effects of all factors, sorted by their effect on the time, the largest first.
     pub(super) effects: Vec<Effect>,
 }
 
@@ -201,7 +202,7 @@ impl Study {
         Self { subject, base, effects }
     }
 
-    /// Returns all changes in words, with their results.
+    /// Returns descriptions of all changes, with their results.
     fn changes(&self) -> impl Iterator<Item = (String, &Summary)> {
         self.effects.iter().flat_map(|Effect { name, ends }| {
             ends.iter().map(move |(label, summary)| (format!("{name} ({label})"), summary))
@@ -215,7 +216,7 @@ impl Study {
         Some([times().reduce(f64::min)?, times().reduce(f64::max)?])
     }
 
-    /// Returns the changes that bring a quantity to the published value or beyond it, in words.
+    /// Returns descriptions of the changes that bring a quantity to the published value or beyond it.
     pub(super) fn reaching(
         &self,
         published: f64,
@@ -226,12 +227,12 @@ impl Study {
         self.holding(|summary| of(summary).is_some_and(crosses))
     }
 
-    /// Returns the changes for which a condition holds, in words.
+    /// Returns descriptions of the changes for which a condition holds.
     pub(super) fn holding(&self, what: impl Fn(&Summary) -> bool) -> Vec<String> {
         self.changes().filter(|(_, summary)| what(summary)).map(|(change, _)| change).collect()
     }
 
-    /// Returns the change that brings a quantity nearest to a published value, in words, and that quantity.
+    /// Returns a description of the change that brings a quantity nearest to a published value, and that quantity.
     pub(super) fn nearest(
         &self,
         published: f64,
@@ -242,7 +243,7 @@ impl Study {
         known.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// Returns the changes with the largest effect on a quantity, at most `count`, in words with the result.
+    /// Returns descriptions of the changes with the largest effect on a quantity, at most `count`, with their results.
     pub(super) fn strongest(
         &self,
         count: usize,

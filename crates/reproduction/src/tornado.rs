@@ -5,10 +5,10 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesSt
 
 use super::study::{Study, Subject};
 
-/// The three quantities of a tornado plot, by their positions in a row.
+/// Vertical offsets of the bars of the three quantities within a row.
 const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
 
-/// Builds plot and table of a study.
+/// Builds the plot and the table of a study.
 pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Vec<Block> {
     vec![Block::Figure(figure(study, id, published)), Block::Table(table(study))]
 }
@@ -67,9 +67,9 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
     let range = [low - 0.05 * span, high + 0.05 * span];
     let names = study.effects.iter().map(|effect| effect.name.clone()).collect();
     let caption = format!(
-        "What moves the {}: change against the case as stated, one quantity changed at a time, the \
-         largest effect on the {} on top; the table below names both ends. Upright lines: where the \
-         published values stand.",
+        "Effects of single quantities, {}: change from the case as stated, one quantity changed at a time, \
+         the largest effect on the {} on top. The table below states the changes. Vertical lines mark the \
+         published values.",
         subject.name(),
         subject.clock()
     );

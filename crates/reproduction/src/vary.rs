@@ -35,7 +35,7 @@ pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
     }
 }
 
-/// Multiplies the contact damping of all seats if it is stated as a coefficient.
+/// Multiplies the contact damping of all seats; damping that is stated as a restitution is unchanged.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.damp(factor);
@@ -61,19 +61,19 @@ pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     }
 }
 
-/// Adds to the angle (rad) of cradle supports; a trough is unchanged.
+/// Adds `more` to the angle (rad) of cradle supports; a cradle that is a trough is unchanged.
 pub(super) fn cradle_angle(stack: &mut StackSpec, more: f64) {
     if let Cradle::Supports { angle } = &mut stack.rack.cradle {
         *angle += more;
     }
 }
 
-/// Sets barrels whose wine does not rotate with the wood, at the same mass.
+/// Changes barrels so that their wine does not rotate with the wood, at the same mass.
 pub(super) fn fluid(stack: &mut StackSpec) {
     stack.barrel.fill = Fill::FullFluid;
 }
 
-/// Returns a scenario whose sine has ramps of `cycles` cycles.
+/// Returns a scenario whose sine grows and decays over `cycles` cycles.
 pub(super) fn ramped(scenario: &Scenario, cycles: f64) -> Scenario {
     let mut changed = scenario.clone();
     if let MotionSource::Sine(sine) = &mut changed.motion.source {

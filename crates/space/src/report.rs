@@ -44,7 +44,7 @@ pub fn document(answer: &Answer) -> Document {
     })];
     let heading = |text: &str| Block::heading(2, text);
     if let Some(table) = variants(summary) {
-        blocks.extend([heading("In all variants"), Block::Table(table)]);
+        blocks.extend([heading("Results of all variants"), Block::Table(table)]);
     }
     let decides = summary.ensemble.as_ref().map(|spread| unknowns(&[("", spread)]));
     if let Some(decides) = decides.filter(|blocks| !blocks.is_empty()) {
@@ -52,7 +52,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.extend(decides);
     }
     if let Some(found) = &summary.remedy {
-        blocks.extend([heading("What would have kept it up"), Block::Table(found.table(false))]);
+        blocks.extend([heading("What would have kept the stack up"), Block::Table(found.table(false))]);
     }
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
@@ -60,7 +60,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.push(Block::Figure(Figure::new(
             format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
             format!(
-                "The {} {} at the moments that matter.",
+                "The {} {} at the decisive moments.",
                 if free { "scene" } else { "stack" },
                 sight.words(&run.stack)
             ),
@@ -80,7 +80,7 @@ pub fn document(answer: &Answer) -> Document {
     blocks.push(Block::Table(numbers));
     // The numbers of a failed run look like results but are invalid.
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
-        blocks.push(heading("What became of every body"));
+        blocks.push(heading("Outcome of every body"));
         blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
         if !free {
             blocks.extend([
@@ -135,11 +135,11 @@ fn variants(summary: &Summary) -> Option<Table> {
         table.rows.push(vec![Cell::text(name), Cell::text(value)]);
     };
     row("variants with a verdict", spread.variants.to_string());
-    row("collapse", spread.collapsed.to_string());
+    row("variants that collapse", spread.collapsed.to_string());
     if let Some(share) = spread.share {
         let percent = barrelstack::variants::words::percent;
         let [low, high] = spread.interval.map(percent);
-        row("share, with its 95 % interval", format!("{} ({low} to {high})", percent(share)));
+        row("share that collapses, with its 95 % interval", format!("{} ({low} to {high})", percent(share)));
     }
     if let Some([low, high]) =
         spread.range.map(|range| range.map(barrelstack::variants::words::percent))
@@ -157,7 +157,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     }
     if let Some(fallen) = spread.barrels_fallen {
         row(
-            "barrels fallen where it collapses",
+            "barrels fallen in a collapse",
             format!(
                 "{} of {}{}",
                 range(fallen, 0),
@@ -184,12 +184,12 @@ fn variants(summary: &Summary) -> Option<Table> {
     }
     if spread.cannot_stand > 0 {
         row(
-            "of these under their own weight, before they are shaken",
+            "fallen under their own weight, before they are shaken",
             spread.cannot_stand.to_string(),
         );
     }
     if spread.broken > 0 {
-        row("without a verdict", spread.broken.to_string());
+        row("variants without a verdict", spread.broken.to_string());
     }
     Some(table)
 }

@@ -21,7 +21,7 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
     match &run.outcome {
         Outcome::Stable => match summary.demands.stave_utilization.filter(|load| *load > 1.0) {
             Some(load) => format!(
-                "This stack stands, but staves are crushed: they bear up to {:.0} % of what they are stated to bear.",
+                "This stack stands, but staves are crushed: they carry up to {:.0} % of their stated capacity.",
                 100.0 * load
             ),
             None => "This stack stands.".to_owned(),

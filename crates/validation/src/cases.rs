@@ -1,6 +1,5 @@
-//! Problems in files: a scenario of bodies, followed by the requested quantity and the exact answer.
-//!
-//! A case is a free-scene scenario followed by a table `[expect]`; it needs no code.
+//! Problems in files: each is a free-scene scenario, followed by a table `[expect]` with the requested quantity and the
+//! exact answer.
 //!
 //! ```toml
 //! [expect]
@@ -28,7 +27,7 @@ use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
-    /// Time (s) at which the body is first upright.
+    /// Time (s) at which the body is upright for the first time.
     FirstUpright,
     /// Displacement (m) along `x` of the body relative to the ground at the end.
     #[serde(rename = "way")]
@@ -44,12 +43,12 @@ impl Quantity {
         match self {
             Self::FirstUpright => "time to be upright",
             Self::Displacement => "displacement on the ground",
-            Self::OverturningBorder => "what turns the body over",
-            Self::UpliftBorder => "what lifts a corner",
+            Self::OverturningBorder => "least value that overturns the body",
+            Self::UpliftBorder => "least value that lifts a corner",
         }
     }
 
-    /// Rotation (rad) that marks the border as exceeded.
+    /// Returns the rotation (rad) beyond which the border counts as exceeded.
     fn beyond(self) -> Option<f64> {
         match self {
             Self::FirstUpright | Self::Displacement => None,
@@ -100,7 +99,7 @@ pub(crate) fn shipped() -> Vec<Problem> {
         ("sliding-rectangular", include_str!("../cases/sliding-rectangular.toml")),
         ("sliding-half-sine", include_str!("../cases/sliding-half-sine.toml")),
     ];
-    // A case that cannot be read becomes a problem that fails, so that none is skipped.
+    // A case that cannot be read becomes a problem that fails, so that no case is skipped.
     files
         .into_iter()
         .map(|(name, text)| read(name, text).unwrap_or_else(|error| broken(name, &error)))
@@ -142,7 +141,7 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: a border needs \"g\" or \"m/s\", a time or a displacement none; found {unit:?} \
+                "expect.unit: a border needs \"g\" or \"m/s\", a time or a displacement needs none; found {unit:?} \
                  for {quantity:?}"
             )));
         }

@@ -1,6 +1,6 @@
-//! A number type that counts operations, to compare the work of a step with earlier versions.
+//! A number type that counts arithmetic operations, to compare the work of a step with that of earlier versions.
 //!
-//! Counts are independent of the machine, its load and the compiler: they are the instruction counts of the physics.
+//! Counts depend on the algorithm only, not on the machine, its load or the compiler.
 
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -27,7 +27,7 @@ pub struct Operations {
 impl Operations {
     const NONE: Self = Self { plain: 0, divisions: 0, choices: 0 };
 
-    /// Counts the operations of `work` with counting numbers on this thread.
+    /// Counts the operations on [`Counting`] numbers that `work` performs on this thread.
     pub fn of(work: impl FnOnce()) -> Self {
         DONE.set(Self::NONE);
         work();
@@ -123,14 +123,14 @@ impl SubAssign for Counting {
     }
 }
 
-/// The work of a run.
+/// Counts of the work of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
     /// Accepted steps.
     pub steps: u64,
     /// Number of touching nodes, summed over the steps.
     pub touching: u64,
-    /// All operations, including the start.
+    /// Operations of the whole run, including its start.
     pub operations: Operations,
 }
 

@@ -1,5 +1,6 @@
-//! Runs problems on several threads and checks the answers; rows are in the order of the
-//! problems, independent of the number of threads.
+//! Runs problems on several threads and checks the answers.
+//!
+//! Rows are in the order of the problems, independent of the number of threads.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,7 +13,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 pub struct Row {
     /// The answer, or the reason why there is none.
     pub answer: Result<Outcome, Failure>,
-    /// The error as measured by the tolerance; NaN without an answer.
+    /// The error, relative or absolute like the tolerance; NaN without an answer.
     pub error: f64,
     /// `true` if the answer is within the tolerance.
     pub passed: bool,
@@ -35,13 +36,13 @@ pub fn execute(
         for _ in 0..threads.max(1) {
             scope.spawn(|| {
                 loop {
-                    // The longest problems are at the end of the list and start first.
+                    // The longest problems are at the end of the list, so the list is run from its end.
                     let taken = next.fetch_add(1, Ordering::Relaxed) + 1;
                     let Some(at) = problems.len().checked_sub(taken) else { break };
                     let problem = &problems[at];
                     let row = judge(problem, effort);
                     done(at, &row);
-                    // A thread that panicked leaves no incomplete row.
+                    // Rows are complete even after a panic, since each is stored in one assignment.
                     rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner)[at] = Some(row);
                 }
             });

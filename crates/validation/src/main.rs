@@ -59,7 +59,7 @@ fn request(mut args: impl Iterator<Item = String>) -> Result<Request, String> {
     Ok(request)
 }
 
-/// Runs the problems, prints and writes the results; `true` if every answer is within its tolerance.
+/// Runs the problems, prints and writes the results; returns `true` if every answer is within its tolerance.
 fn validate(request: &Request) -> Result<bool, String> {
     let mut problems: Vec<Problem> = all();
     for path in &request.cases {
@@ -69,7 +69,7 @@ fn validate(request: &Request) -> Result<bool, String> {
     }
     problems.retain(|problem| problem.id.contains(&request.only));
     if problems.is_empty() {
-        return Err(format!("no problem's name holds {:?}", request.only));
+        return Err(format!("no problem has a name that contains {:?}", request.only));
     }
     let start = Instant::now();
     let total = problems.len();

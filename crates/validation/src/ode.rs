@@ -5,10 +5,10 @@
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP};
 
-/// Integrates `y' = rates(t, y)` from `start` at `from` (s) to `until` (s), by the method of order 8 of
-/// Dormand and Prince with a relative tolerance of 10⁻¹³ per step.
+/// Integrates `y' = rates(t, y)` from `start` at `from` (s) to `until` (s).
 ///
-/// NaN if the integration fails, which no tolerance admits.
+/// Uses the method of order 8 of Dormand and Prince with a relative tolerance of 10⁻¹³ per step.
+/// Returns NaN, which no tolerance admits, if the integration fails.
 pub fn solution<const N: usize>(
     rates: impl Fn(f64, &[f64; N]) -> [f64; N],
     start: [f64; N],

@@ -1,8 +1,7 @@
-//! Independent integrator for one rocking block: Housner's equation between impacts, restitution at impacts.
+//! Independent integrator for one rocking block: Housner's equation between impacts, a restitution at impacts.
 //!
-//! It shares no code with the contact: classical Runge–Kutta steps, with the times of uplift and
-//! impact by bisection.
-//! A library's integrator verifies it where motion is smooth (the problems `ode/own-integrator-…`).
+//! The integrator shares no code with the contact. It takes classical Runge–Kutta steps and finds the times of uplift
+//! and impact by bisection. The problems `ode/own-integrator-…` verify its smooth motions with an external library.
 
 use barrelstack_dynamics::math::{cos, sin, tan};
 
@@ -17,11 +16,11 @@ pub struct Rocker {
     pub rate: f64,
     /// Ratio η of angular velocities after and before an impact.
     pub restitution: f64,
-    /// `true` for linearized equations of small angles.
+    /// `true` for equations that are linearized for small angles.
     pub slender: bool,
 }
 
-/// Outcome of a block.
+/// Outcome of the motion of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ride {
     /// `true` if it overturned.
@@ -37,7 +36,7 @@ pub const OVERTURNED: f64 = 1.2;
 const REST: f64 = 1e-6;
 
 impl Rocker {
-    /// Returns θ'' (rad/s²) at a rotation, on a side (±1), under a ground acceleration over g.
+    /// Returns θ'' (rad/s²) at rotation `theta` (rad) on a side (±1), under the ground acceleration `push` (over g).
     fn spin_rate(&self, theta: f64, side: f64, push: f64) -> f64 {
         let angle = self.alpha * side - theta;
         let moment = if self.slender { angle + push } else { sin(angle) + push * cos(angle) };
@@ -49,7 +48,9 @@ impl Rocker {
         if self.slender { self.alpha } else { tan(self.alpha) }
     }
 
-    /// Takes one Runge–Kutta step; the ends are evaluated slightly inside, so that the push may be discontinuous there.
+    /// Takes one Runge–Kutta step.
+    ///
+    /// The push is evaluated slightly inside the ends of the step, since it may be discontinuous there.
     fn step(
         &self,
         (theta, spin): (f64, f64),
@@ -71,8 +72,9 @@ impl Rocker {
         )
     }
 
-    /// Returns rotation (rad) and angular velocity (rad/s) after a time (s) on one corner, in a number of equal steps;
-    /// `start` is the state at time zero, with a positive rotation.
+    /// Returns rotation (rad) and angular velocity (rad/s) after a time (s) of rocking on one corner.
+    ///
+    /// Takes a number of equal steps from `start`, the state at time zero, whose rotation is positive.
     pub(crate) fn stretch(
         &self,
         start: (f64, f64),
@@ -85,17 +87,17 @@ impl Rocker {
         (0..steps).fold(start, |at, i| self.step(at, 1.0, (f64::from(i) * length, length), &push))
     }
 
-    /// `true` if the block can no longer overturn without further push.
+    /// Returns `true` if the block can no longer overturn unless it is pushed again.
     fn safe(&self, theta: f64, spin: f64) -> bool {
         let left = self.alpha - theta.abs();
         let barrier = if self.slender { 0.5 * left * left } else { 1.0 - cos(left) };
         left > 0.0 && 0.5 * spin * spin < self.rate * self.rate * barrier
     }
 
-    /// Integrates through a ground acceleration (m/s² over time) that ends by `pushed_until` (s).
+    /// Integrates the motion of the block under a ground acceleration (m/s²) that ends by `pushed_until` (s).
     ///
-    /// Steps are integer fractions of that time and at most `longest` (s).
-    /// A block undecided `patience` (s) later is classed by its rotation at that time.
+    /// Steps are integer fractions of that time, and at most `longest` (s).
+    /// A block that is still undecided `patience` (s) later is judged by its rotation at that time.
     pub fn ride(
         &self,
         acceleration: impl Fn(f64) -> f64,
@@ -112,7 +114,7 @@ impl Rocker {
         loop {
             let (mut from, until) = (count * length, (count + 1.0) * length);
             count += 1.0;
-            // Uplift, free rocking and impacts within the step.
+            // One pass for each uplift, stretch of free rocking, or impact within the step.
             for _ in 0..100 {
                 if until - from < 1e-12 * length {
                     break;
@@ -149,7 +151,7 @@ impl Rocker {
             }
             if until >= pushed_until - 1e-9 * length {
                 let resting = side == 0.0;
-                // It still swings to the peak that its energy allows.
+                // A block that moves away from rest still swings to the peak that its energy allows.
                 let settled = self.safe(theta, spin) && spin * theta <= 0.0;
                 if resting || settled {
                     return ride;
@@ -186,7 +188,7 @@ mod tests {
     use super::*;
     use crate::drive::Shake;
 
-    /// Finds the overturning border in units of g tan α.
+    /// Returns the least strength that overturns the block, in units of g tan α.
     fn border(
         rocker: &Rocker,
         pulse: impl Fn(f64) -> Shake,

@@ -1,4 +1,4 @@
-//! The report: every problem with the exact answer, ours, the error, the tolerance and the order.
+//! The report: every problem with the exact answer, our answer, the error, the tolerance and the order.
 
 use std::fmt::Write as _;
 
@@ -6,68 +6,68 @@ use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significan
 
 use crate::{Effort, Problem, Row, Tolerance};
 
-/// Differences between rigid-block theory and penalty contact, in sentences.
+/// Known differences between rigid-block theory and penalty contact.
 pub const LIMITS: [&str; 7] = [
-    "Housner's ratio of angular velocities is the least that a corner can show: his impact is \
-     perfectly plastic. Damping between none and ζ = 3 chooses any ratio from 1 down to his; lower \
-     ones, such as those measured on rubber or on concrete of small aspect, are out of reach.",
-    "With ζ = 3, which the problems of Housner use, ever stiffer corners come to a ratio that is by \
-     0.0002 above his at α = 0.40 (by 0.0016 with ζ = 1, by 0.00004 with ζ = 12). So the error of \
-     impacts of stocky blocks does not go to nothing, and its order says nothing once it is that small.",
-    "The calibrated damping belongs to a stiffness, a slenderness and a mass; it hardly depends on \
+    "Housner's ratio of angular velocities is the least that a corner can reach, since his impact is \
+     perfectly plastic. Damping ratios from zero to ζ = 3 give any ratio from 1 down to his. Lower \
+     ratios, such as those measured on rubber or on stocky concrete blocks, cannot be reached.",
+    "With ζ = 3, which the problems of Housner use, the ratio of ever stiffer corners converges to a value \
+     0.0002 above his at α = 0.40 (0.0016 above with ζ = 1, 0.00004 with ζ = 12). So the error of \
+     impacts of stocky blocks does not vanish, and an order of convergence is meaningless for errors that small.",
+    "The calibrated damping holds for one stiffness, one slenderness and one mass; it hardly depends on \
      the amplitude (see the notes of restitution/rocking-target).",
     "Nodes between the corners change the impact: with three nodes on the base, a block of α = 0.25 \
-     shows η between 0.92 and 0.96 in place of 0.908, with eleven between 0.94 and 0.97, as the damping \
-     goes. Refining the nodes of a flat face does not converge to Housner; problems of rocking use two.",
-    "Overturning borders hold for blocks that cannot slide and whose contact is stiff; many-impact \
-     windows of slow pulses (ω/p below 1.5) are too narrow to judge by and are left out.",
+     has η between 0.92 and 0.96 instead of 0.908, with eleven nodes between 0.94 and 0.97, depending on the \
+     damping. Refining the nodes of a flat face does not converge to Housner, so the rocking problems use two.",
+    "Overturning borders hold for blocks that cannot slide and whose contact is stiff. Windows of \
+     overturning after many impacts under slow pulses (ω/p below 1.5) are too narrow to compare and are left out.",
     "Fall times of stacks after the first seconds are chaotic; only verdicts and early falls are \
      compared.",
-    "How the ground of the consensus scenes starts, and from which drop a barrel counts as fallen, is \
-     not on record. Here the displacement is A sin ωt from the first instant, a jolt, and the drop is one \
-     level. With a drop of 0.2 m the first fall of scene A is at 1.40 s, before that of the five codes; \
-     for ground that starts at the same velocity as the bodies it falls at 2.8 s, and scene C drops a \
-     barrel after 4.2 s where the five codes drop none. As a scenario, whose undersides are rows of \
-     nodes, scene A falls at about 2.1 s, so only its verdict is compared.",
+    "It is not documented how the ground of the consensus scenes starts, and from which drop a barrel \
+     counts as fallen. Here the displacement is A sin ωt from the first instant, a sudden start, and the drop is one \
+     level. With a drop of 0.2 m the first fall of scene A is at 1.40 s, before that of the five codes. \
+     With ground that starts at the same velocity as the bodies it is at 2.8 s, and in scene C a \
+     barrel falls after 4.2 s, while none falls in the five codes. As a scenario, whose undersides are rows of \
+     nodes, scene A has its first fall at about 2.1 s, so only its verdict is compared.",
 ];
 
 /// Known problems that are not covered, with the reason.
 pub const ABSENT: [(&str, &str); 10] = [
     (
         "many-impact windows below ω/p = 1.5; double-impulse limit; Dimitrakopoulos and DeJong 2012",
-        "the windows are too narrow to judge by; of the other two no closed form is on record here.",
+        "the windows are too narrow to compare; for the other two no closed form was available.",
     ),
-    ("modes with free flight and their probabilistic form", "no exact answer is on record here."),
+    ("modes with free flight and their probabilistic form", "no exact answer was available."),
     (
         "ball bearings on plates and cones",
-        "the friction of rolling that they transmit is no law of this code.",
+        "the program has no law for the rolling friction that they transmit.",
     ),
     (
         "wooden bodies (Catania), vessels (Papalou), 226 shake-table tests (Bristol)",
-        "the measured data may not be passed on with the program, or are not at hand; the ensemble of \
-         synthetic records stands in for them.",
+        "the measured data cannot be distributed with the program, or were not available; the ensemble of \
+         synthetic records takes their place.",
     ),
     (
         "two-block histories of Psycharis, Spanos and Kounadis; trilith",
-        "only the four patterns are on record; equations and tests of the histories are not.",
+        "only the four patterns were available, not the equations and tests of the histories.",
     ),
     (
         "decay of granite block S3",
-        "its measured ratio, 0.978, lies below Housner's 0.9787, the least that any damping shows.",
+        "its measured ratio, 0.978, lies below Housner's 0.9787, the least that any damping can give.",
     ),
     (
         "thinnest semicircular arch (t/R = 0.1075)",
-        "no scene of voussoirs has been made to come to rest here yet.",
+        "no scene of voussoirs that comes to rest exists here yet.",
     ),
-    ("arch of 27 blocks with friction modes", "its published modes are not on record here."),
+    ("arch of 27 blocks with friction modes", "its published modes were not available."),
     ("heavy top, Euler disc", "three-dimensional; the model is planar."),
     (
         "contact suites of Kratos (9 cases) and of Chung and Ooi (8 tests)",
-        "their numbers are not on record; rebound, slip and roll are answered by closed forms instead.",
+        "their numbers were not available; rebound, slip and rolling are compared with closed forms instead.",
     ),
 ];
 
-/// Returns the heading of a theory.
+/// Returns the heading of the section for a theory.
 fn heading(theory: &str) -> &str {
     match theory {
         "housner" => "Free rocking and one push",
@@ -93,18 +93,18 @@ fn heading(theory: &str) -> &str {
 
 fn tolerance(tolerance: Tolerance) -> String {
     match tolerance {
-        Tolerance::Relative(limit) => format!("{} of it", significant(limit, 2)),
+        Tolerance::Relative(limit) => format!("{} relative", significant(limit, 2)),
         Tolerance::Absolute(limit) => significant(limit, 3),
     }
 }
 
-/// Builds the page.
+/// Builds the report.
 pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64) -> Document {
     let failed = rows.iter().filter(|row| !row.passed).count();
     let passed = rows.len() - failed;
-    let mut blocks = vec![Block::heading(2, "What is not claimed")];
+    let mut blocks = vec![Block::heading(2, "Limits of the comparison")];
     blocks.push(Block::List(LIMITS.iter().map(|text| (*text).to_owned()).collect()));
-    blocks.push(Block::heading(2, "What is not answered, and why"));
+    blocks.push(Block::heading(2, "Known problems that are not covered"));
     blocks.push(Block::List(ABSENT.iter().map(|(what, why)| format!("{what}: {why}")).collect()));
     let mut theories: Vec<&str> = vec![];
     for problem in problems {
@@ -137,12 +137,12 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
         verdict: Verdict {
             headline,
             sentences: vec![
-                "Every problem has an exact or published answer, or one by an integrator that shares \
-                 no code with the contact; the error and the tolerance are relative where the \
-                 tolerance says so."
+                "Every problem has an exact answer, a published answer, or one by an integrator that shares \
+                 no code with the contact. Error and tolerance are relative where the tolerance is marked \
+                 as relative."
                     .into(),
-                "The order is that of the error when step and contact time are halved together, or the \
-                 step alone where the equations hold the springs."
+                "The order is that of the error when time step and contact duration are halved together, or \
+                 the step alone where the exact equations contain the springs."
                     .into(),
             ],
             tone: if failed == 0 { Tone::Neutral } else { Tone::Invalid },
@@ -152,7 +152,7 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
         provenance: vec![
             ("version".into(), env!("CARGO_PKG_VERSION").into()),
             ("form".into(), format!("{effort:?}").to_lowercase()),
-            ("time on the clock".into(), format!("{seconds:.0} s")),
+            ("wall time".into(), format!("{seconds:.0} s")),
         ],
         warnings: failures,
         ..Document::default()

@@ -1,4 +1,4 @@
-//! A problem: the quantity, the exact answer, and the computation.
+//! A problem: the requested quantity, the exact answer, and the computation of ours.
 
 use barrelstack_dynamics::{ModelError, RunError, SettleError};
 
@@ -7,7 +7,7 @@ use barrelstack_dynamics::{ModelError, RunError, SettleError};
 pub enum Effort {
     /// For the test suite: softer contacts, wider brackets, smaller ensembles.
     Fast,
-    /// For the report: converged, with the order of convergence.
+    /// For the report: converged answers, with the order of convergence.
     Full,
 }
 
@@ -21,7 +21,7 @@ pub enum Tolerance {
 }
 
 impl Tolerance {
-    /// Returns the error of an answer as measured by this tolerance.
+    /// Returns the error of an answer, relative or absolute like this tolerance.
     pub fn error(self, value: f64, exact: f64) -> f64 {
         match self {
             Self::Relative(_) => (value - exact).abs() / exact.abs(),
@@ -36,18 +36,18 @@ impl Tolerance {
         }
     }
 
-    /// `true` if an answer is within the tolerance; never for NaN.
+    /// Returns `true` if an answer is within the tolerance; NaN never is.
     pub fn admits(self, value: f64, exact: f64) -> bool {
         self.error(value, exact) <= self.limit()
     }
 }
 
-/// The answer of the code.
+/// Our answer to a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// In the unit of the problem.
+    /// The answer, in the unit of the problem.
     pub value: f64,
-    /// Order of convergence to the exact answer; see the crate's documentation.
+    /// Order of convergence to the exact answer (see the documentation of the crate).
     pub order: Option<f64>,
     /// Note for the reader.
     pub note: String,
@@ -73,7 +73,7 @@ impl From<f64> for Outcome {
     }
 }
 
-/// The reason why there is no answer.
+/// Reasons why a problem has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// The bodies make no valid model.
@@ -107,7 +107,7 @@ type Run = Box<dyn Fn(Effort) -> Result<Outcome, Failure> + Send + Sync>;
 
 /// A problem with an exact answer.
 pub struct Problem {
-    /// Unique, such as `housner/quarter-period-0.50`; the part before the slash is the theory.
+    /// Unique identifier, such as `housner/quarter-period-0.50`; the part before the slash is the theory.
     pub id: String,
     /// The scene in a few words.
     pub title: String,
@@ -121,7 +121,7 @@ pub struct Problem {
     pub exact: f64,
     /// Tolerance at full effort.
     pub tolerance: Tolerance,
-    /// Tolerance at fast effort, if coarser.
+    /// Tolerance at fast effort, if it is coarser.
     pub fast: Option<Tolerance>,
     /// The computation.
     pub run: Run,
@@ -136,25 +136,25 @@ impl Problem {
         }
     }
 
-    /// Returns the theory that it belongs to.
+    /// Returns the theory that the problem belongs to: the first part of its id.
     pub fn theory(&self) -> &str {
         self.id.split_once('/').map_or(self.id.as_str(), |(theory, _)| theory)
     }
 
-    /// Returns its name within its theory.
+    /// Returns the name of the problem within its theory: the second part of its id.
     pub fn name(&self) -> &str {
         self.id.split_once('/').map_or(self.id.as_str(), |(_, name)| name)
     }
 }
 
-/// The setting of a problem, created by [`setting`].
+/// The id, scene and source of a problem, created by [`setting`].
 pub struct Setting {
     id: String,
     title: String,
     source: String,
 }
 
-/// Creates a setting: an [id](Problem::id), the scene in a few words, and the source of the theory.
+/// Creates a setting from an [id](Problem::id), the scene in a few words, and the source of the theory.
 pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) -> Setting {
     Setting { id: id.into(), title: title.into(), source: source.into() }
 }
@@ -178,13 +178,13 @@ pub fn relative(exact: f64, limit: f64) -> Answer {
     Answer { exact, tolerance: Tolerance::Relative(limit), fast: None }
 }
 
-/// Creates an answer with an absolute tolerance, in its unit.
+/// Creates an answer with an absolute tolerance, in the unit of the quantity.
 pub fn absolute(exact: f64, limit: f64) -> Answer {
     Answer { exact, tolerance: Tolerance::Absolute(limit), fast: None }
 }
 
 impl Answer {
-    /// Returns the answer with another limit, of the same kind, at fast effort.
+    /// Returns the answer with another limit of the same kind for fast effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -215,7 +215,7 @@ impl Question {
         Problem { id, title, source, quantity, unit, exact, tolerance, fast, run }
     }
 
-    /// Adds a computation at successive refinements; see [`refine`].
+    /// Adds a computation that is repeated at successive refinements (see [`refine`]).
     pub fn refined(
         self,
         answer: impl Fn(Effort, i32) -> Result<f64, Failure> + Send + Sync + 'static,
@@ -224,7 +224,7 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// Adds a bisection within a fraction of the exact answer to either side; see [`border`].
+    /// Adds a bisection between brackets at a fraction of the exact answer to either side of it (see [`border`]).
     pub fn at_border(
         self,
         share: f64,
@@ -236,7 +236,7 @@ impl Question {
     }
 }
 
-/// Evaluates successive refinements (0, 1, 2) at full effort, only the coarsest at fast effort.
+/// Evaluates the refinements 0, 1 and 2 at full effort, and only the coarsest, 0, at fast effort.
 ///
 /// # Errors
 /// If `answer` fails.
@@ -268,10 +268,10 @@ pub fn halvings(effort: Effort) -> u32 {
     }
 }
 
-/// Finds the border between `false` below and `true` above, by bisection between two brackets.
+/// Finds by bisection the value at which `above` changes from `false` to `true`, between two brackets.
 ///
 /// # Errors
-/// If the brackets do not enclose a border, and those of `above`.
+/// If the brackets do not enclose a border, or if `above` fails.
 pub fn border(
     (mut low, mut high): (f64, f64),
     halvings: u32,

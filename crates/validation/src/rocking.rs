@@ -1,4 +1,4 @@
-//! A rocking block on penalty corners, and the damping that makes it rock according to Housner.
+//! A rocking block on penalty corners, and the damping with which it reproduces a restitution such as Housner's.
 
 use std::ops::ControlFlow;
 
@@ -10,7 +10,7 @@ use crate::oracle::{OVERTURNED, Ride, Rocker};
 use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
 use crate::{Effort, Failure, GRAVITY, swing, theory};
 
-/// Mass (kg); no answer depends on it.
+/// Mass (kg) of the block; no answer depends on it.
 const MASS: f64 = 100.0;
 
 /// The contact law of the corners.
@@ -31,9 +31,9 @@ pub struct RockingBlock {
     pub alpha: f64,
     /// Contact law of the corners.
     pub corner: Corner,
-    /// ω = √(k/m) (rad/s), the stiffness of a corner as a frequency with the whole mass.
+    /// ω = √(k/m) (rad/s): the stiffness of a corner, as a frequency with the whole mass.
     pub contact_frequency: f64,
-    /// ζ = c/(2√(km)) of a corner with the whole mass.
+    /// ζ = c/(2√(km)): the damping of a corner, as a ratio with the whole mass.
     pub damping_ratio: f64,
 }
 
@@ -49,27 +49,27 @@ impl RockingBlock {
         }
     }
 
-    /// Returns the block with corners four times as stiff for each refinement.
+    /// Returns the block with its corners made four times as stiff by each refinement.
     #[must_use]
     pub fn refined(mut self, refinements: i32) -> Self {
         self.contact_frequency *= 2.0_f64.powi(refinements);
         self
     }
 
-    /// Returns p (rad/s).
+    /// Returns the frequency parameter p = √(3g/4R) (rad/s).
     pub fn rate(&self) -> f64 {
         theory::rocking_rate(self.radius)
     }
 
-    /// Returns the rigid block with a restitution.
+    /// Returns the rigid block of this size, with a restitution.
     pub fn rigid(&self, restitution: f64) -> Rocker {
         Rocker { alpha: self.alpha, rate: self.rate(), restitution, slender: false }
     }
 
     /// Returns the time step (s): well below the stability limit of the damped corner.
     pub fn step(&self) -> f64 {
-        // Along the base a corner has the mobility 1/m + (R cos α)²/I, about 4/m; the tangential damping stays at
-        // ζ = 1 or less, so the normal direction governs only above it.
+        // Along the base a corner has the mobility 1/m + (R cos α)²/I, about 4/m. The tangential damping stays at
+        // ζ = 1 or less, so the normal direction limits the step only above this ratio.
         let zeta = 2.0 * self.damping_ratio.max(0.5);
         let limit = (1.0 + zeta * zeta).sqrt() - zeta;
         0.4 * limit / self.contact_frequency
@@ -82,7 +82,7 @@ impl RockingBlock {
     /// Creates the block at a rotation (rad, clockwise positive) on its loaded corners, at its static penetration.
     ///
     /// # Errors
-    /// If its numbers do not make a valid body.
+    /// If the dimensions do not make a valid body.
     pub fn scene(&self, lean: f64) -> Result<Scene, Failure> {
         let stiffness = self.stiffness();
         let (half_width, half_height) =
@@ -106,7 +106,7 @@ impl RockingBlock {
             Corner::SpeedGap => NormalLaw::SpeedGap { stiffness, damping },
             Corner::KelvinVoigt => NormalLaw::KelvinVoigt { stiffness, damping },
         };
-        // Rigid-block theory has no sliding, whatever the push.
+        // The block of rigid-block theory never slides.
         let laws = interface(normal, coulomb(20.0, stiffness, tangential));
         Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
     }
@@ -114,7 +114,7 @@ impl RockingBlock {
     /// Returns p times the time from a rotation of `share · α` to upright.
     ///
     /// # Errors
-    /// If it does not come down.
+    /// If the block does not come down.
     pub fn quarter_period(&self, share: f64) -> Result<f64, Failure> {
         match self.swings(share, 1, 20.0)?.first() {
             Some((end, _)) => Ok(end * self.rate()),
@@ -122,8 +122,9 @@ impl RockingBlock {
         }
     }
 
-    /// Releases the block at a rotation of `share · α`; returns for each impact the time (s) at which the block is
-    /// upright, and the following peak rotation over α.
+    /// Releases the block at a rotation of `share · α` and follows its impacts.
+    ///
+    /// Returns for each impact the time (s) at which the block is upright, and the next peak rotation over α.
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -136,7 +137,7 @@ impl RockingBlock {
         let mut scene = self.scene(share * self.alpha)?;
         let (mut before, mut peak) = ((0.0, share * self.alpha), 0.0_f64);
         let mut swings: Vec<(f64, f64)> = vec![];
-        // During an impact, bounces of the corners rotate the block by less than this.
+        // During an impact the corners bounce and rotate the block, by less than this angle.
         let slack = 1e-3 * self.alpha;
         let mut side = 1.0;
         let mut crossing = f64::NAN;
@@ -146,7 +147,7 @@ impl RockingBlock {
                 crossing = swing::crossing(before, (state.time, lean));
             }
             if side * lean < -slack {
-                // On the other side for good: the last crossing was the impact.
+                // The block has clearly passed to the other side, so the last crossing was the impact.
                 if let Some(last) = swings.last_mut() {
                     last.1 = peak / self.alpha;
                 }
@@ -169,8 +170,8 @@ impl RockingBlock {
         Ok(swings)
     }
 
-    /// Returns the ratio of angular velocities at the first impact: the root of the remaining energy, from the next
-    /// peak.
+    /// Returns the ratio of angular velocities at the first impact: the square root of the share of energy that
+    /// remains, computed from the next peak.
     ///
     /// # Errors
     /// If the block does not rock.
@@ -186,8 +187,8 @@ impl RockingBlock {
         }
     }
 
-    /// Returns the block with the damping ratio for which its first impact from `φ = ½` has the target ratio of
-    /// angular velocities; `None` if no damping ratio up to 12 does.
+    /// Returns the block with the damping ratio that gives the target ratio of angular velocities at the first impact
+    /// from `φ = ½`; `None` if no damping ratio up to 12 does.
     ///
     /// # Errors
     /// If a block does not rock.
@@ -233,7 +234,7 @@ impl RockingBlock {
     ) -> Result<bool, Failure> {
         let mut scene = self.scene(0.0)?;
         let (mut fell, mut side) = (false, 0.0);
-        // Vibration of the corners before uplift.
+        // Rotations below this angle are vibrations of the corners before uplift.
         let slack = 0.01 * self.alpha;
         scene.watch(drive, self.step(), acceleration_end + 15.0, |state, _, _| {
             let lean = state.poses[1].orientation;
@@ -247,7 +248,7 @@ impl RockingBlock {
         Ok(fell)
     }
 
-    /// Computes the outcome of the block under a ground motion.
+    /// Computes the outcome of the motion of the block on moving ground.
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -267,8 +268,8 @@ impl RockingBlock {
             peak = peak.max(last);
             fell = last > OVERTURNED;
             let left = self.alpha - last;
-            // It only loses energy from here on. During an impact springs store part of it, so only a
-            // block that clearly swings back, or rests, is classed.
+            // From here on the block only loses energy. During an impact the springs store part of it, so only a
+            // block that clearly swings back, or rests, is judged.
             let back = spin * lean < 0.0 && last > 0.01 * self.alpha;
             let rests = last < 1e-5 && spin.abs() < 1e-4;
             let safe = state.time > acceleration_end

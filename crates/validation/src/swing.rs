@@ -7,18 +7,18 @@ use barrelstack_dynamics::{Space, State, Still};
 use crate::Failure;
 use crate::scene::Scene;
 
-/// Returns the time (s) at which a quantity is zero between two (time, value) pairs, by linear interpolation.
+/// Returns the time (s) of the zero between two pairs of time and value, by linear interpolation.
 pub fn crossing(before: (f64, f64), now: (f64, f64)) -> f64 {
     before.0 + before.1 / (before.1 - now.1) * (now.0 - before.0)
 }
 
-/// Returns the times (s) at which a quantity changes its sign, from its times (s) and values.
+/// Returns the times (s) at which a quantity changes its sign, from pairs of time (s) and value.
 pub fn crossings(values: &[(f64, f64)]) -> Vec<f64> {
     let changes = values.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0);
     changes.map(|pair| crossing(pair[0], pair[1])).collect()
 }
 
-/// Returns the crossings of a quantity of a scene on ground at rest, until a time (s).
+/// Returns the times (s) of the zero crossings of a quantity of a scene on ground at rest, up to a time (s).
 ///
 /// # Errors
 /// If the run fails numerically.
@@ -36,7 +36,7 @@ pub fn run_crossings<S: Space<Real = f64>>(
     Ok(crossings(&values))
 }
 
-/// Returns the mean interval (s) between these times; `None` if there are fewer than `least`.
+/// Returns the mean interval (s) between successive instants; `None` if there are fewer than `least` instants.
 pub fn mean_time(instants: &[f64], least: usize) -> Option<f64> {
     match instants {
         [first, .., last] if instants.len() >= least => {

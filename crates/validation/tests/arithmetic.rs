@@ -1,6 +1,4 @@
-//! Number of arithmetic operations per step, exactly.
-//!
-//! Times depend on the machine and its load; these counts do not.
+//! Exact numbers of arithmetic operations per step, which depend neither on the machine nor on its load.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use barrelstack::Scenario;
@@ -11,9 +9,9 @@ use barrelstack_validation::counting::{Operations, Work};
 use barrelstack_validation::drive::Shake;
 use barrelstack_validation::problems::consensus;
 
-/// Recorded cost of a step: scene, method, touching nodes, and operations per step.
+/// Recorded cost of a step: scene, method, touching nodes, and operations.
 ///
-/// A smaller figure is progress, and is recorded here; a larger one needs a reason in the commit.
+/// Record smaller numbers here; larger ones need a reason in the commit message.
 const KNOWN: [(&str, Method, [u64; 4]); 4] = [
     ("five codes", Method::VelocityVerlet, [24, 6144, 71, 2042]),
     ("five codes", Method::SemiImplicitEuler, [24, 5925, 71, 2030]),
@@ -21,7 +19,7 @@ const KNOWN: [(&str, Method, [u64; 4]); 4] = [
     ("paper", Method::VelocityVerlet, [80, 14487, 175, 5430]),
 ];
 
-/// Number of steps in the average: the stack rocks and nothing has fallen.
+/// Number of steps that are averaged, in which the stack rocks and nothing falls.
 const STEPS: u64 = 1000;
 
 /// The ground motion of the paper's benchmark, reduced so that both stacks stand.

@@ -1,4 +1,4 @@
-//! Every problem at fast effort.
+//! Runs every problem at fast effort.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! The scene on which five codes agree, written as a user would, equals the one built in code.
+//! The scene on which five codes agree is the same, whether it is written in a file or built in code.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use std::f64::consts::TAU;

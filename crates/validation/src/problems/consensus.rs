@@ -1,12 +1,12 @@
 //! Eight barrels on four levels, a scene on which five independent codes agree.
 //!
-//! In two versions. *Bodies*: the scene of those codes exactly, with one contact point between a barrel's crown
-//! and a flat underside. *Scenario*: the nearest stack of the scenario language, whose underside is
-//! a row of nodes, several of which share a sunken crown, so that a joint is stiffer.
+//! The scene exists in two versions. *Bodies* is exactly the scene of those codes, with one contact point between the
+//! crown of a barrel and a flat underside. *Scenario* is the most similar stack that a scenario can state; its
+//! undersides are rows of nodes, several of which press on the same crown, so its contacts are stiffer.
 //!
-//! The ground's displacement is A sin ωt from the first instant, which is a sudden start, according to
-//! "sine base motion of 0.1016 m". Their definition of a fall is not documented; here a barrel
-//! has fallen once it is one level lower, 0.76 m.
+//! The displacement of the ground is A sin ωt from the first instant, a sudden start, which is how the description
+//! "sine base motion of 0.1016 m" is read here. The codes do not document their definition of a fall; here a barrel
+//! has fallen once it is one level (0.76 m) lower.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -31,13 +31,13 @@ const LEVELS: usize = 4;
 const STIFFNESS: f64 = 9.8e5;
 const DAMPING: f64 = 2200.0;
 
-/// Drops (m): the one from which a barrel counts as fallen, and one that shows the effect of the choice.
+/// Drops (m): the first counts as a fall, the second shows the effect of that choice.
 const FALLS: [f64; 2] = [0.76, 0.2];
 
 /// Length of the runs (s).
 const END: f64 = 10.0;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         first_fall(),
@@ -52,17 +52,17 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn first_fall() -> Problem {
     setting("consensus/a-bodies", "scene A (±20°) from bodies", SOURCE)
-        // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half of it.
+        // The five codes give 1.64, 1.73, 1.75 to 1.85, 2.0 and 1.69 s: the middle of this range, and half its width.
         .quantity("first fall of a barrel", "s", absolute(1.82, 0.18))
         .by(move |_| match bodies(20.0, 3.0)? {
             [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(
-                "five codes: 1.64 s to 2.0 s; a drop of 0.2 m is passed at {earlier:.2} s"
+                "five codes: 1.64 s to 2.0 s; a drop of 0.2 m is reached at {earlier:.2} s"
             ))),
             _ => Err(Failure::Absent("nothing falls in 3 s".into())),
         })
 }
 
-/// The same scene from a file: a free scene whose racks have given nodes.
+/// Scene A from a file: a free scene whose racks have explicit nodes.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),
@@ -168,12 +168,12 @@ pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
     Model::new(bodies, vec![law(0.5), law(0.22)], pairs, DOWN)
 }
 
-/// `true` if a body of the scene is a rack; its barrels follow it.
+/// Returns `true` if a body of the scene is a rack; each rack is followed by its barrels.
 fn is_rack(body: usize) -> bool {
     body > 0 && body % 3 == 1
 }
 
-/// Returns the time (s) at which the first barrel falls in the scene from bodies, for either drop.
+/// Returns the times (s) at which the first barrel of the version *bodies* has sunk by each of the two drops.
 fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
     let mut scene = Scene::of(eight_barrels(degrees)?).settled(1e-9)?;
@@ -195,7 +195,7 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     Ok(fallen)
 }
 
-/// Returns the time (s) at which the first barrel falls in the nearest stack scenario.
+/// Returns the time (s) at which the first barrel of the version *scenario* falls.
 fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
     let text = format!(
         r#"

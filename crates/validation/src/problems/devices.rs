@@ -15,7 +15,7 @@ use crate::scene::{Scene, disc, floor};
 use crate::swing::{crossings, mean_time, run_crossings};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list: Vec<Problem> = [30.0, 40.0, 55.0].map(rolls_out).into();
     list.push(hill());
@@ -45,13 +45,14 @@ pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Resu
     Ok(scenario(settings, motion, seconds)?.run()?)
 }
 
-/// Runs it under a push (g) that grows for a second and stays for another one.
+/// Runs this stack under a push (g) that grows for one second and stays constant for another.
 pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
     run_pushed(&scenario(settings, &self::push(push, 1.0), 1.99)?, push, 1000)
 }
 
-/// Runs a scenario under a push (g) that grows for a time (ms) and stays for a second, so smoothly, and in steps so
-/// small, that stiff elements do not ring.
+/// Runs a scenario under a push (g) that grows smoothly for a time (ms) and stays constant for a second.
+///
+/// The growth is so smooth and the steps are so small that stiff elements do not vibrate.
 pub(super) fn run_pushed(scenario: &Scenario, push: f64, rise: u32) -> Result<Run, Failure> {
     let grown = |at: u32| 0.5 * (1.0 - cos(PI * f64::from(at.min(rise)) / f64::from(rise)));
     let samples = (0..rise + 1000).map(|at| push * GRAVITY * grown(at)).collect();
@@ -72,7 +73,7 @@ pub(super) fn displacement(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
 }
 
-/// Chocks at an angle (rad) without a gap, on cradles that are lower.
+/// Returns the settings of chocks at an angle (rad) without a gap, on cradles that are lower than the chocks.
 fn chocks(angle: f64) -> Vec<String> {
     vec![
         "stack.chock.levels=1".into(),
@@ -91,10 +92,10 @@ fn rolls_out(degrees: f64) -> Problem {
     let exact = tan(angle);
     setting(
         format!("devices/chock-{degrees}"),
-        format!("barrels between chocks at {degrees}°, pushed for good"),
+        format!("barrels between chocks at {degrees}° under a lasting push"),
         "statics: roll-out at a/g = tan φ",
     )
-    .quantity("push from which a barrel rolls out", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("least push that makes a barrel roll out", "g", relative(exact, 1e-2).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let run = pressed(&chocks(angle), amplitude)?;
         Ok(run.fates.collapse_time().is_some())
@@ -104,11 +105,13 @@ fn rolls_out(degrees: f64) -> Problem {
 /// Duration (s) of the impulse.
 const BLOW: f64 = 0.05;
 
-/// Distance (m) from the center of a barrel to that of the end of a chock over which it rolls.
+/// Distance (m) from the center of a barrel to the center of the rounded end of a chock over which it rolls.
 const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
 
-/// Returns the push (g) from which a barrel leaning on a chock at an angle (rad) rolls over it: about the end of the
-/// chock `L θ'' = g sin θ − a cos θ` during the impulse, and then over the barrier `g L (1 − cos θ)`.
+/// Returns the least push (g) that makes a barrel roll over the chock at an angle (rad) on which it leans.
+///
+/// About the end of the chock the barrel follows `L θ'' = g sin θ − a cos θ` during the impulse; then it must pass the
+/// energy barrier `g L (1 − cos θ)`.
 fn over_the_hill(angle: f64) -> f64 {
     let passes = |push: f64| {
         let steps = 2000;
@@ -138,7 +141,7 @@ fn hill() -> Problem {
         "barrels between chocks at 40°, pushed for 0.05 s",
         "energy: m g r (1 − cos φ) over the end of a chock",
     )
-    .quantity("push from which a barrel rolls out", "g", relative(exact, 2e-2).fast(3e-2))
+    .quantity("least push that makes a barrel roll out", "g", relative(exact, 2e-2).fast(3e-2))
     .at_border(0.05, move |amplitude| {
         let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
         // Beyond the chock it falls onto the beam.
@@ -167,7 +170,8 @@ fn dish(radius: f64) -> Problem {
     })
 }
 
-/// Returns the period (s) of the zero crossings of a quantity after a time (s), if it oscillates.
+/// Returns the period (s) of an oscillating quantity, from its zero crossings after a time (s); `None` without
+/// oscillation.
 pub(super) fn period(samples: &[(f64, f64)], after: f64) -> Option<f64> {
     let from = samples.partition_point(|(time, _)| *time <= after);
     mean_time(&crossings(&samples[from..]), 3).map(|half| 2.0 * half)
@@ -203,7 +207,7 @@ fn pads() -> Problem {
     let mass = 46.0 + 990.0 * 0.225;
     let exact = mass * GRAVITY / (2.0 * 2.0 * stiffness * cos(angle) * cos(angle));
     setting("devices/pads", "a full barrel on pads of 400 kN/m without friction", "statics")
-        .quantity("how far it sinks into its cradle", "m", relative(exact, 1e-2))
+        .quantity("settlement in its cradle", "m", relative(exact, 1e-2))
         .by(move |_| {
             let settings = [
                 format!("stack.pad.stiffness=\"{stiffness} N/m\""),
@@ -248,7 +252,7 @@ fn yields() -> Problem {
         "a weight caught by a slack tie that yields at 2 kN",
         "energy: ½ m v² = F²/2k + F Δ",
     )
-    .quantity("how much longer the tie is for good", "m", relative(exact, 1e-5).fast(1e-4))
+    .quantity("permanent elongation of the tie", "m", relative(exact, 1e-5).fast(1e-4))
     .by(move |effort| {
         let tie = Strap {
             link: joined(Vec2::new(-1.0, 3.0)),
@@ -283,8 +287,11 @@ fn between_stops() -> Problem {
 /// Frequency of the structure to which a mass is tuned (rad/s); the square is stiffness over mass.
 const OMEGA: f64 = TAU;
 
-/// Returns the largest displacement of a structure under a harmonic force over that under the same static force, with a
-/// tuned mass of this fraction of its mass. Computed from the response to an impulse, which excites all frequencies.
+/// Returns the largest dynamic amplification of the displacement of a structure with a tuned mass, over all frequencies
+/// of a harmonic force.
+///
+/// The tuned mass is `share` of the mass of the structure. The response to an impulse, which excites all frequencies,
+/// is transformed to the frequency domain.
 fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure> {
     let body = |name: &str, mass: f64, z: f64| Body {
         mass,
@@ -312,7 +319,7 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
         samples.push(state.poses[1].position.x);
         ControlFlow::Continue(())
     })?;
-    // |X(ω)| of the impulse m v, over its static 1/k; both peaks lie near the frequency of the structure.
+    // |X(ω)| of the impulse m v, over the static value 1/k; both peaks lie near the frequency of the structure.
     let answer = |omega: f64| {
         let (mut re, mut im) = (0.0, 0.0);
         for (i, x) in samples.iter().enumerate() {
@@ -326,7 +333,7 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
     Ok(peaks.fold(0.0, f64::max))
 }
 
-/// The best tuning, found by search alone, against Den Hartog's formula.
+/// Creates the problems that compare the best tuning, found by a search, with Den Hartog's formula.
 fn den_hartog(share: f64) -> [Problem; 2] {
     let exact = Tuning::den_hartog(share);
     let source = "Den Hartog 1956, section 3.3";

@@ -11,7 +11,7 @@ use crate::{Failure, GRAVITY, Problem};
 
 use super::devices::{self, displacement, one_level, pressed, push};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![lid(), lid_breaks(), strap()];
     list.extend(walking_stop());
@@ -27,20 +27,20 @@ const CRADLE: f64 = 28.0 * TAU / 360.0;
 /// Mass of a full barrel (kg).
 const BARREL: f64 = 46.0 + 990.0 * 0.225;
 
-/// Returns the push (g) under which a barrel leans on one support of its cradle and on a device that holds it down with
+/// Returns the push (g) under which a barrel leans on one support of its cradle only, while a device holds it down with
 /// a force (N): `N sin φ = m A`, `N cos φ = m g + F`.
 fn held_at(force: f64) -> f64 {
     tan(CRADLE) * (1.0 + force / (BARREL * GRAVITY))
 }
 
-/// Returns the force (N) that holds it down under a push (g).
+/// Returns the force (N) that holds a barrel down on one support under a push (g): the inverse of [`held_at`].
 fn holding(push: f64) -> f64 {
     BARREL * GRAVITY * (push / tan(CRADLE) - 1.0)
 }
 
 const HELD: &str = "statics: F = m g (A/(g tan φ) − 1)";
 
-/// So stiff that the barrel stays in its drawn position on the support.
+/// Contact stiffness so great that the barrel practically stays in its drawn position on the support.
 const HARD: &str = "interface.barrel-rack.stiffness=\"500 MN/m\"";
 
 fn lids() -> Vec<String> {
@@ -74,7 +74,7 @@ fn lid_breaks() -> Problem {
         "a barrel in a cradle of 28° under a lid that breaks at 1 kN",
         HELD,
     )
-    .quantity("push from which the barrel rolls out", "g", relative(exact, 5e-3).fast(2e-2))
+    .quantity("least push that makes the barrel roll out", "g", relative(exact, 5e-3).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let mut settings = lids();
         settings.push(format!("stack.lid.strength=\"{strength} N\""));
@@ -110,7 +110,8 @@ fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
     counted.map(|(_, body)| body.mass).sum()
 }
 
-/// The upper of two levels slides without friction between the stops of the two barrels below.
+/// Creates the problems in which the upper of two levels slides without friction between the stops of the two barrels
+/// below.
 fn walking_stop() -> [Problem; 2] {
     let (gap, stiffness) = (0.01, 1e5);
     let (push_g, seconds) = (0.1, 0.1);
@@ -202,7 +203,7 @@ fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Res
     Ok(run)
 }
 
-/// The lower or the upper frequency of platform and mass without damping.
+/// Creates the problem of the lower or the upper natural frequency of a platform with a mass, without damping.
 fn frequency(upper: usize) -> Problem {
     let (mass, tuning) = (150.0, Tuning { frequency: 0.9, damping_ratio: 0.0 });
     let whole = SPRINGS / ABOARD;
@@ -240,9 +241,10 @@ fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
 
-/// The largest displacement of a platform under harmonic ground acceleration over that under a steady one, with
-/// a mass tuned by Den Hartog's formula: in closed form, and from the response to an impulse, which excites all
-/// frequencies.
+/// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass that is tuned
+/// by Den Hartog's formula, over all frequencies of the ground.
+///
+/// The exact answer is a closed form; ours comes from the response to an impulse, which excites all frequencies.
 fn tuned(share: f64) -> Problem {
     let tuning = Tuning::den_hartog(share);
     let whole = SPRINGS / ABOARD;

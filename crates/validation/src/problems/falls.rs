@@ -1,4 +1,4 @@
-//! Impact force on a falling body, as reported by a run.
+//! Largest impact force on a falling body, as a run reports it.
 
 use std::ops::ControlFlow;
 
@@ -12,7 +12,7 @@ use crate::problem::{absent, relative, setting};
 use crate::scene::Scene;
 use crate::{Failure, GRAVITY, Problem};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     [1.0, 5.0].map(stopped).into()
 }
@@ -20,7 +20,8 @@ pub(super) fn problems() -> Vec<Problem> {
 /// Mass (kg) and radius (m) of a full barrel, and Hertz stiffness (N/m^1.5) of the ground.
 const BARREL: [f64; 3] = [268.75, 0.345, 1.2e9];
 
-/// Returns the largest force (N) of a ground `F = k δ^1.5` on a body in free fall: `m g (h + δ) = ⅖ k δ^2.5`.
+/// Returns the largest force (N) on a body that falls from a height (m) on ground with `F = k δ^1.5`, from
+/// `m g (h + δ) = ⅖ k δ^2.5`.
 fn largest_force(height: f64) -> f64 {
     let [mass, _, hardness] = BARREL;
     let mut depth = 0.0_f64;
@@ -34,7 +35,7 @@ fn stopped(height: f64) -> Problem {
     let [mass, radius, hardness] = BARREL;
     let exact = largest_force(height);
     setting(format!("falls/force-{height}"), format!(
-            "a barrel that falls {height} m on ground as hard as that of the default law of impacts"
+            "a barrel that falls {height} m on ground with the stiffness of the default impact law"
         ), "energy: m g (h + δ) = ⅖ k δ^2.5")
 .quantity("largest force on it", "N", relative(exact, 1e-4))
 .by(move |_| {
@@ -60,7 +61,7 @@ fn stopped(height: f64) -> Problem {
         })
 }
 
-/// A body that is 20 cm lower has fallen; it has no seat to lose.
+/// Thresholds with which a body counts as fallen 20 cm below its place; the body has no seat.
 const THRESHOLDS: Thresholds = Thresholds {
     seat_loss_ratio: f64::INFINITY,
     fall_drop: 0.2,

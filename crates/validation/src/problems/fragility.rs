@@ -1,4 +1,4 @@
-//! Fragility fits against known numbers, the coverage of their bands, and hazard against its closed form.
+//! Fragility fits against published numbers, the coverage of their bands, and an annual rate against its closed form.
 
 use barrelstack_dynamics::math::exp;
 use barrelstack_fragility::{
@@ -23,7 +23,7 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// One number of the fit of the eight stripes, exact to half a unit of its last printed digit.
+/// Creates the problem of one number of the fit of the eight stripes, exact to half a unit of its last published digit.
 fn number(
     id: &str,
     quantity: &'static str,
@@ -40,7 +40,7 @@ const TRUTH: Lognormal = Lognormal { median: 0.45, dispersion: 0.45 };
 const LEVELS: [f64; 7] = [0.15, 0.25, 0.35, 0.45, 0.6, 0.8, 1.0];
 const AT: [f64; 5] = [0.2, 0.3, 0.45, 0.6, 0.9];
 
-/// Returns the coverage of the true curve by bands, over campaigns of seven stripes of thirty cases.
+/// Returns the share of bands that contain the true curve, over campaigns of seven stripes of thirty cases.
 fn coverage(
     effort: Effort,
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,
@@ -77,14 +77,14 @@ fn covered(
     setting(format!("fragility/{id}"), title, source)
         // Sixty campaigns at five correlated intensities scatter by some 0.02.
         .quantity(
-            "share of 95 % bands that hold the true curve, mean of five intensities",
+            "share of 95 % bands that contain the true curve, mean of five intensities",
             "",
             absolute(0.95, 0.02).fast(0.05),
         )
         .by(move |effort| coverage(effort, band))
 }
 
-/// Annual rate of failure where `λ(x) = k₀ x⁻ᵏ`: `k₀ θ⁻ᵏ exp(k²β²/2)`.
+/// Creates the problem of the annual rate of failure for the hazard `λ(x) = k₀ x⁻ᵏ`, which is `k₀ θ⁻ᵏ exp(k²β²/2)`.
 fn power_law() -> Problem {
     let (k0, k, ln_median) = (1e-4, 2.5, -0.7);
     let curve = Lognormal { median: exp(ln_median), dispersion: 0.45 };
@@ -106,7 +106,7 @@ fn power_law() -> Problem {
     })
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         number("median", "median θ", 0.426_30, 5e-6, |fit| fit.curve.median),

@@ -1,4 +1,4 @@
-//! Equilibrium under gravity: forces, penetration, overhangs, and stability of rest.
+//! Equilibrium under gravity: contact forces, penetration, overhangs, and bodies that stay at rest.
 
 use std::ops::ControlFlow;
 
@@ -20,7 +20,7 @@ const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
-/// Distance (m) of nodes from the ends, so that equal bricks can stand on each other.
+/// Distance (m) of the nodes from the ends of a brick, so that equal bricks can stand on each other.
 pub(super) const INSET: f64 = 0.02;
 
 fn firm() -> NormalLaw {
@@ -53,7 +53,7 @@ fn column(count: u32) -> Result<Scene, Failure> {
     Ok(Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(1e-9)?)
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     list.extend((1..=5).map(level_force));
@@ -91,7 +91,7 @@ fn sink() -> Problem {
         .by(|_| Ok(0.1 - column(5)?.state.poses[1].position.z))
 }
 
-/// A disc of a radius (m) on two points of the ground at ± an angle (rad) from straight down.
+/// Creates a disc of a radius (m) on two points of the ground at ± an angle (rad) from straight down.
 pub(super) fn on_two_points(
     disc: Body<Planar>,
     radius: f64,
@@ -109,11 +109,11 @@ fn cradle(angle: f64) -> Problem {
     let exact = mass * GRAVITY / (2.0 * cos(angle));
     setting(
         format!("gravity/cradle-{angle}"),
-        format!("disc of 275 kg on two smooth points at ±{angle} rad"),
+        format!("disc of 275 kg on two frictionless points at ±{angle} rad"),
         SOURCE,
     )
-    // The points touch the sunken disc a little higher; the effect vanishes with stiffness.
-    .quantity("normal force of one", "N", relative(exact, 1e-4))
+    // The disc sinks, so the points touch it a little higher; the effect vanishes with increasing stiffness.
+    .quantity("normal force of one point", "N", relative(exact, 1e-4))
     .by(move |_| {
         let (radius, stiffness) = (0.35, 1e9);
         let barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
@@ -126,7 +126,7 @@ fn cradle(angle: f64) -> Problem {
         let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
         let there = mass * GRAVITY / (2.0 * cos(steeper));
         Ok(Outcome::of(found).noted(format!(
-            "of the force at the sunken place: {:.1e}",
+            "relative error for the geometry after sinking: {:.1e}",
             (found / there - 1.0).abs()
         )))
     })
@@ -154,7 +154,7 @@ fn rest() -> Problem {
     })
 }
 
-/// `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
+/// Returns `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
     // The lowest lies on a table that ends at x = 0; brick i from the top overhangs the one below by L/2i.

@@ -1,4 +1,4 @@
-//! Free rocking: period and amplitude, loss at impacts, uplift, and overturning by one pulse.
+//! Free rocking of a block: period and amplitude, loss at impacts, uplift, and overturning by one pulse.
 
 use barrelstack_dynamics::math::{cos, tan};
 
@@ -9,10 +9,10 @@ use crate::{Effort, Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "Housner 1963";
 
-/// A block whose corners are damped enough to reproduce Housner's ratio (see `restitution`).
+/// Creates a block whose corners are damped enough to reproduce Housner's ratio (see `restitution`).
 pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     RockingBlock {
-        // Damping in both directions comes nearer to his plastic impact than damping on approach alone.
+        // Damping in both directions is closer to Housner's plastic impact than damping on approach alone.
         corner: Corner::KelvinVoigt,
         damping_ratio: 3.0,
         contact_frequency: contact_frequency(effort),
@@ -20,8 +20,7 @@ pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     }
 }
 
-/// A slender block, for closed forms of small angles; stiff, so that its penetration stays small
-/// relative to its angles.
+/// Creates a slender block for closed forms of small angles, so stiff that its penetration stays small.
 pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     let stiffer = if effort == Effort::Full { 5.0 } else { 4.0 };
     RockingBlock {
@@ -30,7 +29,7 @@ pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     }
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for alpha in [0.10, 0.25, 0.40] {
@@ -53,7 +52,7 @@ fn quarter_period(alpha: f64, share: f64) -> Problem {
     let exact = theory::quarter_period(alpha, share);
     setting(
         format!("housner/quarter-period-{alpha:.2}-{share:.2}"),
-        format!("block of α = {alpha} let go at φ = {share}"),
+        format!("block of α = {alpha} released at φ = {share}"),
         SOURCE,
     )
     .quantity("p times the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
@@ -71,14 +70,14 @@ fn ratio(alpha: f64) -> Problem {
     let exact = theory::housner_restitution(alpha);
     setting(
         format!("housner/impact-{alpha:.2}"),
-        format!("first impact of a block of α = {alpha} let go at φ = 0.5"),
+        format!("first impact of a block of α = {alpha} released at φ = 0.5"),
         SOURCE,
     )
     .quantity("ratio of angular velocities η", "", relative(exact, 1e-3).fast(5e-3))
     .refined(move |effort, level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
 }
 
-/// Returns the rotation over α after impacts, exact for any α, from φ = ½.
+/// Returns the peak rotation over α after a number of impacts, from a release at φ = ½; exact for any α.
 fn peaks(alpha: f64, impacts: usize) -> f64 {
     let eta = theory::housner_restitution(alpha);
     (0..impacts).fold(0.5, |share, _| theory::next_peak(alpha, share, eta * eta))
@@ -92,7 +91,7 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
         SOURCE,
     )
     .quantity(
-        "lean over α after the impacts counted in the name",
+        "rotation over α after the number of impacts in the name",
         "",
         relative(exact, 1e-2).fast(3e-2),
     )
@@ -109,7 +108,7 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Returns the swing after a number of impacts.
+/// Returns the time (s) and the next peak over α of the last of a number of impacts.
 fn nth(swings: &[(f64, f64)], impacts: usize) -> Result<(f64, f64), Failure> {
     swings
         .get(impacts - 1)
@@ -133,7 +132,7 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Uplift under a slowly growing ground acceleration; `vertical` (g) is constant.
+/// Creates the problem of the uplift under a slowly growing ground acceleration, with a constant vertical one (g).
 fn uplift(alpha: f64, vertical: f64) -> Problem {
     let exact = tan(alpha) * (1.0 + vertical);
     let name = if vertical == 0.0 {
@@ -169,7 +168,7 @@ fn rectangular(product: f64) -> Problem {
     )
     .quantity("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
     .by(move |effort| {
-        // The sudden push excites the springs, less the stiffer they are.
+        // The sudden push excites the springs; stiffer springs less.
         refine(effort, exact, |level| {
             let softer = if effort == Effort::Full { 2 } else { 0 };
             let block = slender(effort, 1.0).refined(level - softer);

@@ -1,4 +1,4 @@
-//! Intensity measures with closed forms: a harmonic, and a constant push.
+//! Intensity measures of motions with closed forms: a harmonic, and a constant push.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,7 +19,7 @@ const CYCLES: u32 = 8;
 /// Damping ratio of spectra.
 const DAMPING: f64 = 0.05;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let time = f64::from(CYCLES) * PERIOD;
     let arias = PI / (2.0 * STANDARD_GRAVITY) * AMPLITUDE * AMPLITUDE * time / 2.0;
@@ -64,7 +64,7 @@ fn of_harmonic(
     .by(move |_| measured(&measure, &harmonic()?))
 }
 
-/// A push of 1 m/s² for 4 s.
+/// Returns a push of 1 m/s² for 4 s.
 fn push(step: f64) -> Result<Sampled, Failure> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
     let samples = (4.0 / step) as usize;
@@ -79,7 +79,7 @@ fn overshoot() -> f64 {
 fn of_push(period: f64) -> Problem {
     setting(
         format!("intensity/push-{period}"),
-        format!("oscillator of {period} s and 5 % under a push that stays"),
+        format!("oscillator of {period} s with 5 % damping under a lasting push"),
         STEP,
     )
     .quantity("pseudo-acceleration over the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
@@ -94,12 +94,12 @@ fn of_push(period: f64) -> Problem {
 fn short_period() -> Problem {
     setting(
         "intensity/short-period",
-        "the harmonic in twelve samples a cycle, at a period of a twentieth of their step",
+        "the harmonic in twelve samples per cycle, at a period of a twentieth of the sample step",
         SOURCE,
     )
     .quantity("Sa over PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
     .by(|_| {
-        // Twelve samples per cycle are steps of 42 ms, which the recursion interpolates.
+        // Twelve samples per cycle are steps of 42 ms, so the recursion has to divide them.
         let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
         let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
         let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };
@@ -107,10 +107,11 @@ fn short_period() -> Problem {
     })
 }
 
-/// `∫ PSV dT` from 0.1 s to 2.5 s with `PSV = S_a T/2π` and equal `S_a` at all periods.
+/// Creates the problem of the Housner intensity `∫ PSV dT` from 0.1 s to 2.5 s, with `PSV = S_a T/2π` and equal `S_a`
+/// at all periods.
 fn housner_intensity() -> Problem {
     let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
-    setting("intensity/housner", "Housner intensity of a push of 1 m/s² that stays", STEP)
+    setting("intensity/housner", "Housner intensity of a lasting push of 1 m/s²", STEP)
         .quantity("Housner intensity", "m", relative(exact, 1e-3)) // measured 6.7e-7
         .by(|_| {
             let measure = IntensityMeasure::Housner { damping: DAMPING };

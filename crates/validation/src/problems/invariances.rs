@@ -29,7 +29,7 @@ fn shaken(acceleration: f64) -> Shake {
     Shake::Harmonic { acceleration, omega: 9.0 }
 }
 
-/// Returns the six numbers of each body's motion.
+/// Returns position, rotation, velocity and spin of each body as six numbers.
 fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
     let bodies = state.poses.iter().zip(&state.twists);
     bodies
@@ -39,7 +39,7 @@ fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
         .collect()
 }
 
-/// Returns the largest difference of two scenes, the first scaled component by component.
+/// Returns the largest difference between two states, after scaling the components of the first.
 fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
     numbers(a)
         .iter()
@@ -48,7 +48,7 @@ fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         invariance("mirror", "mirrored heap on mirrored ground", 1e-10, mirror),
@@ -56,7 +56,7 @@ pub(super) fn problems() -> Vec<Problem> {
         invariance("mass-unit", "heap and contacts 1024 times as heavy", 0.0, mass_unit),
         invariance("galilean", "heap on ground that moves at 3 m/s", 1e-8, galilean),
         invariance("order", "heap with bodies and nodes in reverse order", 1e-10, order),
-        invariance("time-shift", "heap at rest ground, clock started at 64 s", 1e-9, time_shift),
+        invariance("time-shift", "heap on ground at rest, clock started at 64 s", 1e-9, time_shift),
         invariance("repeat", "the same heap run twice", 0.0, repeat),
         balance(),
         elastic_row(),
@@ -141,7 +141,9 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
     body
 }
 
-/// All factors are powers of two, so that the runs must agree to the last bit.
+/// Compares a heap with one four times as large.
+///
+/// All factors are powers of two, so the runs must agree to the last bit.
 fn froude(seed: u64) -> Result<f64, Failure> {
     let bodies = heap(seed);
     let large = bodies.iter().map(four_times).collect();
@@ -232,7 +234,11 @@ fn repeat(seed: u64) -> Result<f64, Failure> {
 
 fn balance() -> Problem {
     setting("invariances/energy-balance", "heap on shaking ground, one second", BALANCE)
-        .quantity("error of the balance over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
+        .quantity(
+            "residual of the balance over the energy exchanged",
+            "",
+            absolute(0.0, 1e-4).fast(1e-3),
+        )
         .by(|effort| {
             let worst = |step: f64| -> Result<f64, Failure> {
                 let mut worst = 0.0_f64;
@@ -258,7 +264,7 @@ fn balance() -> Problem {
         })
 }
 
-/// Newton's cradle with elastic contacts, on a frictionless line.
+/// Creates the problem of Newton's cradle: elastic discs in a row without friction.
 fn elastic_row() -> Problem {
     setting(
         "invariances/elastic-row",

@@ -1,8 +1,7 @@
 //! Measured blocks: the granite blocks of Peña et al. on a shaking table.
 //!
 //! Sizes and rigid-body theory are exact; the measured ratios of angular velocities are quoted from
-//! memory. The problems check that the contact can be calibrated
-//! to a measured block, not the measurement.
+//! memory. The problems do not check the measurement but that the contact can be calibrated to a measured block.
 
 use barrelstack_dynamics::math::atan;
 
@@ -14,12 +13,13 @@ use super::housner::firm;
 
 const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3";
 
-/// Name, width (m), height (m) and measured ratio of angular velocities, if attainable: that of
-/// S3, 0.978, lies below Housner's 0.9787, the minimum for any damping.
+/// Name, width (m), height (m) and measured ratio of angular velocities.
+///
+/// The ratio of S3, 0.978, is left out: it lies below Housner's 0.9787, the minimum for any damping.
 const BLOCKS: [(&str, f64, f64, Option<f64>); 3] =
     [("s1", 0.25, 1.000, Some(0.936)), ("s2", 0.17, 1.000, Some(0.973)), ("s3", 0.12, 1.000, None)];
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let periods = BLOCKS.into_iter().map(|(name, width, height, _)| period(name, width, height));
     let decays = BLOCKS
@@ -38,7 +38,7 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
     let exact = theory::quarter_period(alpha, 0.5) / theory::rocking_rate(radius);
     setting(
         format!("measured/{name}-quarter-period"),
-        format!("granite block {width} m by {height} m let go at φ = 0.5"),
+        format!("granite block {width} m by {height} m released at φ = 0.5"),
         SOURCE,
     )
     .quantity("time to be upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
@@ -48,17 +48,17 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
     })
 }
 
-/// The rotation after three impacts of a block whose contact was calibrated at the first.
+/// Creates the problem of the rotation after three impacts of a block whose contact was calibrated at the first impact.
 fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let (radius, alpha) = dimensions(width, height);
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));
     setting(
         format!("measured/{name}-decay"),
-        format!("the same, damping chosen at the first impact for the measured η = {ratio}"),
+        format!("the same block, damping chosen at the first impact for the measured η = {ratio}"),
         SOURCE,
     )
-    // The loss at an impact depends partly on the rotation, most visibly for the least of the three.
-    .quantity("lean over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
+    // The loss at an impact depends slightly on the rotation, mostly for the smallest of the three blocks.
+    .quantity("rotation over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
     .by(move |effort| {
         let stiffer = if effort == Effort::Full { 1.0 } else { 0.5 };
         let block = RockingBlock {
@@ -66,7 +66,7 @@ fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
             ..RockingBlock::new(radius, alpha)
         };
         let Some(block) = block.calibrated(ratio)? else {
-            return Err(Failure::Absent(format!("no damping ratio shows η = {ratio}")));
+            return Err(Failure::Absent(format!("no damping ratio gives η = {ratio}")));
         };
         let swings = block.swings(0.5, 3, 20.0 / block.rate())?;
         let Some((_, last)) = swings.get(2) else {

@@ -1,7 +1,7 @@
-//! Smooth motions, against independent equations solved by a library.
+//! Smooth motions, compared with independent equations that a library solves.
 //!
-//! Two kinds: rigid motion, which contact approaches as it stiffens, and the full equations of springs
-//! and dampers, which the program approximates only by its time step.
+//! The equations are either those of rigid bodies, which the contact approaches as it becomes stiffer, or those of the
+//! contact springs and dampers themselves, which differ from the program only by its time step.
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{acos, atan2, cos, sin};
@@ -24,7 +24,7 @@ const SOURCE: &str =
     "equations of motion, solved by the library differential-equations 0.7, DOP853";
 const MASS: f64 = 100.0;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         rocking("leaning", (0.25, 6.0, 0.3)),
@@ -45,8 +45,8 @@ fn ground(a: f64, omega: f64, t: f64) -> (f64, f64) {
     (velocity, a / omega * (t - sin(omega * t) / omega))
 }
 
-/// Returns the rates of rotation and angular velocity of a block of half-diagonal R = 1 m that rocks on a corner, under
-/// a ground acceleration (m/s²) over time.
+/// Returns the equations of motion of a block of half-diagonal R = 1 m that rocks on a corner under a ground
+/// acceleration (m/s²): the rates of rotation and angular velocity.
 fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64; 2]) -> [f64; 2] {
     // Moments about the corner: I θ″ = −m R [g sin(α − θ) + a cos(α − θ)] with I = 4/3 m R².
     move |t, y| {
@@ -56,8 +56,9 @@ fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64;
     }
 }
 
-/// A block that rocks on one corner under one sine cycle of `push` g, first away from the
-/// corner: it stays near the rotation of unstable equilibrium, or overturns.
+/// Creates the problem of a block that rocks on one corner under one sine cycle of `push` g.
+///
+/// The block stays near its rotation of unstable equilibrium, or overturns.
 fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     let (radius, until) = (1.0, 1.0);
     let rates = leaning(alpha, move |t| -push * GRAVITY * sin(omega * t));
@@ -65,11 +66,11 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     setting(
         format!("ode/rocking-{name}"),
         format!(
-            "block of α = {alpha} let go at φ = 0.5, ground in a sine of {push} g, {omega} rad/s"
+            "block of α = {alpha} released at φ = 0.5, ground in a sine of {push} g, {omega} rad/s"
         ),
         SOURCE,
     )
-    .quantity("lean after 1 s, without impact", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.1e-6 and 1.3e-4
+    .quantity("rotation after 1 s, without impact", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.1e-6 and 1.3e-4
     .refined(move |effort, level| {
         let block = firm(effort, radius, alpha).refined(level - 1);
         let acceleration = -push * GRAVITY;
@@ -80,7 +81,8 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     })
 }
 
-/// The same block on a soft corner, with the full equations of normal spring and damper, stick spring and damper.
+/// Creates the problem of a block on a soft corner, with the full equations of the springs and dampers of the normal
+/// and tangential directions.
 fn corner() -> Problem {
     let (alpha, omega, push, until) = (0.25, 6.0, 0.3, 0.8);
     let block = RockingBlock {
@@ -91,8 +93,8 @@ fn corner() -> Problem {
     };
     let (k, c) = (200.0 * 200.0, 2.0 * 0.1 * 200.0); // per unit of mass
     let (width, height) = (sin(alpha), cos(alpha));
-    // x, z, angle of the center, their rates, and the elongation of the stick. Contact force and velocities
-    // are taken at the point of the floor below the corner.
+    // The state is x, z and angle of the block, their rates, and the elongation of the stick. Contact force and
+    // velocities are evaluated at the point of the floor below the corner.
     let rates = move |t: f64, y: &[f64; 7]| {
         let [_, z, angle, vx, vz, spin, stick] = *y;
         let (right, up) =
@@ -126,7 +128,8 @@ fn corner() -> Problem {
     })
 }
 
-/// A block that bounces and pitches on two springs without leaving them, on a floor that moves vertically.
+/// Creates the problem of a block that bounces and pitches on two springs without leaving them, on a floor that moves
+/// vertically.
 fn springs() -> Problem {
     let (half_width, half_height, until) = (0.4, 0.3, 1.0);
     let (frequency, zeta) = (60.0, 0.02);
@@ -176,8 +179,10 @@ fn springs() -> Problem {
 const CRADLE: f64 = 0.6;
 const DISC: f64 = 0.35;
 
-/// A solid disc in a wide cradle at an angle (rad), at its static penetration, with stiffer contact and a shorter
-/// step for each refinement; and that step (s).
+/// Creates a solid disc in a wide cradle at an angle (rad), at its static penetration; returns the scene and its time
+/// step (s).
+///
+/// Each refinement has a stiffer contact and a shorter step.
 fn cradled(angle: f64, friction: f64, level: i32) -> Result<(Scene, f64), Failure> {
     let stiffness = 1e8 * 4.0_f64.powi(level);
     let arm = CRADLE - DISC + MASS * GRAVITY * cos(angle) / stiffness;
@@ -196,7 +201,7 @@ fn angle_in_cradle(scene: &Scene) -> f64 {
     atan2(place.x, -place.z)
 }
 
-/// Rolling without slip, at large angles.
+/// Creates the problem of a disc that rolls without slip in a cradle, at large angles.
 fn pendulum() -> Problem {
     let until = 1.1;
     let length = 1.5 * (CRADLE - DISC);
@@ -204,7 +209,7 @@ fn pendulum() -> Problem {
     let exact = solution(rates, [1.0, 0.0], (0.0, until))[0];
     setting(
         "ode/cradle-pendulum",
-        "solid disc let go at 1 rad in a round cradle of 0.6 m, rolling",
+        "solid disc released at 1 rad in a round cradle of 0.6 m, rolling",
         SOURCE,
     )
     .quantity("angle after 1.1 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.4e-5 and 3.9e-4
@@ -215,7 +220,7 @@ fn pendulum() -> Problem {
     })
 }
 
-/// A disc that spins so fast that it slips in one direction throughout and climbs its cradle.
+/// Creates the problem of a disc that climbs its cradle and spins so fast that it always slips in the same direction.
 fn bowl() -> Problem {
     let (friction, spin, until) = (0.4, 40.0, 0.6);
     let arm = CRADLE - DISC;
@@ -240,7 +245,8 @@ fn bowl() -> Problem {
     })
 }
 
-/// A thrown body whose viscous drag couples translation and rotation, relative to shaking ground.
+/// Creates the problem of a thrown body whose viscous drag, relative to shaking ground, couples translation and
+/// rotation.
 fn flight() -> Problem {
     let until = 1.0;
     let (inertia, push, omega) = (8.0, 3.0, 7.0);
@@ -258,7 +264,7 @@ fn flight() -> Problem {
         "thrown body with a full matrix of viscous drag, relative to ground that shakes",
         SOURCE,
     )
-    .quantity("place along the ground after 1 s", "m", relative(exact, 1e-6).fast(1e-4)) // measured 2.8e-9 and 4.6e-8
+    .quantity("displacement along the ground after 1 s", "m", relative(exact, 1e-6).fast(1e-4)) // measured 2.8e-9 and 4.6e-8
     .refined(move |_, level| {
         let mut body = block("body", (0.5, 0.5), MASS, pose(0.0, 50.0, 0.0));
         body.inertia = inertia;
@@ -275,14 +281,14 @@ fn flight() -> Problem {
     })
 }
 
-/// The block of the ensembles, for the independent integrator of this crate.
+/// Returns the block of the ensembles for the independent integrator of this crate.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);
     Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
 }
 
-/// The integrator that verifies ensembles, over an interval without impact.
+/// Creates the problem that verifies the integrator of the ensembles over an interval without impact.
 fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);
     let rigid = rigid();
@@ -290,15 +296,16 @@ fn own_lean() -> Problem {
     let rates = leaning(rigid.alpha, acceleration);
     let start = 0.5 * rigid.alpha;
     let exact = solution(rates, [start, 0.0], (0.0, until))[0];
-    setting("ode/own-integrator-lean", "rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less", SOURCE)
-.quantity("lean after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
+    setting("ode/own-integrator-lean", "the problem ode/rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less", SOURCE)
+.quantity("rotation after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
 .refined(move |_, level| {
                 let steps = 100 << level;
                 Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)
             })
 }
 
-/// The same from rest: uplift, one swing under a half-sine, and the peak that follows from its energy.
+/// Creates the problem that verifies the same integrator from rest: uplift, one swing under a half-sine, and the peak
+/// that follows from the energy.
 fn own_peak() -> Problem {
     let rigid = rigid();
     let omega = 2.0 * rigid.rate;
@@ -309,11 +316,11 @@ fn own_peak() -> Problem {
     // The ground moves right, so the block rotates left; the rotation is counted positive.
     let rates = leaning(rigid.alpha, move |t| -strength * sin(omega * t));
     let [lean, spin] = solution(rates, [0.0, 0.0], (lift, end));
-    // Energy from there on: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].
+    // Energy after the half-sine: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].
     let left = cos(rigid.alpha - lean) + 0.5 * spin * spin / (rigid.rate * rigid.rate);
     let exact = rigid.alpha - acos(left);
-    setting("ode/own-integrator-peak", "the block at rest under a half-sine of 1.7 g tan α, by the same, in the steps of the ensembles", SOURCE)
-.quantity("largest lean", "rad", relative(exact, 1e-5)) // measured 1.9e-7
+    setting("ode/own-integrator-peak", "block at rest under a half-sine of 1.7 g tan α, by this crate's own integrator, in the steps of the ensembles", SOURCE)
+.quantity("largest rotation", "rad", relative(exact, 1e-5)) // measured 1.9e-7
 .by(move |_| {
             let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
             let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);

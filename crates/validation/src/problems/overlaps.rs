@@ -1,4 +1,4 @@
-//! Bodies do not overlap: collapsing stacks, checked frame by frame.
+//! Check that bodies do not overlap while stacks collapse, frame by frame.
 
 use std::path::{Path, PathBuf};
 
@@ -7,11 +7,11 @@ use crate::{Effort, Failure, Outcome, Problem};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
 
-/// Stacks of all kinds under strong shaking, all frames until rest: the deepest overlap of bodies
-/// that have no seat on each other.
+/// Creates the problem of the deepest overlap of bodies without a common seat, over all frames until rest of stacks of
+/// all kinds under strong shaking.
 pub(super) fn problem() -> Problem {
     setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")
-.quantity("deepest overlap but at seats", "m", absolute(0.0, 0.015))
+.quantity("deepest overlap, except at seats", "m", absolute(0.0, 0.015))
 .by(|effort| {
             let (count, records) =
                 if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
@@ -21,7 +21,7 @@ pub(super) fn problem() -> Problem {
                 let scenario = random_stack(case, &records)?;
                 let run = match scenario.run() {
                     Ok(run) => run,
-                    // A rack whose rails are too steep for the staves does not stand, and reports it.
+                    // A stack whose rails are too steep for the staves does not come to rest; it is counted as such.
                     Err(barrelstack::RunFailure::Settle(_)) => {
                         unstable += 1;
                         continue;
@@ -35,8 +35,8 @@ pub(super) fn problem() -> Problem {
                 return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
             }
             let note = format!(
-                "{fallen} of {count} stacks fell, {unstable} do not stand; {} records beside the bundled; at seats {:.1} mm, at the end {:.1} mm and at seats \
-                 {:.1} mm; the energy balance is off by {:.1e} at most",
+                "{fallen} of {count} stacks fell, {unstable} do not stand at rest; {} records besides the bundled one; overlap at seats {:.1} mm; at the end \
+                 {:.1} mm, and {:.1} mm at seats; largest residual of the energy balance {:.1e}",
                 records.len(),
                 1e3 * worst.seat,
                 1e3 * worst.end,
@@ -47,14 +47,14 @@ pub(super) fn problem() -> Problem {
         })
 }
 
-/// The deepest overlaps (m) observed.
+/// Deepest overlaps (m) observed.
 #[derive(Default)]
 struct Survey {
     /// Of two bodies without a common seat.
     loose: f64,
-    /// Of a body and its seat.
+    /// Of two bodies at their common seat.
     seat: f64,
-    /// In the last frame: without a common seat, and at seats.
+    /// In the last frame, of two bodies without a common seat.
     end: f64,
     seat_end: f64,
     /// Largest residual of the energy balance.
@@ -91,7 +91,7 @@ impl Survey {
     }
 }
 
-/// Records of horizontal motion that may not be bundled: used if present beside the checkout.
+/// Returns the records of horizontal motion that cannot be distributed, if they are present beside the checkout.
 fn records() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     [
@@ -107,9 +107,9 @@ fn records() -> Vec<PathBuf> {
     .collect()
 }
 
-/// A stack determined by its number and the records.
+/// Returns a random stack that is determined by its number and the records.
 fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
-    // One step of SplitMix64 per choice.
+    // Each choice is one step of the generator SplitMix64.
     let pick = |salt: usize, count: usize| {
         let mut z = ((case * 64 + salt) as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -1,4 +1,4 @@
-//! Overturning by pulses: without impact, after an impact, and the safe strengths between.
+//! Overturning of a block by pulses: without an impact, after an impact, and the safe strengths between.
 
 use crate::drive::Shake;
 use crate::problem::{border, halvings, relative, setting};
@@ -13,7 +13,7 @@ const TABLE: &str = "Zhang and Makris 2001, event-driven integration";
 const RATE: f64 = 2.14;
 const ALPHA: f64 = 0.25;
 
-/// The form of a pulse.
+/// Shape of a pulse.
 #[derive(Clone, Copy)]
 enum Form {
     HalfSine,
@@ -47,11 +47,11 @@ impl Form {
     }
 }
 
-/// Borders of the table: where overturning starts, where the block is safe again, and where it overturns
+/// Borders of the table, with increasing strength: overturning starts, the block is safe again, the block overturns
 /// without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     list.extend([1.0, 2.0, 3.0, 5.0].map(|ratio| closed(Form::HalfSine, ratio)));
@@ -70,7 +70,7 @@ pub(super) fn problems() -> Vec<Problem> {
         (Form::OneCosine, 3.0, [1.8578, 6.5103, 10.954]),
     ] {
         let [starts, safe, again]: [f64; 3] = borders;
-        // Between neighboring borders the answer is known, so brackets reach halfway, and at most 3 %.
+        // Each bracket reaches halfway to the next border, but not farther than 3 % from its own.
         let (low, high) = (0.5 * (starts + safe), 0.5 * (safe + again));
         let brackets = [
             (0.97 * starts, low.min(1.03 * starts)),
@@ -117,7 +117,7 @@ fn tabulated(
     exact: f64,
     bracket: (f64, f64),
 ) -> Problem {
-    // The block overturns below the border of being safe again, and above the other borders.
+    // The block overturns below the border `safe-again`, and above the other two.
     let falls_below = which == BORDERS[1];
     setting(
         format!("pulses/{}-{ratio}-{which}", form.name()),
@@ -149,6 +149,6 @@ fn tabulated(
             let ride = rigid.ride(|t| pulse.acceleration(t), pulse.end(), 5e-4, 15.0);
             Ok(ride.overturned != falls_below)
         })?;
-        Ok(Outcome::of(found).noted(format!("rigid-block integrator of this crate {own:.4}")))
+        Ok(Outcome::of(found).noted(format!("rigid-block integrator of this crate: {own:.4}")))
     })
 }

@@ -1,4 +1,4 @@
-//! Racks along their barrels: posts that carry a stack, and rails that raise one end of every barrel.
+//! Stacks in the plane along the barrels: racks on posts, and rails that raise one end of every barrel.
 
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::{Run, Scenario};
@@ -10,15 +10,16 @@ use crate::{Failure, Problem};
 
 use super::devices::{push, run_pushed};
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![posts()];
     list.extend([(0.0, 1.0), (3.5, 1.0), (3.5, -1.0)].map(|(degrees, side)| slides(degrees, side)));
     list
 }
 
-/// Runs a stack along its barrels, with contacts so stiff that almost nothing deforms, under a push (g) that grows
-/// for two seconds and stays for another one.
+/// Runs a stack in the plane along its barrels under a push (g) that grows for two seconds and stays constant for one.
+///
+/// The contacts are so stiff that almost nothing deforms.
 fn pushed(settings: &[String], push: f64) -> Result<Run, Failure> {
     run_pushed(&scenario(settings)?, push, 2000)
 }
@@ -45,13 +46,13 @@ const EDGE: f64 = 0.44 + 0.025 - 0.012;
 const PITCH: f64 = 0.89;
 
 fn towers() -> Vec<String> {
-    // The bottom rack is so heavy that the stack separates above it, at the first posts.
+    // The bottom rack is so heavy that it stays on the ground and the stack tips about its posts.
     [
         "stack.rack=rack-on-rack",
         "stack.levels=3",
         "interface.rack-ground.stiffness=\"5000 MN/m\"",
-        // Before it rises, the stack rotates on the two corners of its outer posts, so that it leans over its edge:
-        // with 500 MN/m it rises at a push 0.7 % lower, with 2 GN/m at one 0.2 % lower.
+        // Before uplift the stack leans, since its outer posts sink into their contacts. This lowers the push at
+        // uplift by 0.7 % with 500 MN/m, and by 0.2 % with 2 GN/m.
         "interface.rack-rack.stiffness=\"2000 MN/m\"",
         "stack.override=[{ kind = \"rack\", level = 1, mass = \"50000 kg\" }]",
         "interface.barrel-rack.friction.coefficient=5.0",
@@ -61,14 +62,14 @@ fn towers() -> Vec<String> {
 }
 
 fn posts() -> Problem {
-    // A rack is uniform over its tubes and posts: its center is taken from the drawing, as are those of its barrels.
+    // The mass of a rack is uniform over its tubes and posts, so its center follows from the drawing.
     let exact = EDGE / height_of_upper_levels().unwrap_or(f64::NAN);
     setting(
         "devices/posts-along",
         "two levels on the posts of a heavy rack, pushed along the barrels",
         "statics: uplift at a/g = c/h",
     )
-    .quantity("push from which they rise from their posts", "g", relative(exact, 5e-3).fast(1e-2))
+    .quantity("least push that lifts them off their posts", "g", relative(exact, 5e-3).fast(1e-2))
     .by(move |effort| {
         height_of_upper_levels()?;
         let found = border((0.97 * exact, 1.03 * exact), halvings(effort).min(6), |amplitude| {
@@ -96,7 +97,7 @@ fn named(assembly: &Assembly, name: &str) -> Result<usize, Failure> {
     assembly.model.body_named(name).ok_or_else(|| Failure::Absent(format!("no {name}")))
 }
 
-/// Length, diameter at the heads and at the bilge of the barrel (m).
+/// Length, diameter at the heads, and diameter at the bilge of the barrel (m).
 const BARREL: [f64; 3] = [0.945, 0.555, 0.690];
 
 /// Friction of the barrel on the supports of its cradles.
@@ -105,34 +106,36 @@ const FRICTION: f64 = 0.2;
 /// Angle (degrees) of the supports of a cradle from the vertical, in the view along the barrel.
 const CRADLE: f64 = 28.0;
 
-/// Returns the friction of the barrel against sliding along itself: wedged between the supports of its cradles, it
-/// presses on them with `1 / cos` of what it weighs on the rail.
+/// Returns the effective friction coefficient of the barrel along its axis.
+///
+/// The barrel is wedged between the two supports of each cradle, so their normal forces add up to its load on the rail
+/// over the cosine of the cradle angle.
 fn wedged() -> f64 {
     FRICTION / cos(CRADLE.to_radians())
 }
 
-/// Returns the push (g) from which a barrel slides on two rails that raise its right end by an angle (rad), toward
-/// that end or, with `side = -1`, away from it.
+/// Returns the least push (g) that makes a barrel slide on two rails that raise its right end by an angle (rad).
 ///
-/// Its staves are an arc about a point C high above it, so it slides by rotating about C: at the two contacts
-/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0` and about C `m d × (A, −g) = μ (N₁ + N₂) R`, with the
-/// friction of a wedge for μ.
+/// The barrel slides toward that end or, with `side = -1`, away from it.
+/// Its staves are an arc about a point C high above it, so it slides by rotating about C. The balance of forces is
+/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0`, and that of moments about C is
+/// `m d × (A, −g) = μ (N₁ + N₂) R`; μ is the coefficient of [`wedged`].
 fn sliding(angle: f64, side: f64) -> f64 {
     let [length, head, bilge] = BARREL;
     let friction = wedged();
     let rise = 0.5 * (bilge - head);
     let arc = (0.25 * length * length + rise * rise) / (2.0 * rise);
-    // Rails at ±27 cm, 5 cm wide, corners rounded by 12 mm: the barrel touches the inner ones.
+    // Rails at ±27 cm, 5 cm wide, with corners rounded by 12 mm; the barrel touches their inner corners.
     let (corner, rail) = (0.012, 0.27 - 0.025 + 0.012);
     let down = arc - 0.5 * bilge;
-    // Center of the barrel, relative to C; mirrored if it slides away from its raised end.
+    // Center of the barrel relative to C, mirrored if the barrel slides away from its raised end.
     let center = Vec2::new(side * down * sin(angle), -down * cos(angle));
     let contact = |at: f64| {
         let x = (at + center.x) / (arc + corner);
         Vec2::new(x, -(1.0 - x * x).sqrt())
     };
     let [left, right] = [-rail, rail].map(contact);
-    // The force at a contact for a unit normal force: toward C, and against the slip, which is to the right.
+    // Force at a contact for a unit normal force: toward C, and against the slip, which is to the right.
     let force = |e: Vec2| Vec2::new(-e.x + friction * e.z, -e.z - friction * e.x);
     let (a, b) = (force(left), force(right));
     // In units of weight: N₁ a + N₂ b = (−A, 1).
@@ -161,7 +164,7 @@ fn slides(degrees: f64, side: f64) -> Problem {
         format!("a barrel pushed {words}, μ = {FRICTION}"),
         "statics: two contacts under Coulomb friction on an arc",
     )
-    .quantity("push from which the barrel slides", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("least push that makes the barrel slide", "g", relative(exact, 1e-2).fast(2e-2))
     .by(move |effort| {
         border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
             let settings = [

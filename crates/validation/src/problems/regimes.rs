@@ -1,4 +1,4 @@
-//! Onset of motion of a block on accelerating ground: rest, sliding, rocking, or both.
+//! Onset of motion of a block on accelerating ground: rest, sliding, rocking, or sliding and rocking.
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::{Drive, NormalLaw, Planar};
@@ -11,7 +11,7 @@ use crate::{Effort, Failure, GRAVITY, Problem, theory};
 const SOURCE: &str = "Shao and Tung 1999, Taniguchi 2002";
 const MASS: f64 = 100.0;
 
-/// A block on nearly rigid corners, at rest on the ground.
+/// Creates a block on nearly rigid corners, at rest on the ground.
 pub(super) fn standing(
     (width, height): (f64, f64),
     friction: f64,
@@ -31,7 +31,7 @@ pub(super) fn standing(
 fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, bool), Failure> {
     let finer = 2.0_f64.powi(refinement);
     let mut scene = standing((2.0 * s, 2.0), friction, 1e10 * finer * finer)?;
-    // The acceleration is slow for the contact and sudden for the block (p = 2.6 /s).
+    // The ramp is slow compared with the contact and sudden compared with the block (p = 2.6 /s).
     let ramp = 0.004;
     let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp };
     scene.run(&drive, 5e-6 / finer, ramp + 0.02)?;
@@ -39,11 +39,11 @@ fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, boo
     // The ground moves to the right, so the block rotates about its lower left corner.
     let (sin, cos) = barrelstack_dynamics::math::sin_cos(at.orientation);
     let slip = scene.relative(1) - cos * s + sin + s;
-    // Sticks stretch and unload by micrometers, less the stiffer they are.
+    // Sticks stretch by micrometers before they slip; stiffer sticks less.
     Ok((slip.abs() > 4e-6 / finer, at.orientation.abs() > 1e-5))
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for s in [0.2, 0.25, 1.0] {
@@ -62,7 +62,7 @@ fn least_friction(s: f64, share: f64) -> Problem {
         SOURCE,
     )
     .quantity(
-        "friction coefficient from which it rocks without sliding",
+        "least friction coefficient with which the block rocks without sliding",
         "",
         relative(exact, 4e-3).fast(1.2e-2),
     )
@@ -80,7 +80,7 @@ fn slide(friction: f64) -> Problem {
         SOURCE,
     )
     .quantity(
-        "ground acceleration from which it slides",
+        "ground acceleration at which the block starts to slide",
         "g",
         relative(friction, 2e-3).fast(1.2e-2),
     )
@@ -97,7 +97,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     let exact = 3.0 * GRAVITY * (beta - s) / (4.0 * (1.0 + s * s));
     setting(
         format!("regimes/first-spin-{s}-{beta}"),
-        format!("block of s = {s} under {beta} g from the start, no sliding"),
+        format!("block of s = {s} under a sudden {beta} g, no sliding"),
         SOURCE,
     )
     .quantity(
@@ -109,7 +109,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
         let finer = 2.0_f64.powi(level);
         let mut scene = standing((2.0 * s, 2.0), 10.0, 1e10 * finer * finer)?;
         let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 1e-9 };
-        // From the angular velocity at two times, after the springs have come to rest and before the block has
+        // The acceleration is measured between two times, after the springs have come to rest and before the block has
         // turned much.
         let step = 5e-6 / finer;
         scene.run(&drive, step, 0.004)?;
@@ -119,7 +119,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     })
 }
 
-/// A flat block, too low to rock, after a motion of the ground.
+/// Runs a block that is too flat to rock through a motion of the ground.
 ///
 /// # Errors
 /// If the run fails numerically.
@@ -135,7 +135,7 @@ pub(super) fn ridden(
     Ok(scene)
 }
 
-/// Returns the refinement from which a run starts.
+/// Returns the coarsest refinement at an effort.
 pub(super) fn base(effort: Effort) -> i32 {
     match effort {
         Effort::Fast => -1,

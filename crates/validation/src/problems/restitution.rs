@@ -1,4 +1,4 @@
-//! Restitution: of the law alone, under gravity, and of a rocking block.
+//! Restitution of a normal law alone, of a mass under gravity, and of a rocking block.
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -15,11 +15,11 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 const SOURCE: &str = "damped oscillator on approach";
 const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021";
 
-/// √(k/m) (rad/s) of the mass on its node.
+/// Natural frequency √(k/m) (rad/s) of the mass on its node.
 const OMEGA: f64 = 100.0;
 const RADIUS: f64 = 0.1;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     let table = [0.05, 0.0676, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0];
@@ -47,11 +47,11 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Five equal discs in a row that touch, the first of which is struck: an elastic contact must conserve energy.
+/// Creates the problem of a disc that strikes a row of four equal discs: elastic contacts must conserve energy.
 fn newtons_cradle() -> Problem {
     setting(
         "restitution/newtons-cradle",
-        "one disc at 1 m/s against four that touch, no damping, no friction",
+        "one disc at 1 m/s against a row of four that touch, no damping, no friction",
         "balance of energy",
     )
     .quantity("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4)) // measured 1.9e-10
@@ -74,7 +74,7 @@ fn newtons_cradle() -> Problem {
     })
 }
 
-/// A mass of 1 kg that hits the floor at a speed (m/s).
+/// Creates a mass of 1 kg that hits the floor at a speed (m/s).
 fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, Failure> {
     let stiffness = OMEGA * OMEGA;
     let damping = restitution::damping(stiffness, zeta, 1.0);
@@ -87,7 +87,7 @@ fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, 
     Ok(Scene::new(vec![floor(), body], interface(normal, FrictionLaw::Frictionless), gravity)?)
 }
 
-/// Returns when (s) and how fast (m/s) a mass leaves the floor; `None` if it stays for `patience` (s).
+/// Returns the time (s) and the speed (m/s) at which a mass leaves the floor; `None` if it stays for `patience` (s).
 fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f64)>, Failure> {
     let mut before = (0.0, 0.0);
     let mut left = None;
@@ -103,7 +103,9 @@ fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f
     Ok(left)
 }
 
-/// Returns the step (s); here a refinement halves only the step, since the exact answer is that of the law.
+/// Returns the time step (s) of a refinement.
+///
+/// A refinement halves only the step and keeps the stiffness, since the exact answer is that of the law itself.
 fn step(level: i32) -> f64 {
     1e-4 / OMEGA / 2.0_f64.powi(level)
 }
@@ -131,8 +133,8 @@ fn rebound(law: Corner, zeta: f64, exact: f64) -> Problem {
         };
         refine(effort, true_value, |level| {
             let mut scene = striking(law, zeta, 1.0, Vec2::default())?;
-            // The Kelvin–Voigt node releases the mass before it is back at the surface; by then it
-            // flies at the speed of release.
+            // The Kelvin–Voigt node releases the mass below the surface; the mass then passes the surface at the
+            // speed of its release.
             Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1)
         })
     })
@@ -162,10 +164,10 @@ fn inverted(e: f64, published: f64) -> Problem {
     .quantity("damping ratio ζ", "", relative(published, 2e-3))
     .by(move |_| {
         let zeta = restitution::speed_gap_damping_ratio(e)
-            .ok_or_else(|| Failure::Absent(format!("no damping ratio for e = {e}")))?;
+            .ok_or_else(|| Failure::Absent(format!("no damping ratio gives e = {e}")))?;
         let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
         let shown = gone(leaving(&mut scene, step(0), 1.0)?)?.1;
-        Ok(Outcome::of(zeta).noted(format!("a mass that meets this node shows e = {shown:.4}")))
+        Ok(Outcome::of(zeta).noted(format!("a mass that hits this node has e = {shown:.4}")))
     })
 }
 
@@ -193,7 +195,7 @@ fn stays(zeta: f64) -> Problem {
         format!("mass on one speed-gap node under gravity, ζ = {zeta}"),
         SOURCE,
     )
-    .quantity("Γ = g/ωv from which it does not lift off", "", relative(exact, 2e-3).fast(1.2e-2))
+    .quantity("least Γ = g/ωv at which the mass stays", "", relative(exact, 2e-3).fast(1.2e-2))
     .at_border(0.02, move |gamma| {
         let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
         // Every later rebound is lower than the first.
@@ -201,7 +203,7 @@ fn stays(zeta: f64) -> Problem {
     })
 }
 
-/// The longest stable step of symplectic Euler for a mass on its node.
+/// Creates the problem of the longest stable step of symplectic Euler for a mass on its node.
 fn stability(zeta: f64) -> Problem {
     let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
     setting(
@@ -224,12 +226,12 @@ fn stability(zeta: f64) -> Problem {
     })
 }
 
-/// A damping calibrated at one amplitude reproduces the target at another.
+/// Creates the problem of a damping that is calibrated at one amplitude and checked at another.
 fn calibrated(target: f64) -> Problem {
     let alpha = 0.25;
     setting(
         format!("restitution/rocking-target-{target}"),
-        format!("block of α = {alpha}, damping chosen at φ = 0.5, shown at φ = 0.75"),
+        format!("block of α = {alpha}, damping calibrated at φ = 0.5, checked at φ = 0.75"),
         ROCKING,
     )
     .quantity("ratio of angular velocities η", "", relative(target, 5e-3).fast(1.2e-2))
@@ -239,7 +241,7 @@ fn calibrated(target: f64) -> Problem {
             ..RockingBlock::new(1.0, alpha)
         };
         let Some(block) = block.calibrated(target)? else {
-            return Err(Failure::Absent(format!("no damping ratio shows η = {target}")));
+            return Err(Failure::Absent(format!("no damping ratio gives η = {target}")));
         };
         let mut note = format!("ζ = {:.4}", block.damping_ratio);
         if effort == Effort::Full {

@@ -22,7 +22,8 @@ const SOURCE: &str = "rigid-body dynamics of rolling";
 const MASS: f64 = 100.0;
 const RADIUS: f64 = 0.35;
 
-/// k²/r² of a full barrel whose wine slips, a ball, a solid cylinder and a hoop.
+/// Ratios k²/r² of radius of gyration and radius, squared: a full barrel whose wine slips, a ball, a solid cylinder
+/// and a hoop.
 const RATIOS: [f64; 4] = [0.1236, 0.4, 0.5, 1.0];
 
 /// Returns the stiffness (N/m) after refinements.
@@ -45,7 +46,7 @@ fn stick(coefficient: f64, level: i32) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, MASS))
 }
 
-/// A disc of k²/r² = `ratio`, at its static penetration in a floor.
+/// Creates a disc with k²/r² = `ratio`, at its static penetration in a floor.
 fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene, Failure> {
     let sunk = -MASS * gravity.z / stiffness(level);
     let center = Vec2::new(0.0, RADIUS - sunk);
@@ -61,13 +62,13 @@ fn acceleration(scene: &mut Scene, drive: &impl Drive<Planar>, level: i32) -> Re
     Ok((scene.state.twists[1].linear.x - before) / 0.5)
 }
 
-/// Returns the slip speed (m/s) of the disc on its base.
+/// Returns the slip speed (m/s) of the disc relative to its base.
 fn slip(scene: &Scene) -> f64 {
     let (ground, twist) = (scene.state.twists[0], scene.state.twists[1]);
     (twist.linear.x + RADIUS * twist.angular - ground.linear.x).abs()
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for ratio in RATIOS {
@@ -100,7 +101,11 @@ fn base_slip(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio}, μ = 0.2, base acceleration grows"),
         SOURCE,
     )
-    .quantity("base acceleration from which it slips", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity(
+        "base acceleration at which it starts to slip",
+        "g",
+        relative(exact, 5e-3).fast(1.2e-2),
+    )
     .at_border(0.02, move |push| {
         let mut scene = roller(ratio, 0.2, DOWN, 0)?;
         let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.1 };
@@ -144,13 +149,17 @@ fn slope_slip(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio}, μ = 0.1, on a slope"),
         SOURCE,
     )
-    .quantity("tangent of the slope from which it slips", "", relative(exact, 1e-2).fast(1.2e-2))
+    .quantity(
+        "tangent of the least slope on which it slips",
+        "",
+        relative(exact, 1e-2).fast(1.2e-2),
+    )
     .at_border(0.02, move |tangent| {
         let mut scene = roller(ratio, 0.1, gravity_on_slope(atan(tangent)), 0)?;
         scene.run(&Still, step(0), 1.0)?;
         let start = slip(&scene);
         scene.run(&Still, step(0), 2.0)?;
-        // Rolling on springs it creeps at a steady speed; beyond the limit the slip speed grows.
+        // A disc that rolls on springs creeps at a steady speed; beyond the limit the slip speed grows.
         Ok(slip(&scene) - start > 2e-3)
     })
 }
@@ -174,13 +183,13 @@ fn swing(ratio: f64) -> Problem {
         let mut scene = Scene::new(vec![cradle, body], laws, DOWN)?;
         let place = |state: &State<Planar>| state.poses[1].position.x;
         let through = run_crossings(&mut scene, step(level), 8.0, place)?;
-        // It starts on the right, so every second crossing is from there.
+        // The disc starts on the right, so every second crossing comes from the right.
         let leftward: Vec<f64> = through.into_iter().step_by(2).collect();
         mean_time(&leftward, 4).ok_or_else(|| Failure::Absent("the disc does not swing".into()))
     })
 }
 
-/// The disc on two points of the ground.
+/// Creates the disc on two points of the ground.
 fn two_points(angle: f64, friction: FrictionLaw) -> Result<Scene, Failure> {
     let body = disc("barrel", RADIUS, MASS, 0.5 * RADIUS * RADIUS, Vec2::default());
     Ok(on_two_points(body, RADIUS, angle, interface(firm(0), friction))?.settled(1e-9)?)
@@ -190,10 +199,14 @@ fn leaves(angle: f64) -> Problem {
     let exact = tan(angle);
     setting(
         format!("rolling/leaves-cradle-{angle}"),
-        format!("disc on two smooth points at ±{angle} rad, ground acceleration grows"),
+        format!("disc on two frictionless points at ±{angle} rad, ground acceleration grows"),
         SOURCE,
     )
-    .quantity("ground acceleration at which it leaves one", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity(
+        "ground acceleration at which it leaves one point",
+        "g",
+        relative(exact, 5e-3).fast(1.2e-2),
+    )
     .at_border(0.02, move |push| {
         let mut scene = two_points(angle, FrictionLaw::Frictionless)?;
         let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.5 };

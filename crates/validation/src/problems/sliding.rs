@@ -1,4 +1,4 @@
-//! Sliding blocks: under pulses, on shaking ground, down slopes; and blocks that must not slide.
+//! Sliding blocks: under pulses, on shaking ground, and on slopes; and blocks that must not slide.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -20,7 +20,7 @@ const COULOMB: &str = "Coulomb";
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 1e6;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let (a, n, duration) = (0.5, 0.2, 0.4);
     let half_sine =
@@ -87,7 +87,7 @@ fn steady() -> Problem {
         })
 }
 
-/// A low block on its lower corners, at its static penetration, on a slope of an angle (rad).
+/// Creates a low block on its lower corners, at its static penetration, on a slope of an angle (rad).
 fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Result<Scene, Failure> {
     let gravity = gravity_on_slope(slope);
     let sunk = -MASS * gravity.z / (2.0 * STIFFNESS);

@@ -1,4 +1,4 @@
-//! Waves in a part-filled barrel: their frequencies and masses against published ones, and against finite
+//! Waves in a part-filled barrel: their frequencies and masses, compared with published values and with finite
 //! elements in the plane of the cross-section.
 
 use barrelstack::slosh::{across, along, filled_to};
@@ -10,11 +10,11 @@ use crate::swing::crossings;
 use crate::{Failure, GRAVITY, Problem};
 
 const HALF_FULL: &str = "Budiansky 1960; McIver 1989";
-const NEARLY_EMPTY: &str = "a particle in a round trough";
+const NEARLY_EMPTY: &str = "particle in a round trough";
 const NEARLY_FULL: &str = "ice-fishing problem, Fox and Kuttler 1983";
 const ELEMENTS: &str = "potential theory by finite elements";
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![
         frequency("nearly-empty", NEARLY_EMPTY, 1e-4, 1.0, 2e-3),
@@ -49,14 +49,14 @@ fn nearly_full() -> Problem {
     let half_width = (1.0 - (depth - 1.0) * (depth - 1.0)).sqrt();
     setting(
         "slosh/nearly-full",
-        "horizontal cylinder full but for a slit, first wave across",
+        "horizontal cylinder, full except for a slit, first wave across",
         NEARLY_FULL,
     )
     .quantity("ω² b/g with half the width b of the slit", "", relative(2.006_119, 1e-3))
     .by(move |_| Ok(number(depth) * half_width))
 }
 
-/// Elements per side, for which the finite-element answers are off by some 0.1 %.
+/// Number of elements per side, with which the finite-element answers are off by about 0.1 %.
 const SIDE: usize = 28;
 
 fn by_elements(depth: f64) -> Problem {
@@ -77,12 +77,13 @@ fn mass(depth: f64) -> Problem {
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
     )
-    .quantity("share of the mass that goes with the wave", "", relative(exact, 4e-3))
+    .quantity("share of the mass that moves with the wave", "", relative(exact, 4e-3))
     .by(move |_| Ok(across(1.0, filled_to(depth)).share))
 }
 
-/// Returns `ω²/g` and the mass fraction of the first antisymmetric wave in a segment of the unit circle, by bilinear
-/// elements between surface and wall: an eigenvalue problem `K φ = κ M φ` with `M` on the surface only.
+/// Returns `ω²/g` and the mass fraction of the first antisymmetric wave in a segment of the unit circle.
+///
+/// Bilinear elements between surface and wall give the eigenvalue problem `K φ = κ M φ`, with `M` on the surface only.
 fn finite_elements(depth: f64, side: usize) -> (f64, f64) {
     let angle = acos(1.0 - depth);
     let (width, height) = sin_cos(angle);
@@ -186,12 +187,12 @@ fn solve(factor: &[Vec<f64>], load: &mut [f64]) {
 }
 
 fn long() -> Problem {
-    // A tank of 2 m by 0.5 m, represented by half of a cylinder of that mean depth.
+    // A tank of 2 m by 0.5 m, represented by half of a cylinder with that mean depth.
     let (length, depth) = (2.0, 0.5);
     let exact = std::f64::consts::PI / length * (std::f64::consts::PI * depth / length).tanh();
     setting(
         "slosh/rectangular",
-        "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis",
+        "rectangular tank of 2 m filled to 0.5 m, the model of a half-full barrel along its axis",
         "Ibrahim 2005, section 5",
     )
     .quantity("ω²/g", "1/m", relative(exact, 1e-9))
@@ -201,7 +202,7 @@ fn long() -> Problem {
     })
 }
 
-/// The wine of a barrel in its cradle, excited by a short push.
+/// Creates the problem of the wine of a barrel in its cradle, excited by a short push.
 fn in_a_stack(filled: f64) -> Problem {
     let wave = scenario(filled)
         .ok()

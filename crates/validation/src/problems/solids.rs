@@ -1,5 +1,4 @@
-//! Solid bodies: no overlaps, falls stopped within millimeters, and smooth contact where boundaries slide along
-//! each other.
+//! Solid bodies: no overlaps, falls that stop within millimeters, and smooth contact forces along boundaries.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -17,12 +16,12 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 const REBOUND: &str = "balance of energy of a spring k δ^1.5";
 
-/// A full barrel and its impact law, from the catalog.
+/// Mass (kg) of a full barrel; its impact law is that of the catalog.
 const MASS: f64 = 270.0;
 const STIFFNESS: f64 = 1.2e9;
 const RESTITUTION: f64 = 0.3;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for height in [1.0, 2.0, 3.3] {
@@ -71,8 +70,9 @@ fn speed_after(height: f64) -> f64 {
     (2.0 * GRAVITY * height).sqrt()
 }
 
-/// The depth of a barrel: `½ m v² + m g δ = ⅖ k δ^2.5`, if it is much faster than the speed at which the law begins to
-/// damp.
+/// Creates the problem of the greatest depth of a falling barrel: `½ m v² + m g δ = ⅖ k δ^2.5`.
+///
+/// The barrel is much faster than the speed at which the law begins to damp.
 fn depth(height: f64) -> Problem {
     let energy = MASS * GRAVITY * height;
     let mut exact = 0.01;
@@ -88,7 +88,7 @@ fn depth(height: f64) -> Problem {
     .refined(move |_, level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
 }
 
-/// The rebound speed, independent of the mass.
+/// Creates the problem of the rebound speed, which does not depend on the mass.
 fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     setting(
         format!("solids/restitution-{}-{height:.1}m", what.replace(' ', "-")),
@@ -104,7 +104,7 @@ fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     })
 }
 
-/// The rebound with the default step of a stack.
+/// Creates the problem of the rebound with the default step of a stack.
 fn default_step() -> Problem {
     setting(
         "solids/restitution-at-the-default-step",
@@ -127,7 +127,7 @@ fn default_step() -> Problem {
     })
 }
 
-/// A body whose shape contacts others exactly, not by nodes.
+/// Creates a body with exact contacts, without nodes.
 fn solid(name: &str, shape: Shape, pose: Pose<Planar>) -> Body<Planar> {
     let rounds = Nodes::Rounds(shape.rounds(1.0));
     Body {
@@ -144,7 +144,7 @@ fn solid(name: &str, shape: Shape, pose: Pose<Planar>) -> Body<Planar> {
     }
 }
 
-/// A box with corners rounded by 10 mm.
+/// Creates a box with corners rounded by 10 mm.
 fn rounded_box(width: f64, height: f64) -> Shape {
     match Polygon::rectangle(width, height, 0.01) {
         Ok(polygon) => Shape::Polygon(polygon),
@@ -156,7 +156,7 @@ fn two_boxes() -> [Shape; 2] {
     [rounded_box(1.0, 0.2), rounded_box(0.6, 0.2)]
 }
 
-/// The rail of a rack, and a barrel along its axis.
+/// Returns the section of a rail, and the profile of a barrel along its axis.
 fn rail_and_barrel() -> [Shape; 2] {
     let rail = Polygon::bar(Vec2::new(-0.48, 0.0), Vec2::new(0.48, 0.0), 0.012);
     let barrel = BarrelProfile::new(0.95, 0.58, 0.7).and_then(|profile| profile.rounded(0.01));
@@ -166,7 +166,7 @@ fn rail_and_barrel() -> [Shape; 2] {
     }
 }
 
-/// A model of two bodies, each tested as contactor of the other; the lower is at the origin.
+/// Creates a model of two bodies, each tested as contactor of the other; the lower one is at the origin.
 fn two(
     [below, above]: [Shape; 2],
     upper: Pose<Planar>,
@@ -192,12 +192,13 @@ fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Fa
     Ok(([wrench.force.x, wrench.force.z, wrench.moment], scratch.contacts.len()))
 }
 
-/// A box flat on another: two contacts, at the ends of the overlap, whichever box they belong to.
+/// Creates the problem of a box flat on another: it must have two contacts, at the ends of the overlap, in either order
+/// of the boxes.
 fn flat(share: f64, count: f64) -> Problem {
     setting(
         format!("solids/flat-on-flat-{share:.2}"),
-        format!("a box flat on another, {share} of its width beyond the edge or not"),
-        "two lines that overlap touch at the two ends of the overlap",
+        format!("a box flat on another, {share} of its width beyond the edge"),
+        "two overlapping lines touch at the two ends of the overlap",
     )
     .quantity("contacts", "", absolute(count, 0.0))
     .by(move |_| {
@@ -212,12 +213,14 @@ fn flat(share: f64, count: f64) -> Problem {
     })
 }
 
-/// Forces change smoothly while one box moves along paths over flats, edges and corners of the other: the
-/// largest jump between neighbors of a fine path, over the largest change that the stiffness explains.
+/// Creates the problem of the smoothness of forces while one box moves over the flats, edges and corners of another.
+///
+/// The quantity is the largest jump between neighboring points of a fine path, relative to the change that the
+/// stiffness explains.
 fn smooth() -> Problem {
     setting(
         "solids/smooth-along-paths",
-        "a box led over flats, edges and corners of another on 40 paths",
+        "a box moved over flats, edges and corners of another on 40 paths",
         "forces of a spring of stiffness k change by k times the displacement",
     )
     .quantity(
@@ -255,17 +258,18 @@ fn smooth() -> Problem {
     })
 }
 
-/// Displacement (m, rad) to either side for a finite difference.
+/// Displacement (m, rad) to either side in a finite difference.
 const STEP: f64 = 1e-8;
 
-/// Forces are the negative gradient of the stored elastic energy, wherever two bodies press into each
-/// other and whichever of their pieces touch, so no path around a corner gains or loses energy. The largest
-/// difference over the force, at poses all around the lower body, of all three components.
+/// Creates the problem of the force as negative gradient of the elastic energy, at poses all around the lower body.
+///
+/// If force and gradient agree wherever two bodies press on each other, no path around a corner gains or loses energy.
+/// The quantity is their largest difference in any of the three components, over the force.
 fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
     setting(
         format!("solids/slope-of-the-energy-{}", what.replace(' ', "-")),
         format!("{what}, in contact all around each other"),
-        "a force that has an energy is minus its slope",
+        "a conservative force is the negative gradient of its energy",
     )
     .quantity("largest difference, over the force", "", absolute(0.0, 1e-4))
     .by(move |effort| {
@@ -290,7 +294,7 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
             }
             let pose = [1.8 * at[0] - 0.9, 1.2 * at[1] - 0.6, 2.0 * PI * at[2]];
             let (_, force, deepest, contacts) = energy_and_force(pose);
-            // At greater depth the cores of the bodies may overlap, which the contact is not designed for.
+            // At greater depths the cores of the bodies may overlap, for which the contact is not designed.
             if deepest == 0.0 || deepest > 0.015 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Stacked blocks: the joint that opens or slides first, and the four rocking patterns of two blocks.
+//! Stacked blocks: the joint that opens or slides first, and the four rocking patterns of two stacked blocks.
 
 use std::ops::ControlFlow;
 
@@ -19,8 +19,9 @@ const MASS: f64 = 100.0;
 /// Stiffness (N/m) of a joint's nodes.
 const STIFFNESS: f64 = 1e9;
 
-/// Blocks of given sizes (m) on each other, from the ground up, with one friction coefficient of the ground
-/// and one of all other joints.
+/// Creates blocks of given sizes (m) on each other, from the ground up.
+///
+/// `frictions` are the friction coefficients of the joint on the ground and of all other joints.
 fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> {
     let mut bodies = vec![floor()];
     let mut top = 0.0;
@@ -44,7 +45,7 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
 /// Time step (s).
 const STEP: f64 = 1e-5;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         opens("one", &[(0.4, 1.2)]),
@@ -58,7 +59,8 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Returns the least half-width of a joint over the height of the center of mass above it, and the joint's index.
+/// Returns the least ratio of half-width to height of the center of mass above it among the joints, and the index of
+/// that joint.
 fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
     let joint = |k: usize| {
         // Equal masses: the mean of the heights of the centers above the joint.
@@ -68,7 +70,7 @@ fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
             sum += base + 0.5 * height;
             base += height;
         }
-        // The joint rotates about the outermost node of the narrower face.
+        // The blocks above a joint rotate about the outermost node of the narrower face.
         let below = if k == 0 { f64::INFINITY } else { sizes[k - 1].0 };
         let half = 0.5 * sizes[k].0.min(below) - INSET;
         half / (sum / above.len() as f64)
@@ -118,7 +120,7 @@ fn slides(ground: f64, between: f64, exact: f64) -> Problem {
         UPLIFT,
     )
     .quantity(
-        "ground acceleration from which the weaker joint slides",
+        "ground acceleration at which the weaker joint starts to slide",
         "g",
         relative(exact, 2e-3).fast(1.2e-2),
     )
@@ -135,10 +137,10 @@ fn slides(ground: f64, between: f64, exact: f64) -> Problem {
     })
 }
 
-/// Names of the patterns of Psycharis, in order of appearance here.
+/// Names of the rocking patterns of Psycharis.
 const NAMES: [&str; 4] = ["together", "upper alone", "same sense", "opposite senses"];
 
-/// Returns the pattern of two blocks with rotations `lower` and `upper` (rad), if both are clear of rest.
+/// Returns the index of the pattern of two blocks with rotations `lower` and `upper` (rad); `None` near rest.
 fn pattern(lower: f64, upper: f64) -> Option<usize> {
     let (open, hair) = (2e-3, 2e-4);
     let between = upper - lower;

@@ -1,6 +1,6 @@
-//! Maxima over an ensemble of records, against the rigid-block integrator.
+//! Distribution of the largest rotations under an ensemble of records, compared with the rigid-block integrator.
 //!
-//! Single rocking histories are not reproducible, but the distribution of their maxima is.
+//! Single rocking histories are too sensitive to be compared, but the distribution of their maxima is not.
 
 use std::f64::consts::TAU;
 
@@ -19,11 +19,12 @@ const SOURCE: &str = "ensembles of maxima, as Bachmann et al. 2018";
 const ALPHA: f64 = 0.25;
 const RADIUS: f64 = 1.0;
 
-/// Sample step of the records (s).
+/// Sampling interval (s) of the records.
 const SAMPLE: f64 = 0.01;
 
-/// A synthetic record: 24 waves between 0.4 Hz and 6 Hz of random phase in an envelope, with a peak
-/// between 0.26 g and 0.5 g, so that less than half of the records overturn the block.
+/// Returns a synthetic record: 24 waves of random phase between 0.4 Hz and 6 Hz, in an envelope.
+///
+/// Its peak is between 0.26 g and 0.5 g, so that less than half of the records overturn the block.
 fn record(seed: u64) -> Sampled {
     let mut random = Random(seed);
     let peak = random.within(0.26, 0.5) * GRAVITY;
@@ -48,7 +49,9 @@ fn record(seed: u64) -> Sampled {
     Sampled::new(SAMPLE, shape.iter().map(|a| a * peak / largest).collect())
 }
 
-/// Returns the peak rotations over α of the contact code and of the rigid block, record by record; 2 if overturned.
+/// Returns the peak rotations over α of the contact code and of the rigid block, record by record.
+///
+/// The value is 2 if the block overturned.
 fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     let block: RockingBlock = firm(effort, RADIUS, ALPHA);
     let rigid: Rocker = block.rigid(theory::housner_restitution(ALPHA));
@@ -64,7 +67,7 @@ fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     Ok((ours, exact))
 }
 
-/// Returns the largest vertical distance of two empirical distributions of equally many samples.
+/// Returns the largest vertical distance between two empirical distributions with equally many samples.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let share =
         |of: &[f64], at: f64| of.iter().filter(|x| **x <= at).count() as f64 / of.len() as f64;
@@ -78,7 +81,7 @@ fn median(of: &[f64]) -> f64 {
     0.5 * (sorted[half] + sorted[(sorted.len() - 1) / 2])
 }
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         setting(
@@ -86,9 +89,9 @@ pub(super) fn problems() -> Vec<Problem> {
             "block of α = 0.25, R = 1 m under 200 synthetic records (10 in the fast form)",
             SOURCE,
         )
-        // Two samples of 200 from one distribution differ by this much in one case of twenty.
+        // Two samples of 200 from the same distribution differ by at least this much in one case of twenty.
         .quantity(
-            "Kolmogorov–Smirnov distance of the maxima to those of the rigid block",
+            "Kolmogorov–Smirnov distance of the maxima from those of the rigid block",
             "",
             absolute(0.0, 0.136).fast(0.3),
         )

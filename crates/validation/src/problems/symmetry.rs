@@ -1,4 +1,4 @@
-//! The order of bodies: exchanging the two bodies of a contact changes nothing.
+//! The order of bodies: exchanging the two bodies of a contact must not change the motion.
 
 use barrelstack_dynamics::Space;
 
@@ -10,7 +10,7 @@ use crate::{Effort, Outcome, Problem};
 const STEP: f64 = 1e-4;
 const END: f64 = 1.0;
 
-/// Returns the problems of this theory.
+/// Returns the problems of this module.
 pub(super) fn problems() -> Vec<Problem> {
     let limit = || absolute(0.0, 1e-9);
     vec![
@@ -24,7 +24,7 @@ pub(super) fn problems() -> Vec<Problem> {
         problem("two-on-a-floor", "two solids on a floor", limit(), |effort| {
             (0..if effort == Effort::Full { 15 } else { 4 }).map(spatial_heap).collect()
         }),
-        // A start that differs in its last bit ends 1.4e-9 m away as well.
+        // A change of the last bit of the initial state moves the blocks by 1.4e-9 m as well.
         problem("blocks-on-a-floor", "two blocks on a floor", absolute(0.0, 1e-8), |_| {
             vec![spatial_heap(15)]
         }),
@@ -38,7 +38,7 @@ fn problem<S: Space<Real = f64>>(
     scenes: fn(Effort) -> Vec<Order<S>>,
 ) -> Problem {
     setting(format!("symmetry/{name}"), title, "symmetry of mechanics")
-        .quantity("largest difference in a second, listed in the reverse order", "m", answer)
+        .quantity("largest difference in one second between the two orders", "m", answer)
         .by(move |effort| {
             let (scenes, mut worst) = (scenes(effort), (0.0_f64, String::new()));
             let count = scenes.len();

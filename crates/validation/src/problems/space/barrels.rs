@@ -17,7 +17,7 @@ use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
 use crate::swing::run_crossings;
 use crate::{Failure, Problem};
 
-/// A barrel of 225 liters by its fill: name, mass (kg), moments of inertia (kg·m²) about its axis and across.
+/// Fills of a barrel of 225 liters: name, mass (kg), moments of inertia (kg·m²) about the axis and across it.
 const FILLS: [(&str, f64, f64, f64); 3] =
     [("frozen", 269.0, 14.1, 22.6), ("fluid", 269.0, 4.0, 8.5), ("empty", 48.0, 3.9, 6.0)];
 
@@ -60,7 +60,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A barrel of 225 liters with a chime rounded by 10 mm.
+/// Creates the shape of a barrel of 225 liters with a chime rounded by 10 mm.
 fn barrel() -> Result<Barrel, Failure> {
     shaped(0.945, 0.2775, 0.345, 0.01)
 }
@@ -69,7 +69,7 @@ fn shaped(length: f64, head: f64, bilge: f64, rounding: f64) -> Result<Barrel, F
     Barrel::new(length, head, bilge, rounding).map_err(absent)
 }
 
-/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical until a time (s).
+/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical up to a time (s).
 fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Failure> {
     let (mut round, mut before) = (0.0, 0.0);
     scene.watch(&Still, step, end, |state, _, _| {
@@ -90,7 +90,7 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
     Ok(round / end)
 }
 
-/// A top whose spherical tip rolls, in steady precession.
+/// Creates the problem of a top whose spherical tip rolls, in steady precession.
 fn top(which: &'static str) -> Problem {
     let (quantity, unit, exact) = match which {
         "speed" => ("speed of its center after 1 s", "m/s", 0.344_417_790),
@@ -128,9 +128,9 @@ fn top(which: &'static str) -> Problem {
     })
 }
 
-/// A body of revolution that rolls on its lower rim while its center stays.
+/// Creates a body of revolution that rolls on its lower rim while its center stays at rest.
 ///
-/// The rim's contact point is at rest, so the angular velocity lies along the line from the center to it.
+/// The point of the rim on the floor is at rest, so the angular velocity lies along the line from the center to it.
 fn running_round(
     shape: Barrel,
     (mass, about, across): (f64, f64, f64),
@@ -155,7 +155,9 @@ fn running_round(
 fn disc(degrees: f64, exact: f64) -> Problem {
     setting(
         format!("space-barrels/disc-{degrees}"),
-        format!("thin disc of 0.3 m that runs round at {degrees}° to the floor, for one turn"),
+        format!(
+            "thin disc of 0.3 m that rolls on its rim at {degrees}° to the floor, for one turn"
+        ),
         "Ω² = 4 g / (R sin α); Euler's disc",
     )
     .quantity("precession", "rad/s", relative(exact, 1e-3))
@@ -188,7 +190,7 @@ fn wobble(
     })
 }
 
-/// A barrel that rocks on its bilge along its length.
+/// Creates the problem of a barrel that rocks on its bilge along its length.
 fn rock(
     (name, mass, about, across): (&'static str, f64, f64, f64),
     degrees: f64,
@@ -201,7 +203,7 @@ fn rock(
     )
     .quantity("period", "s", relative(exact, 1e-3))
     .by(move |_| {
-        // Small amplitudes stand for the limit of zero.
+        // A small amplitude represents the limit of zero amplitude.
         let lean = if degrees == 0.0 { 0.003 } else { degrees.to_radians() };
         let inertia = Vec3::new(about, across, across);
         let height = 1.6875 - 1.3425 * cos(lean) - mass * G / STIFFNESS;
@@ -218,14 +220,14 @@ fn rock(
     })
 }
 
-/// Height (m) of the axis of a barrel above those of the tubes that support it.
+/// Height (m) of the axis of a barrel above the axes of the tubes that support it.
 const ABOVE_TUBES: f64 = 0.343_517_867_6;
-/// Angle (rad) between the vertical and the normal of a contact on them.
+/// Angle (rad) between the vertical and the normal of a contact on these tubes.
 const CONTACT_ANGLE: f64 = 9.098_134_339 * PI / 180.0;
 /// Slope (rad) of the tubes.
 const SLOPE: f64 = 5.0 * PI / 180.0;
 
-/// A barrel at rest across two tubes that descend along `x`.
+/// Creates a barrel at rest across two tubes that descend along `x`.
 fn on_tubes(
     (_, mass, about, across): (&str, f64, f64, f64),
     role: Role,
@@ -293,7 +295,7 @@ fn bears(fill: (&'static str, f64, f64, f64)) -> Problem {
         scene.run(&Still, STEP, 0.3)?;
         match scene.scratch.contacts[..] {
             [first, second] => Ok(0.5 * (first.normal_force + second.normal_force)),
-            _ => Err(Failure::Absent("the barrel does not bear on both".into())),
+            _ => Err(Failure::Absent("the barrel does not rest on both tubes".into())),
         }
     })
 }

@@ -1,4 +1,4 @@
-//! Feet, legs and boxes: load distribution, tipping, rocking.
+//! Bodies on feet and boxes in space: load distribution, tipping and rocking.
 
 use std::ops::ControlFlow;
 
@@ -24,7 +24,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns the forces (N) on the feet (m, relative to the center of mass) of a plate of 981 N on equal springs.
+/// Returns the forces (N) on the feet of a plate of 981 N on equal springs; `feet` are relative to the center of mass
+/// (m).
 fn loads(feet: &[Vec3]) -> Result<Vec<f64>, Failure> {
     let mut plate = free("plate", 100.0, Vec3::new(10.0, 10.0, 10.0), Vec3::default());
     plate.nodes = vec![points(feet)];
@@ -65,14 +66,14 @@ fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Proble
     exact.into_iter().enumerate().map(of).collect()
 }
 
-/// A box pushed obliquely tips over the critical edge.
+/// Creates the problem of a box that is pushed obliquely and tips over the critical edge.
 fn tips(degrees: f64, exact: f64) -> Problem {
     setting(
         format!("space-blocks/tips-{degrees}"),
         format!("box of half sides 0.27 and 0.7365 m, center 0.9 m high, pushed at {degrees}°"),
         "moments about the edges",
     )
-    .quantity("push that it does not bear", "g", relative(exact, 1e-3))
+    .quantity("least push that tips it over", "g", relative(exact, 1e-3))
     .by(move |effort| {
         let halvings = if effort == Effort::Full { 8 } else { 5 };
         border((0.99 * exact, 1.01 * exact), halvings, |push| {
@@ -99,19 +100,19 @@ struct Impact {
     time: f64,
     /// Angular velocity (rad/s) before.
     rate: f64,
-    /// Angular velocity after over that before, from the next peak rotation of the box.
+    /// Ratio of the angular velocities after and before, from the next peak rotation of the box.
     ratio: f64,
 }
 
-/// Computes the first impact of a box released at half its slenderness angle, with everything rotated about the
-/// vertical.
+/// Computes the first impact of a box released at half its slenderness angle, with the scene rotated about the vertical
+/// by an angle (rad).
 fn first_impact(turned: f64) -> Result<Impact, Failure> {
     let (half_width, half_height, mass) = (0.27, 0.9, 270.0);
     let alpha = 0.291_456_794_5;
     let across = mass * (half_width * half_width + half_height * half_height) / 3.0;
     let inertia = Vec3::new(across + 50.0, across, 60.0);
     let mut body = free("box", mass, inertia, Vec3::default());
-    // It stands on the edge at +x and leans in that direction.
+    // The box stands on the edge at +x and leans in that direction.
     let lean = Quaternion::turn(Vec3::new(0.0, 0.5 * alpha, 0.0));
     body.pose.orientation = yaw(turned).after(lean);
     let stiffness = 1e9;
@@ -136,7 +137,7 @@ fn first_impact(turned: f64) -> Result<Impact, Failure> {
             struck = Some((before.0 + part * (state.time - before.0), before.1));
         }
         if struck.is_some() {
-            // Sine of its rotation to the other side.
+            // Sine of the rotation to the other side.
             peak = peak.max(-turn.apply(Vec3::new(0.0, 0.0, 1.0)).dot(toward));
         }
         before = (state.time, rate, height);
@@ -170,22 +171,18 @@ fn rocks() -> Vec<Problem> {
         problem("impact", "Housner 1963, eq. 8", ratio, |impact| impact.ratio);
         if degrees > 0.0 {
             list.push(
-                setting(
-                    format!("space-blocks/rocks-{degrees}-turned"),
-                    title,
-                    "no direction is distinguished",
-                )
-                .quantity(
-                    "change of its next lean and its rate by turning it, as a share",
-                    "",
-                    absolute(0.0, 1e-9),
-                )
-                .by(move |_| {
-                    let (turned, straight) = (first_impact(angle)?, first_impact(0.0)?);
-                    let rate = (turned.rate / straight.rate - 1.0).abs();
-                    let ratio = (turned.ratio / straight.ratio - 1.0).abs();
-                    Ok(rate.max(ratio))
-                }),
+                setting(format!("space-blocks/rocks-{degrees}-turned"), title, "isotropy of space")
+                    .quantity(
+                        "relative change of next rotation and rate when the scene is turned",
+                        "",
+                        absolute(0.0, 1e-9),
+                    )
+                    .by(move |_| {
+                        let (turned, straight) = (first_impact(angle)?, first_impact(0.0)?);
+                        let rate = (turned.rate / straight.rate - 1.0).abs();
+                        let ratio = (turned.ratio / straight.ratio - 1.0).abs();
+                        Ok(rate.max(ratio))
+                    }),
             );
         }
     }

@@ -1,4 +1,4 @@
-//! Bodies on a head or on a side: rest, rocking and rolling on a face or along a line.
+//! Bodies in space that lie on a face or along a line: rest, rocking and rolling.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ const ACROSS: f64 = 22.6;
 /// Half the length (m) of the barrel, and the radius (m) of the flat part of its head.
 const HALF: f64 = 0.4725;
 const HEAD: f64 = 0.269_982_558_045_203;
-/// A stiffness (N/m) at which springs deform measurably.
+/// Stiffness (N/m) at which springs deform measurably.
 const SOFT: f64 = 1e6;
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -55,15 +55,15 @@ fn spring() -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness: SOFT, damping: 0.0 }
 }
 
-/// Barrels on their heads, stacked.
+/// Creates the problem of barrels that are stacked on their heads.
 fn stands(count: u32) -> Problem {
     let exact: f64 = (1..=count).map(|above| f64::from(above) * MASS * G / (4.0 * SOFT)).sum();
     setting(
         format!("space-flat/stands-{count}"),
         format!("{count} barrels on their heads, one on the other"),
-        "a disc on four springs",
+        "disc on four springs",
     )
-    .quantity("how far the top one sinks", "m", relative(exact, 1e-6))
+    .quantity("settlement of the top one", "m", relative(exact, 1e-6))
     .by(move |_| {
         let mut bodies = vec![floor()];
         for level in 0..count {
@@ -86,8 +86,10 @@ fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<
     Ok(2.0 * half)
 }
 
-/// Without friction a body rotates about its center of mass, while its weight acts through the flat of its head,
-/// which lies inside the rounded chime.
+/// Returns a barrel on its head that rocks on its contact springs, and the exact period.
+///
+/// Without friction the barrel rotates about its center of mass; it bears on the flat part of its head, inside the
+/// rounded chime.
 fn barrel_on_springs() -> Swing {
     let sunk = MASS * G / (4.0 * SOFT);
     let square = (2.0 * SOFT * HEAD * HEAD - MASS * G * (HALF - 0.01)) / ACROSS;
@@ -107,7 +109,7 @@ fn tube_on_springs() -> Swing {
     let inertia = Vec3::new(1.3, 50.0, 50.0);
     let mut body = solid("tube", shape, MASS, inertia, Vec3::new(0.0, 0.0, 0.1 - sunk));
     body.pose.orientation = Quaternion::turn(Vec3::new(0.0, 0.3 * sunk / half, 0.0));
-    // Its round ends roll, so its weight has no overturning moment.
+    // The round ends of the tube roll, so its weight has no overturning moment.
     let square = 2.0 * SOFT * half * half / inertia.y;
     let scene = scene(vec![floor(), body], spring(), FrictionLaw::Frictionless, down());
     (TAU / square.sqrt(), scene)
@@ -122,13 +124,13 @@ fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
     setting(
         format!("space-flat/springs-{name}"),
         title,
-        "a rigid body on equal springs, less the pull of its weight",
+        "rigid body on equal springs, reduced by the overturning moment of its weight",
     )
     .quantity("period", "s", relative(exact, 1e-4))
     .by(move |_| period(start().1?, of, exact))
 }
 
-/// A barrel released on the rim of its head, at half the angle of unstable equilibrium.
+/// Creates the problem of a barrel that is released on the rim of its head, at half the angle of unstable equilibrium.
 fn rocks(which: &'static str) -> Problem {
     // An almost sharp rim.
     let rounding = 1e-6;
@@ -144,7 +146,7 @@ fn rocks(which: &'static str) -> Problem {
     };
     setting(
         format!("space-flat/rocks-{which}"),
-        "barrel that is let go on the rim of its head at half its slenderness angle",
+        "barrel that is released on the rim of its head at half its slenderness angle",
         "Housner 1963, exact equation, for a block as wide as the head",
     )
     .quantity(quantity, unit, relative(exact, 1e-3))
@@ -160,7 +162,7 @@ fn rocks(which: &'static str) -> Problem {
         scene.watch(&Still, 1e-5, 2.0, |state, _, _| {
             let axis = axis(state.poses[1].orientation);
             let (lean, rate) = (asin(axis.x), state.twists[1].angular.y);
-            // Shortly before, while the middle of the head is not yet in contact.
+            // Measured shortly before the barrel stands, while the middle of the head is not yet in contact.
             let level = 2e-4;
             if lean < level {
                 let part = (before.1 - level) / (before.1 - lean);
@@ -177,12 +179,12 @@ fn rocks(which: &'static str) -> Problem {
     })
 }
 
-/// A tube in the groove between two others, in line contact.
+/// Creates the problem of a tube in the groove between two others, in line contact.
 fn groove() -> Problem {
     let (radius, aside) = (0.05, 0.06);
     let slope = asin(aside / (2.0 * radius));
     let exact = 2.0 * radius * cos(slope) - {
-        // Each line is two springs; the tube sinks by their deformation, across the slope of the normals.
+        // Each line contact is two springs; the tube sinks by their deformation along the inclined normals.
         let pressed = |sunk: f64| {
             let height = 2.0 * radius * cos(slope) - sunk;
             let apart = (height * height + aside * aside).sqrt();
@@ -217,7 +219,7 @@ fn groove() -> Problem {
     })
 }
 
-/// A tube that lies on a slope and rolls down, independent of its azimuth.
+/// Creates the problem of a tube that rolls down a slope, which must not depend on its azimuth.
 fn rolls(degrees: f64) -> Problem {
     let (radius, half_length) = (0.1, 0.7);
     let slope = 5.0_f64.to_radians();
@@ -225,7 +227,7 @@ fn rolls(degrees: f64) -> Problem {
     let exact = G * sin(slope) / (1.0 + inertia.x / (MASS * radius * radius));
     setting(
         format!("space-flat/rolls-{degrees}"),
-        format!("tube that lies on a slope of 5° and rolls, all turned by {degrees}°"),
+        format!("tube that rolls down a slope of 5°, with the scene turned by {degrees}°"),
         "g sin θ / (1 + I / (m r²))",
     )
     .quantity("acceleration", "m/s2", relative(exact, 1e-4))

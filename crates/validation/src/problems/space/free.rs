@@ -1,4 +1,4 @@
-//! A freely rotating body: Euler's equations and their solution in elliptic functions.
+//! A freely rotating body, compared with the solution of Euler's equations in elliptic functions.
 
 use std::ops::ControlFlow;
 
@@ -55,13 +55,13 @@ fn spin() -> Problem {
         "asymmetric body that tumbles for 20 s, Runge–Kutta 4 at 1 ms",
         SOURCE,
     )
-    .quantity("spin about its middle axis", "rad/s", absolute(2.709_578_90, 1e-7))
+    .quantity("spin about its intermediate axis", "rad/s", absolute(2.709_578_90, 1e-7))
     .by(|_| {
         let mut scene = body(Method::RungeKutta4)?;
         scene.run(&Still, 1e-3, 20.0)?;
         let spin = body_spin(&scene);
         let off = spin - Vec3::new(1.037_479_57, 2.709_578_90, 1.022_919_29);
-        let note = format!("spin off by {:.1e} rad/s in all", off.length());
+        let note = format!("error of the spin vector {:.1e} rad/s", off.length());
         Ok(Outcome::of(spin.y).noted(note))
     })
 }
@@ -73,7 +73,7 @@ fn attitude() -> Problem {
         SOURCE,
     )
     .quantity(
-        "how far its quaternion is from the exact one, or its negative",
+        "distance of its quaternion from the exact one or its negative",
         "",
         absolute(0.0, 1e-7),
     )
@@ -107,7 +107,7 @@ fn convergence(method: Method, order: f64) -> Problem {
         SOURCE,
     )
     .quantity(
-        "order of convergence of its attitude, counted up to that of the method",
+        "order of convergence of its attitude, at most that of the method",
         "",
         absolute(order, 0.1),
     )
@@ -138,7 +138,7 @@ fn momentum(method: Method) -> Problem {
         format!("asymmetric body that tumbles for 100 s, {} at 1 ms", method.name()),
         "conservation of angular momentum",
     )
-    .quantity("change of the angular momentum, as a share", "", absolute(0.0, 1e-12))
+    .quantity("relative change of the angular momentum", "", absolute(0.0, 1e-12))
     .by(move |_| {
         let mut scene = body(method)?;
         let start = angular_momentum(&scene);
@@ -153,7 +153,7 @@ fn energy() -> Problem {
         "asymmetric body that tumbles for 100 s, velocity Verlet at 1 ms",
         "conservation of energy",
     )
-    .quantity("largest change of its energy, as a share", "", absolute(0.0, 1e-6))
+    .quantity("largest relative change of its energy", "", absolute(0.0, 1e-6))
     .by(|_| {
         let mut scene = body(Method::VelocityVerlet)?;
         let mut worst = 0.0_f64;

@@ -31,7 +31,7 @@ enum Role {
     Target,
 }
 
-/// Returns the problems of these theories.
+/// Returns the problems of all modules in space.
 pub(super) fn problems() -> Vec<Problem> {
     let theories = [
         free::problems(),
@@ -54,7 +54,7 @@ fn rough(coefficient: f64, stiffness: f64, mass: f64) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, mass))
 }
 
-/// Creates a scene with one interface.
+/// Creates a scene whose bodies touch by one interface.
 fn scene(
     bodies: Vec<Body<Spatial>>,
     normal: NormalLaw,

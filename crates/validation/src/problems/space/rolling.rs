@@ -1,4 +1,4 @@
-//! Balls in space: down a slope, with side spin, and bouncing.
+//! Balls in space: rolling down a slope, with side spin, and bouncing.
 
 use std::ops::ControlFlow;
 
@@ -15,7 +15,7 @@ use crate::{Failure, Outcome, Problem};
 const SOURCE: &str = "rigid-body dynamics of a homogeneous ball";
 const RADIUS: f64 = 0.3;
 const MASS: f64 = 10.0;
-/// Downhill direction (rad) of the slopes: not along an axis.
+/// Downhill direction (rad) of the slopes, which is not along an axis.
 const HEADING: f64 = 0.5;
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -37,7 +37,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A ball at rest on a floor, with gravity rotated as on a slope.
+/// Creates a ball at rest on a floor, with gravity inclined as on a slope.
 fn on_slope(radians: f64, friction: f64) -> Result<Scene<Spatial>, Failure> {
     let gravity = gravity_on_slope(G, radians, HEADING);
     let sunk = -MASS * gravity.z / STIFFNESS;
@@ -65,7 +65,7 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
             .quantity("spin after 1 s", "rad/s", relative(spin, 1e-4))
             .by(move |_| {
                 let spin = run()?.state.twists[1].angular;
-                // It rotates about the horizontal axis across the slope.
+                // The ball rotates about the horizontal axis across the slope.
                 let across = Vec3::new(-sin(HEADING), cos(HEADING), 0.0);
                 Ok(spin.dot(across))
             }),
@@ -75,7 +75,7 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
 /// Radius (m) of the ball that represents the floor if the ball is the target.
 const EARTH: f64 = 1e5;
 
-/// The ball on a slope with the constants of this problem.
+/// Creates the ball on a slope with the constants of the carried stick.
 fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     let gravity = gravity_on_slope(G, 20_f64.to_radians(), HEADING);
     let stiffness = 1e7;
@@ -94,7 +94,8 @@ fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     scene(vec![ground, ball], firm(stiffness, MASS), friction, gravity)
 }
 
-/// A stick that travels over the surface of the ball, or stays on the floor: the forces are equal.
+/// Creates the problems of a stick that travels over the surface of the ball or stays on the floor; the forces must be
+/// equal.
 fn carried(role: Role, friction: f64) -> [Problem; 3] {
     let (name, place) = match role {
         Role::Contactor => ("contactor", 10.784_628),
@@ -117,7 +118,7 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     [
         setting(format!("space-rolling/carried-{name}-{friction}-forces"), title.clone(), SOURCE)
             .quantity(
-                "largest error of normal force and friction, as a share",
+                "largest relative error of normal force and friction",
                 "",
                 absolute(0.0, 1e-3),
             )
@@ -144,7 +145,7 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     ]
 }
 
-/// A ball that slips obliquely: a parabola, then a straight line.
+/// Creates the problems of a ball that slips obliquely: it moves on a parabola, then along a straight line.
 fn side_spin() -> [Problem; 3] {
     let title = "ball thrown along x with spin (6, 4, 7) rad/s, μ = 0.2";
     let source = "slip keeps its direction; Coriolis 1835";
@@ -162,13 +163,17 @@ fn side_spin() -> [Problem; 3] {
     };
     [
         setting("space-rolling/side-spin-rolls", title, source)
-            .quantity("how far from the place where it begins to roll", "m", absolute(0.0, 1e-5))
+            .quantity(
+                "distance from the exact place where it begins to roll",
+                "m",
+                absolute(0.0, 1e-5),
+            )
             .by(move |_| off(0.286_846_011_4, 0.540_909_62, -0.073_760_40)),
         setting("space-rolling/side-spin-place", title, source)
-            .quantity("how far from its place after 1.5 s", "m", absolute(0.0, 1e-5))
+            .quantity("distance from its exact place after 1.5 s", "m", absolute(0.0, 1e-5))
             .by(move |_| off(1.5, 2.689_925_26, -0.697_668_17)),
         setting("space-rolling/side-spin-spin", title, source)
-            .quantity("how far from its spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
+            .quantity("error of its spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
             .by(move |_| {
                 let spin = run(1.5)?.state.twists[1].angular;
                 let exact = Vec3::new(1.714_285_7, 5.904_761_9, 7.0);
@@ -177,7 +182,7 @@ fn side_spin() -> [Problem; 3] {
     ]
 }
 
-/// A ball that bounces while it slides: friction is μ times the normal force throughout.
+/// Creates the problems of a ball that bounces while it slides, so that friction is always μ times the normal force.
 fn bounce() -> [Problem; 3] {
     let problem = |name: &'static str,
                    quantity: &'static str,
@@ -195,9 +200,9 @@ fn bounce() -> [Problem; 3] {
             let mut ball = ball(radius, 10.0, Vec3::new(0.0, 0.0, radius));
             ball.twist.linear = Vec3::new(3.0, 1.0, -2.0);
             ball.twist.angular = Vec3::new(0.0, 30.0, 0.0);
-            // So stiff that the penetration is no lever arm, with the same damping ratio.
+            // So stiff that the penetration hardly changes the lever arm, with the same damping ratio.
             let law = NormalLaw::SpeedGap { stiffness: 1e12, damping: 4e5 };
-            // Far above the velocity of regularization.
+            // The slip is far above the velocity of regularization.
             let sliding = FrictionLaw::Regularized { coefficient: 0.05, velocity: 1e-6 };
             let mut scene = scene(vec![floor(), ball], law, sliding, Vec3::default())?;
             scene.run(&Still, 1e-9, 2e-5)?;

@@ -1,4 +1,4 @@
-//! Sliding and spinning blocks and rings: the friction limit is a circle, independent of direction.
+//! Sliding and spinning blocks and rings: the limit of friction must not depend on the direction.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A block on the floor by its corners, which lie `height` (m) below its center of mass.
+/// Creates a block that stands on its lower corners, `height` (m) below its center of mass.
 fn block(
     friction: f64,
     height: f64,
@@ -46,7 +46,7 @@ fn block(
     )
 }
 
-/// A body on a number of feet, with a moment of inertia (kg·m²) about the vertical.
+/// Creates a body on a number of feet, with a moment of inertia (kg·m²) about the vertical.
 fn sliding(
     feet: barrelstack_dynamics::Nodes<Spatial>,
     count: f64,
@@ -66,7 +66,7 @@ fn sliding(
     scene(vec![floor(), body], firm(stiffness, share), friction, gravity)
 }
 
-/// Returns the rotation (rad) about the vertical.
+/// Returns the rotation (rad) of a body about the vertical.
 fn turn(orientation: Quaternion) -> f64 {
     2.0 * barrelstack_dynamics::math::atan2(orientation.v.z, orientation.w)
 }
@@ -90,10 +90,10 @@ fn stops(
     found.ok_or_else(|| Failure::Absent("it does not stop".into()))
 }
 
-const COULOMB: &str = "Coulomb's friction acts against the slip";
+const COULOMB: &str = "Coulomb friction opposite to the slip";
 
 fn circle() -> [Problem; 3] {
-    let title = "block thrown across its edges, μ = 0.4";
+    let title = "block thrown obliquely to its edges, μ = 0.4";
     let exact = 0.509_683_995_9;
     let thrown = || -> Result<(Scene<Spatial>, f64), Failure> {
         let mut scene = block(0.4, 0.0, 0.0, down())?;
@@ -113,7 +113,7 @@ fn circle() -> [Problem; 3] {
             }),
         setting("space-sliding/circle-direction", title, COULOMB)
             .quantity(
-                "direction of its displacement, or its turn, off by",
+                "error of the direction of its displacement, or its rotation",
                 "rad",
                 absolute(0.0, 1e-6),
             )
@@ -135,7 +135,7 @@ fn slope(degrees: f64) -> [Problem; 2] {
     [
         setting(format!("space-sliding/slope-{degrees}-acceleration"), title.clone(), COULOMB)
             .quantity(
-                "acceleration once its sticks are stretched",
+                "acceleration after its sticks are stretched",
                 "m/s2",
                 relative(2.0 * 0.739_310_665_2, 1e-4),
             )
@@ -147,7 +147,11 @@ fn slope(degrees: f64) -> [Problem; 2] {
                 Ok((scene.state.twists[1].linear.x - before) / 0.5)
             }),
         setting(format!("space-sliding/slope-{degrees}-turn"), title, COULOMB)
-            .quantity("turn, and displacement aside over that down", "rad", absolute(0.0, 1e-4))
+            .quantity(
+                "rotation, and lateral over downhill displacement",
+                "rad",
+                absolute(0.0, 1e-4),
+            )
             .by(move |_| {
                 let mut scene = start()?;
                 scene.run(&Still, STEP, 1.0)?;
@@ -174,21 +178,21 @@ fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3
             .quantity("time until it stops", "s", absolute(time, 1e-4))
             .by(move |_| Ok(run()?.1)),
         setting(format!("space-sliding/spinning-{turned}-place"), title.clone(), QUADRATURE)
-            .quantity("how far from the place where it stops", "m", absolute(0.0, 2e-5))
+            .quantity("distance from the exact place where it stops", "m", absolute(0.0, 2e-5))
             .by(move |_| {
                 let found = run()?.0.state.poses[1].position;
                 let off = Vec3::new(found.x - place.0, found.y - place.1, 0.0);
                 Ok(off.length())
             }),
         setting(format!("space-sliding/spinning-{turned}-turn"), title, QUADRATURE)
-            .quantity("turn until it stops", "rad", absolute(spun, 2e-5))
+            .quantity("rotation until it stops", "rad", absolute(spun, 2e-5))
             .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation) - turned)),
     ]
 }
 
-/// A ring that slides and spins: each motion reduces the friction against the other.
+/// Creates the problems of a ring that slides and spins: each motion reduces the friction against the other.
 fn ring() -> [Problem; 3] {
-    let title = "ring thrown at 1 m/s and spun at 1.5 m/s about its center, μ = 0.3";
+    let title = "ring thrown at 1 m/s, spinning with a rim speed of 1.5 m/s, μ = 0.3";
     let source = "sliding ring: Farkas, Bartels, Unger and Wolf 2003";
     let run = || -> Result<(Scene<Spatial>, f64), Failure> {
         let (radius, count) = (0.3, 120);
@@ -212,7 +216,7 @@ fn ring() -> [Problem; 3] {
             .quantity("distance until it stops", "m", absolute(0.374_178, 2e-4))
             .by(move |_| Ok(run()?.0.state.poses[1].position.x)),
         setting("space-sliding/ring-turn", title, source)
-            .quantity("turn until it stops", "rad", absolute(1.576_485, 2e-4))
+            .quantity("rotation until it stops", "rad", absolute(1.576_485, 2e-4))
             .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation))),
     ]
 }
@@ -232,15 +236,15 @@ impl Drive<Spatial> for Circling {
     }
 }
 
-/// Steady slip on ground that moves in a circle.
+/// Creates the problems of steady slip on ground that moves in a circle.
 fn circling() -> [Problem; 2] {
     let problem = |name: &str, time: f64, place: (f64, f64)| {
         setting(
             format!("space-sliding/circling-{name}"),
             format!("block on ground that circles with 5 m/s², 1 Hz, μ = 0.3, after {time} s"),
-            "steady slip: friction carries the block in a circle of its own",
+            "steady slip: friction moves the block in a circle, too",
         )
-        .quantity("how far from its place on the ground", "m", absolute(0.0, 1e-4))
+        .quantity("distance from its exact place on the ground", "m", absolute(0.0, 1e-4))
         .by(move |_| {
             let drive = Circling { acceleration: 5.0, omega: TAU };
             let mut scene = block(0.3, 0.0, 0.0, down())?;
