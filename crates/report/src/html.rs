@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use crate::document::{SCOPE, SIGNATURE};
 use crate::{
     Block, Document, Figure, FigureKind, Strip, Table, Tone,
     document::FINE,
@@ -211,6 +212,12 @@ impl<'a> Writer<'a> {
         for (name, value) in pairs {
             self.element("<div><dt>", name, "</dt>");
             self.element("<dd>", value, "</dd></div>");
+        }
+        self.put("</dl>\n");
+        self.element("<p class=\"text\">", SCOPE, "</p>");
+        self.put("<dl class=\"signature\">\n");
+        for line in SIGNATURE {
+            self.element("<div><dt>", line, "</dt><dd></dd></div>");
         }
         self.put("</dl>\n</section>\n");
     }

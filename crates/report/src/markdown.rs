@@ -1,5 +1,6 @@
 //! A document as Markdown, with its figures in separate files.
 
+use crate::document::{SCOPE, SIGNATURE};
 use crate::{
     Attachment, Block, Document, Event, Player, Players, Table, Word, attachments, document::FINE,
     escape, figure::Names, glossary, number,
@@ -68,7 +69,10 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
         for (name, value) in &document.provenance {
             writer.line(&format!("| {} | {} |", escape::markdown(name), escape::markdown(value)));
         }
-        writer.line("");
+        for line in SIGNATURE {
+            writer.line(&format!("| {line} | |"));
+        }
+        writer.line(&format!("\n{SCOPE}\n"));
     }
     let text = format!("{}\n", writer.out.trim_end());
     MarkdownBundle { text, files: attachments(document) }

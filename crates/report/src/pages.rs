@@ -2,6 +2,7 @@
 
 use pdf_writer::types::StructRole;
 
+use crate::document::{SCOPE, SIGNATURE};
 use crate::{
     Block, Document, EventKind, Figure, Panel, Player, Strip, Table, Tone,
     document::FINE,
@@ -260,13 +261,13 @@ impl<'a> Flow<'a> {
         if document.provenance.is_empty() {
             return;
         }
-        let rows: Vec<Vec<String>> = document
-            .provenance
-            .iter()
-            .map(|(name, value)| vec![name.clone(), value.clone()])
-            .collect();
+        let pairs =
+            document.provenance.iter().map(|(name, value)| vec![name.clone(), value.clone()]);
+        let lines = SIGNATURE.map(|line| vec![line.to_owned(), String::new()]);
+        let rows: Vec<Vec<String>> = pairs.chain(lines).collect();
         self.heading("page-section", "Provenance", 40.0);
         self.rows(&Sheet::new(Vec::new(), rows, vec![false; 2], self.width()));
+        self.paragraph("page-text", SCOPE);
     }
 
     /// Writes the folded content, including content folded within it.

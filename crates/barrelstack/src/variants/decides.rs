@@ -147,7 +147,7 @@ fn drawn(laws: &StackInterfaces, spread: &Imperfections, posts: bool) -> Vec<Dra
             unit: unit(&seat),
             dispersion: spread.stiffness,
             change: Interface::stiffen,
-            value: stiffness,
+            value: |law| Some(stiffness(law)),
             law: seat,
         },
         friction(
@@ -197,13 +197,13 @@ fn coefficient(law: &Interface) -> Option<f64> {
     }
 }
 
-fn stiffness(law: &Interface) -> Option<f64> {
+fn stiffness(law: &Interface) -> f64 {
     match law.normal {
         NormalLaw::SpeedGap { stiffness, .. }
         | NormalLaw::KelvinVoigt { stiffness, .. }
         | NormalLaw::HuntCrossley { stiffness, .. }
         | NormalLaw::Rebound { stiffness, .. }
-        | NormalLaw::Hertz { stiffness } => Some(stiffness),
+        | NormalLaw::Hertz { stiffness } => stiffness,
     }
 }
 
