@@ -76,7 +76,7 @@ impl RecordMotion {
     }
 }
 
-/// An amplitude and its kind.
+/// Amplitude of a motion: the peak of the displacement, velocity or acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
     /// Peak displacement (m).
@@ -104,9 +104,10 @@ pub struct Sine {
     pub amplitude: Amplitude,
     /// Period (s).
     pub period: f64,
-    /// Number of cycles, ramps included.
+    /// Number of cycles, including ramps.
     pub cycles: f64,
-    /// Cycles over which the amplitude grows from zero, and again falls to zero.
+    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles at
+    /// the end.
     pub ramp_cycles: f64,
     /// Direction.
     pub direction: Direction,
@@ -117,26 +118,26 @@ pub struct Sine {
 pub enum PulseKind {
     /// Second derivative of a Gaussian in acceleration.
     Ricker,
-    /// Half a sine of acceleration.
+    /// Acceleration in the form of half a sine wave.
     HalfSine,
-    /// One sine of acceleration.
+    /// Acceleration in the form of one sine wave.
     OneSine,
-    /// One cosine of acceleration.
+    /// Acceleration in the form of one cosine wave.
     OneCosine,
     /// Constant acceleration.
     Rectangular,
-    /// Harmonic under a Gaussian envelope.
+    /// Harmonic wave with a Gaussian envelope.
     Gabor {
-        /// Width of the envelope in cycles.
+        /// Width of the envelope, as a number of cycles.
         gamma: f64,
         /// Phase (rad).
         phase: f64,
     },
     /// Cycloid A of Jacobsen and Ayre: one forward displacement.
     CycloidA,
-    /// Cycloid B: forward and back.
+    /// Cycloid B: one displacement forward and back.
     CycloidB,
-    /// Cycloid C with a number of cycles.
+    /// Cycloid C: several cycles that start and end at rest.
     CycloidC {
         /// Number of cycles.
         cycles: u32,
@@ -155,7 +156,7 @@ pub enum PulseKind {
 pub struct Pulse {
     /// Form.
     pub kind: PulseKind,
-    /// Amplitude; never a displacement.
+    /// Peak acceleration or peak velocity; never a displacement.
     pub amplitude: Amplitude,
     /// Period (s).
     pub period: f64,
@@ -193,7 +194,7 @@ pub enum Scale {
         measure: IntensityMeasure,
         /// Value of the measure to reach (SI units).
         value: f64,
-        /// The component or components measured.
+        /// Components from which the measure is computed.
         of: MeasuredOn,
     },
 }
