@@ -1,4 +1,4 @@
-//! Check of a scenario without shaking it: whether it is sound, and whether its stack stands.
+//! Check of a scenario without shaking: whether the scenario is sound, and whether its stack stands.
 
 use barrelstack_dynamics::Settled;
 use barrelstack_dynamics::settle::Locked;
@@ -12,7 +12,7 @@ use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 
 described! {
-    /// Result of a check that found the scenario sound.
+    /// Result of a check in which the scenario was found sound.
     #[derive(Clone, Debug)]
     pub struct Checked {
         /// Name and version of the schema.

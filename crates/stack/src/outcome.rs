@@ -11,8 +11,8 @@ pub enum CollapseMode {
     Ejection,
     /// Two or more upper levels rock and fall together.
     Rocking,
-    /// A rack walks along the barrels below until its rail passes their ends; of the planes, only that along the
-    /// barrels can show it.
+    /// A rack walks along the barrels below until its rail passes their ends; among planar models, only the plane along
+    /// the barrels can show this mode.
     RackSliding,
     /// The whole stack overturns about its foot.
     Overturning,
@@ -58,7 +58,7 @@ pub enum Outcome {
         first: String,
         /// Lowest level whose seat or support was lost.
         from_level: u32,
-        /// Highest level that collapsed with it.
+        /// Highest level that collapsed with that level.
         to_level: u32,
     },
     /// Not judged, because a free scene has no seats that could be lost.

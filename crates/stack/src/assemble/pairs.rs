@@ -62,7 +62,7 @@ impl Pairs<'_> {
         0..self.builder.touches[body].len()
     }
 
-    /// Adds the contact pair of a node set of one body and a surface of another.
+    /// Adds the contact pair between a node set of one body and a surface of another.
     fn push(
         &mut self,
         (contactor, nodes): (BodyId, usize),
@@ -78,7 +78,8 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Adds the exact tests of two solids: a circle is tested against the other solid, other solids against each other.
+    /// Adds the exact tests of two solids: a circle is tested against the other solid; two solids with corners are
+    /// tested in both directions.
     ///
     /// `counts` gives the active side of each test.
     fn exact(
@@ -99,7 +100,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// Returns the face with nodes on which a solid stands on a floor.
+    /// Returns the face with nodes by which a solid stands on a floor.
     ///
     /// A tube from end to end of a rack has a seat at each end; where constants are stated per seat, it has no row of
     /// nodes.
@@ -174,7 +175,8 @@ impl Pairs<'_> {
         }
     }
 
-    /// Adds the tests of a rack against a device; a rack stands on the platform of an isolator as on the ground.
+    /// Adds the tests of a rack against a device. A rack stands on the platform of an isolator in the same way as on
+    /// the ground.
     fn rack_and_device(&mut self, rack: BodyId, device: BodyId) {
         let carried = self.builder.parts[rack].carrier == Some(device);
         for solid in self.solids(rack) {

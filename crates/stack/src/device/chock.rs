@@ -66,7 +66,11 @@ impl Chocks {
     }
 
     /// Does nothing, because chocks are solids of the racks.
-    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "the same for all devices")]
+    #[expect(
+        clippy::unnecessary_wraps,
+        clippy::unused_self,
+        reason = "the signature is the same for all devices"
+    )]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())
     }

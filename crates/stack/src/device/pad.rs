@@ -88,7 +88,7 @@ impl Pads {
     }
 
     /// Replaces the contact law of the cradles by that of the pads.
-    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
+    #[expect(clippy::unnecessary_wraps, reason = "the signature is the same for all devices")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {
             builder.cradle_law = builder.add_cradle("pad", &law);

@@ -1,4 +1,5 @@
-//! Ties of racks to structures beside or above them: cables and rods that pull, and may have slack, yield and tear.
+//! Ties of racks to structures beside or above them: cables and rods that only pull. They may have slack, and may yield
+//! and tear.
 //!
 //! Walls and ceilings are assumed to move with the ground; real ones move more.
 
@@ -48,13 +49,13 @@ named! {
         Wall = "wall",
         /// The ceiling above both ends of the rack.
         Ceiling = "ceiling",
-        /// The racks beside it on the same level.
+        /// The neighboring racks on the same level.
         Neighbors = "neighbors",
     }
 }
 
 named! {
-    /// Sides of a stack on which racks are tied.
+    /// Sides of a stack on which its racks are tied.
     pub enum Side {
         /// The left side.
         Left = "left",
