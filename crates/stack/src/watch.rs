@@ -102,7 +102,10 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 impl<R: Real> End<R> {
     /// Observes an accepted state, and returns the lanes whose run is over: after a collapse, and by rest.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub(crate) fn observe(
         &mut self,
         state: &State<Planar<R>>,

@@ -22,7 +22,7 @@ named! {
 }
 
 section! {
-    /// Properties of one body of a stack that differ from the others.
+    /// Properties in which one body of a stack differs from the others.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
@@ -33,10 +33,11 @@ section! {
     body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
-    /// Column, 1 at the left before mirroring; racks count columns of racks, barrels columns of barrels. In both planes
-    /// or in space, columns count across the barrels.
+    /// Column, 1 at the left before mirroring; for a rack, columns of racks are counted; for a barrel, columns of
+    /// barrels. In both planes or in space, columns count across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
-    /// Row along the barrels in space, 1 nearest; racks count rows of racks, barrels rows of barrels.
+    /// Row along the barrels in space, 1 nearest to the viewer; for a rack, rows of racks are counted; for a barrel,
+    /// rows of barrels.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
     /// Mass of the body, instead of the regular one.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;

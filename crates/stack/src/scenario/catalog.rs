@@ -98,7 +98,8 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
-/// Contact constants of a seat: a place where a rack carries a barrel or rack, or is carried itself.
+/// Contact constants of a seat: a place where a rack carries a barrel or another rack, or where the rack itself is
+/// carried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seat {
     /// Stiffness (N/m).
@@ -111,26 +112,26 @@ pub struct Seat {
     pub stick: f64,
 }
 
-/// Stick ratio of seats on barrels: staves bend under normal forces, and are stiffer against tangential forces, which
-/// act in their own surface.
+/// Ratio of the tangential to the normal stiffness of seats on barrels. Staves bend under normal forces, but are
+/// stiffer against tangential forces, which act in the surface of the staves.
 const STICK_ON_BARREL: f64 = 2.0;
 
-/// Stick ratio of seats on the floor: normal forces bend tubes that do not lie flat, while tangential forces act on
-/// steel in contact, which is far stiffer.
+/// Ratio of the tangential to the normal stiffness of seats on the floor. Normal forces bend tubes that do not lie
+/// flat, while tangential forces act on steel in contact, which is far stiffer.
 ///
-/// Four is the largest ratio that needs no smaller time step. With it, friction under five levels reverses early
-/// enough to act like rigid friction.
+/// Four is the largest ratio that needs no smaller time step. With this ratio, friction under five levels reverses
+/// early enough to act like rigid friction.
 const STICK_ON_FLOOR: f64 = 4.0;
 
-/// Stick ratio of seats on posts: smaller than on the floor, because tangential forces turn light racks with the height
-/// of the posts as lever.
+/// Ratio of the tangential to the normal stiffness of seats on posts. The ratio is smaller than on the floor, because
+/// tangential forces turn light racks with the height of the posts as the lever arm.
 ///
 /// With a ratio of four, racks on posts along the barrels vibrate at their time step: after 0.05 s, the energy balance
 /// is off by 1.4e-3, but by 2e-12 with a ratio of two.
 const STICK_ON_POST: f64 = 2.0;
 
-/// Contact constants of the seats of a rack, which are the medians of those of the variants (derivations in
-/// `validation/seats.md`).
+/// Contact constants of the seats of a rack. The constants are the medians over the variants of a stack;
+/// `validation/seats.md` derives them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
     /// Seat of a rack on a barrel: one rail on the crown of a barrel below, or one support of a cradle under a barrel.
@@ -151,7 +152,8 @@ impl Seat {
     }
 }
 
-/// Seats of racks on barrels, whose rails carry each barrel directly above the crowns on which they lie.
+/// Seats of racks on barrels. The rails of these racks carry each barrel directly above the crowns on which the rails
+/// lie.
 const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0, STICK_ON_BARREL),
     floor: Seat::new(1e7, 10.0, STICK_ON_FLOOR),
@@ -185,7 +187,8 @@ pub struct CatalogRack {
     pub source: &'static str,
 }
 
-/// Rack for two barrels side by side on two rails: of type 2 across the barrels, and of type 1 along them.
+/// Rack for two barrels side by side on two rails: a rack of type 2 across the barrels, and of type 1 along the
+/// barrels.
 const TWO_BARREL: Rack = Rack {
     base: "two-barrel",
     kind: RackKind::OnBarrels,
@@ -228,7 +231,7 @@ pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
         seats: ON_BARRELS,
-        help: "Lies on the barrels below with one bar in place of two.",
+        help: "Lies on the barrels below with one bar instead of two.",
         source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
                  `two-barrel`, the mass is an assumption",
     },

@@ -13,13 +13,14 @@ use crate::system;
 /// Maximum size of a scenario file (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Maximum number of bytes that are read of a file, so that the size of one that is too large can be reported.
+/// Maximum number of bytes that are read from a file. It exceeds [`SIZE_LIMIT`], so that the size of a file that is too
+/// large can be reported.
 const READ_LIMIT: usize = 256 << 20;
 
 /// Maximum number of scenarios in a chain of `extends`.
 const CHAIN_LIMIT: usize = 8;
 
-/// Scenarios that `extends` may name.
+/// Kinds of scenarios that `extends` may name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Access {
     /// Files and built-in scenarios.
@@ -64,9 +65,10 @@ impl Scenario {
     /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
     /// its folder.
     ///
-    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is TOML; anything
-    /// else is taken as text. List items are addressed by name (`body.block.mass`), interfaces by pair
-    /// (`interface.block-ground.stiffness`), and both by number from 1. `extends` may name a built-in scenario only.
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is read as TOML;
+    /// a value that is not TOML is taken as text. List items are addressed by name (`body.block.mass`), interfaces by
+    /// pair (`interface.block-ground.stiffness`), and both by number from 1. `extends` may name a built-in scenario
+    /// only.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -112,7 +114,7 @@ impl Scenario {
         read(&name, &bytes, overrides, Access::Files)
     }
 
-    /// Reads a scenario from a tree of values, such as those of another program.
+    /// Reads a scenario from a tree of values, such as the values that another program passes.
     ///
     /// Relative paths are relative to the current folder, and errors name the path of the value.
     ///
@@ -149,7 +151,8 @@ impl Scenario {
         finished(sources, table)
     }
 
-    /// Returns the scenario with further overrides as in [`Scenario::parse`], which replace earlier ones.
+    /// Returns the scenario with further overrides as in [`Scenario::parse`]. They replace earlier overrides of the
+    /// same fields.
     ///
     /// A record in memory ([`Scenario::with_record`]) is not part of the text and is not kept.
     ///

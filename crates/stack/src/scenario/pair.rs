@@ -1,4 +1,4 @@
-//! Pairs of kinds of bodies that touch in a stack, each declared once with its contact law.
+//! Pairs of kinds of bodies that can touch in a stack. Each pair is declared once, with its contact law.
 
 use super::catalog::{Seat, Seats};
 use super::error::ScenarioError;
@@ -10,14 +10,14 @@ use super::writer::Writer;
 
 /// Impact stiffness (N/m^1.5) of pairs with barrels, and of seats at the end of their stroke.
 ///
-/// It stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within 15 mm. This is an
-/// assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
+/// With this stiffness, a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) is stopped within 15
+/// mm. This is an assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
 /// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.
 ///
-/// It stops a rack without barrels that falls from the top of six levels within 10 mm; several contacts of the rack
-/// share the load of a barrel that lands on it.
+/// With this stiffness, a rack without barrels that falls from the top of six levels is stopped within 10 mm; several
+/// contacts of the rack share the load of a barrel that lands on it.
 const LIGHT: f64 = 5e8;
 
 /// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient,

@@ -282,14 +282,20 @@ impl<R: Real> Fates<R> {
 
     /// Returns the lanes in which no body has left its seat.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
     }
 
     /// Records an accepted state.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.stands();
@@ -345,7 +351,10 @@ impl<R: Real> Fates<R> {
 
     /// Records whether a body has left its seat, and the kind of the loss.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
@@ -389,7 +398,10 @@ impl<R: Real> Fates<R> {
     /// It is measured for a barrel in the frame of its rack, for the foot of a rack on posts in the frame of the rack
     /// below, for a rack on barrels relative to the mean of these barrels, and for other bodies relative to the ground.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
@@ -420,14 +432,20 @@ impl<R: Real> Fates<R> {
 
 /// Raises a peak to a value if the value is larger.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+#[expect(
+    clippy::inline_always,
+    reason = "without inlining, the lanes do not use vector instructions"
+)]
 fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
 /// Returns a value in the lanes of a mask, and zero in others.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+#[expect(
+    clippy::inline_always,
+    reason = "without inlining, the lanes do not use vector instructions"
+)]
 fn masked<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
 }

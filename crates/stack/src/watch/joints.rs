@@ -195,7 +195,10 @@ impl<R: Real> Joint<R> {
     /// Raises the peaks to the current force, at a time (s); the peaks until the first loss of seat are raised in
     /// `standing` lanes only.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
         let Vec2 { x, z } = self.force;
         let Self { until_loss, whole_run, .. } = self;
@@ -206,7 +209,10 @@ impl<R: Real> Joint<R> {
 
 /// Raises two peaks to a force (N) at a time (s) if it is larger; the first peak in standing lanes only.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+#[expect(
+    clippy::inline_always,
+    reason = "without inlining, the lanes do not use vector instructions"
+)]
 fn raise<R: Real>(
     until_loss: &mut (R, R),
     whole_run: &mut (R, R),
@@ -225,7 +231,10 @@ fn raise<R: Real>(
 impl<R: Real> Joints<R> {
     /// Returns the index of the joint of two bodies, and `true` if the first body is the upper one.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let joint = |upper: BodyId, lower: BodyId| {
             self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
@@ -238,7 +247,10 @@ impl<R: Real> Joints<R> {
     ///
     /// A missing joint is added; `None` if joints without support by design are not observed.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let known = self.number(one, other);
         if known.is_some() || !self.follows_all {
@@ -262,7 +274,10 @@ impl<R: Real> Joints<R> {
     /// Records the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
     /// before it.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub(crate) fn observe(&mut self, time: R, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
         for joint in &mut self.joints {
             joint.force = Vec2::default();

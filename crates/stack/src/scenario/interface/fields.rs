@@ -66,7 +66,7 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack, that of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a linear law per \
+        "in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a linear law per \
          node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to \
          the ground; must be given otherwise",
     ),
@@ -86,7 +86,7 @@ const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack, that of the rack's seats in the catalog for constants per seat without `damping`",
+        "in a stack, the restitution of the rack's seats in the catalog for constants per seat without `damping`",
     ),
     "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
@@ -106,7 +106,7 @@ const LINEAR: &[Field] = &[
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
         Default::Derived(
-            "that of the rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise",
+            "the mass of the rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise",
         ),
         "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
@@ -152,24 +152,23 @@ const LAWS: Variants = Variants {
         },
         Variant {
             name: "rebound",
-            help: "Spring with the power 1.5 of the penetration that returns a stated fraction of the impact \
-                   speed, whatever the mass.",
+            help: "Spring whose force is proportional to the penetration to the power 1.5; it returns a stated fraction of the impact speed, whatever the mass.",
             fields: &fields! {
                 /// Ratio of normal speeds after and before an impact.
                 restitution = Kind::Number(Range::up_to(1.0)), Default::Value("0.3");
-                /// Speed below which the contact damps as well, so that bodies on it come to rest.
+                /// Impact speed below which the contact also damps, so that bodies come to rest.
                 speed = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Value("\"0.1 m/s\"");
             },
         },
         Variant {
             name: "hertz",
-            help: "Elastic spring with the power 1.5 of the penetration.",
+            help: "Elastic spring whose force is proportional to the penetration to the power 1.5.",
             fields: &[],
         },
     ],
 };
 
-/// Fields that exclude each other: damping is stated directly or by a restitution.
+/// Fields that exclude each other, because the damping is stated either directly or by a restitution.
 const EXCLUSIVE: &[&[&str]] =
     &[&["damping", "restitution"], &["damping", "reference_mass"], &["damping", "reference_speed"]];
 
@@ -223,7 +222,7 @@ const COEFFICIENT: Range = Range::between(0.0, 5.0);
 const COEFFICIENT_FIELD: Field = Field::new(
     "coefficient",
     Kind::Number(COEFFICIENT),
-    Default::Derived("that of the pair in a stack; must be given otherwise"),
+    Default::Derived("the coefficient of the pair in a stack; must be given otherwise"),
     "Kinetic coefficient of friction.",
 );
 
@@ -233,14 +232,14 @@ table! {
     /// Tangential force as a function of slip.
     law = Kind::Choice(names::<FrictionKind>), Default::Value("\"coulomb\"");
     by law {
-        /// Elastic, damped stick up to the static limit, then sliding.
+        /// Elastic and damped tangential spring (stick) up to the static limit, then sliding.
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
             /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
             /// friction sooner, but needs a smaller time step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("that of the rack's seats in the catalog for constants per seat: 2 on barrels, whose staves are softer across than along their surface, and on posts, and 4 on the ground, where tubes bend that do not lie flat; 1 otherwise");
+                Default::Derived("the ratio of the rack's seats in the catalog for constants per seat: 2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4 on the ground, where tubes that do not lie flat bend; 1 otherwise");
             /// Ratio of the tangential damping of the stick to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }

@@ -70,7 +70,10 @@ struct Pair<R: Real> {
 impl<R: Real> Pair<R> {
     /// Transforms a contact point (m) from the frame of the target's surface to that of the body of a side.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     fn in_body(
         &self,
         side: Side,
@@ -98,7 +101,10 @@ impl Bounds {
 
 impl<R: Real> Bounds<R> {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
         match place {
@@ -349,7 +355,10 @@ impl<R: Real> StressWatch<R> {
     /// `standing` are the lanes in which no seat had been lost before this state, and `model` returns the model of a
     /// lane.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(
+        clippy::inline_always,
+        reason = "without inlining, the lanes do not use vector instructions"
+    )]
     pub(crate) fn observe<'a>(
         &mut self,
         standing: R::Mask,
