@@ -36,10 +36,12 @@ section! {
     solid: Solid = Kind::Table(&SOLID), Default::Required;
     /// Mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
-        Default::Derived("`density` times the volume of the solid; a body that is not fixed to the ground needs a mass or a density");
+        Default::Derived("`density` times the volume of the solid; a body that is not fixed to the ground needs a \
+            mass or a density");
     /// Density of the solid, as an alternative to the mass.
     density: Option<f64> =
-        Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass divided by the volume of the solid");
+        Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass divided by the volume of \
+            the solid");
     /// Moments of inertia about the axes through the center of mass that are parallel to local x, y and z. These axes
     /// are taken as the principal axes.
     inertia: Option<[f64; 3]> =
@@ -109,7 +111,8 @@ impl SpatialBody {
             let most = x.max(y).max(z);
             if x.min(y).min(z) <= 0.0 || most > (x + y + z - most) * (1.0 + 1e-9) {
                 let message = format!(
-                    "no rigid body has moments of inertia of {x}, {y} and {z} kg·m²: each must be above zero, and none may exceed the sum of the other two; correct them"
+                    "no rigid body has moments of inertia of {x}, {y} and {z} kg·m²: each must be above zero, and \
+                     none may exceed the sum of the other two; correct them"
                 );
                 return wrong("inertia", message);
             }

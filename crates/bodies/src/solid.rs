@@ -116,7 +116,8 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
     match &solid {
         Solid::Capsule { length, radius } if *length < 2.0 * radius => {
             let message = format!(
-                "`{}` of {length} m is too short for two round ends with a radius of {radius} m; it must be at least {} m, the length of a ball",
+                "`{}` of {length} m is too short for two round ends with a radius of {radius} m; it must be at least \
+                 {} m, the length of a ball",
                 reader.path_of("length"),
                 2.0 * radius
             );

@@ -147,7 +147,8 @@ impl Described for Demands {
             schema: <Option<f64> as Described>::schema,
         };
         let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
-        let meaning = "Demands on the stack until the first loss of seat or over the whole run, depending on the field that contains them. The slips at the collapse and at the end of the run are the same in both.";
+        let meaning = "Demands on the stack until the first loss of seat or over the whole run, depending on the \
+            field that contains them. The slips at the collapse and at the end of the run are the same in both.";
         described::object(objects, "Demands", meaning, &fields)
     }
 }

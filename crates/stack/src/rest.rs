@@ -37,10 +37,12 @@ fn remedy(lack: &Lack) -> String {
             "check whether interface.{interface}.stiffness has the right unit, or take fewer levels"
         ),
         Lack::Friction { interface, .. } => format!(
-            "to hold the body, try a larger coefficient of interface.{interface}.friction, or place the body where it does not slide"
+            "to hold the body, try a larger coefficient of interface.{interface}.friction, or place the body where it \
+             does not slide"
         ),
         Lack::Stick { interface, .. } => format!(
-            "set interface.{interface}.friction.law = \"coulomb\" to hold the body, or start without equilibrium (run.settle = false) and let it creep"
+            "set interface.{interface}.friction.law = \"coulomb\" to hold the body, or start without equilibrium \
+             (run.settle = false) and let it creep"
         ),
         Lack::Balance { .. } => {
             "to keep the body upright, try fewer levels, stiffer or wider bearings, or a place further from the edge"

@@ -388,7 +388,7 @@ pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
 
 /// Rejects a recording that would not fit into memory, before memory is allocated.
 ///
-/// The rates (Hz) are those of frames and of histories.
+/// The rates (Hz) are the sampling rates of frames and of histories.
 pub(crate) fn check_memory(
     assembly: &Assembly,
     end_time: f64,

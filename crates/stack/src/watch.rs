@@ -44,7 +44,7 @@ pub struct Watch<'a> {
     next_look: f64,
     /// Number of accepted states so far.
     states: u64,
-    /// Reason for the end of the run; `None` while it continues, and if it reaches its end time.
+    /// Reason for the end of the run; `None` while the run continues, and if the run reaches its end time.
     pub ending: Option<Ending>,
 }
 
@@ -89,7 +89,7 @@ impl End {
     }
 }
 
-/// Duration (s), at full scale, that a run continues after the first loss of a seat if it ends with its verdict.
+/// Duration (s), at full scale, that a run continues after the first loss of a seat if the run ends by the verdict.
 pub const VERDICT: f64 = 2.0;
 
 /// Returns the duration (s) that a run continues after a collapse, at its time scale; infinity for no limit.
@@ -100,7 +100,8 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 }
 
 impl<R: Real> End<R> {
-    /// Observes an accepted state, and returns the lanes whose run is over: after a collapse, and by rest.
+    /// Observes an accepted state. Returns the lanes whose run is over after a collapse, and the lanes whose run is
+    /// over by rest.
     #[inline(always)]
     #[expect(
         clippy::inline_always,

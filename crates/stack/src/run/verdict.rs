@@ -111,14 +111,16 @@ pub(super) fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
         Ending::Interrupted => Some(format!(
-            "the run was stopped at {time:.3} s, before its end: its results are valid up to that time, and it has no outcome"
+            "the run was stopped at {time:.3} s, before its end: its results are valid up to that time, and it has no \
+             outcome"
         )),
         // A stack that still stands in the middle of a motion has not survived the motion yet.
         Ending::Duration
             if *outcome == Outcome::Stable && cut(ending, motion_end, time).is_some() =>
         {
             Some(format!(
-                "the run ends at {time:.1} s, but the motion at {motion_end:.1} s: the effect of the rest of the motion is not known; leave out run.duration to cover the whole motion"
+                "the run ends at {time:.1} s, but the motion at {motion_end:.1} s: the effect of the rest of the \
+                 motion is not known; leave out run.duration to cover the whole motion"
             ))
         }
         Ending::Patience => Some(format!(

@@ -108,24 +108,24 @@ macro_rules! pairs {
 pairs! {
     /// Bottom rack on the ground.
     RackGround rack_ground "rack-ground" = INTERFACE, HEAVY, 0.5,
-        "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 of design and the 0.57 to 0.65 of tests \
-         of steel on concrete";
+        "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 used in design and the 0.57 to 0.65 \
+         found in tests of steel on concrete";
     /// Barrel in its cradle, and barrel under the rack above.
     BarrelRack barrel_rack "barrel-rack" = INTERFACE, HEAVY, 0.3,
-        "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 of \
-         wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
+        "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 \
+         found for wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
     /// Rack that stands on the rack below.
     RackRack rack_rack "rack-rack" = INTERFACE, HEAVY, 0.3, "steel on steel, assumption";
     /// Barrel against barrel.
     BarrelBarrel barrel_barrel "barrel-barrel" = IMPACT, HEAVY, 0.4, "wood on wood, assumption";
     /// Barrel on the ground.
     BarrelGround barrel_ground "barrel-ground" = IMPACT, HEAVY, 0.4, "wood on concrete, assumption";
-    /// Barrel against a rack on which it has no seat, or off its seat.
+    /// Barrel against a rack on which it has no seat, or against its own rack after leaving its seat.
     FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.3,
-        "as barrel on rack";
-    /// Rack on the ground, whose seat is elsewhere.
+        "the same as for a barrel on a rack";
+    /// Fallen rack on the ground, whose seat is on a higher level.
     FallenRackGround fallen_rack_ground "fallen-rack-ground" = IMPACT, LIGHT, 0.5,
-        "as rack on ground";
+        "the same as for a rack on the ground";
     /// Rack against a rack on which it does not stand.
     FallenRackRack fallen_rack_rack "fallen-rack-rack" = IMPACT, LIGHT, 0.3,
         "steel on steel, assumption";

@@ -60,7 +60,7 @@ choices! {
     }
     /// Several outlines joined into one rigid body; the reference point is the local origin.
     Compound = "compound" {
-        /// The outlines; where they overlap, the mass counts twice.
+        /// The outlines; where two of them overlap, the mass of the overlap counts twice.
         parts: Vec<PartShape> = Kind::Tables(&PART), Default::Required;
     }
 }

@@ -7,7 +7,7 @@ use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2, lanewis
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::scenario::OutcomeSpec;
 
-/// Thresholds beyond which a body counts as off its seat, or as fallen.
+/// Thresholds beyond which a body counts as having left its seat, or as fallen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
     /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which it has left its seat.
@@ -53,10 +53,10 @@ pub enum Loss {
 pub struct Fate {
     /// Time (s) and kind of the loss of seat; `None` if the body kept its seat.
     pub left_seat: Option<(f64, Loss)>,
-    /// Time (s) at which its drop exceeded the threshold of a fall; `None` if it did not fall.
+    /// Time (s) at which the drop of the body exceeded the threshold of a fall; `None` if the body did not fall.
     pub fell_at: Option<f64>,
-    /// Time (s) at which it landed: the first time after the fall at which it moved down at less than half of its
-    /// largest speed.
+    /// Time (s) at which the body landed: the first time after [`Fate::fell_at`] at which the body moved down at less
+    /// than half of its largest downward speed.
     pub landed_at: Option<f64>,
     /// Largest downward speed (m/s) between fall and landing.
     pub landing_speed: Option<f64>,
@@ -83,7 +83,7 @@ pub struct Fate {
     pub whole_run: PeakMotion,
 }
 
-/// Largest motions of a body in any step of a run, collapsed or not.
+/// Largest motions of a body over all steps of a run, or over the steps until the first loss of seat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion<R: Real = f64> {
     /// Largest displacement (m) along `x` relative to the ground.
@@ -104,7 +104,7 @@ impl Fate {
     }
 }
 
-/// Observer of the fates of all bodies, of one run or of one run per lane; it must observe every accepted step.
+/// Observer of the fates of all bodies in one run, or in one run per lane. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<R: Real = f64> {
     /// Drop (m) beyond which a body has fallen.
@@ -144,7 +144,7 @@ struct Followed<R: Real> {
     place: Place,
     /// Position at rest (m), relative to the ground.
     rest: Vec2<R>,
-    /// Limit (m) of its displacement on its support.
+    /// Limit (m) of the displacement of the body on its support.
     most_slip: R,
     /// Limit (rad) of the tilt of a rack.
     most_tilt: R,
@@ -395,8 +395,9 @@ impl<R: Real> Fates<R> {
 
     /// Returns the displacement (m) of a body relative to its support.
     ///
-    /// It is measured for a barrel in the frame of its rack, for the foot of a rack on posts in the frame of the rack
-    /// below, for a rack on barrels relative to the mean of these barrels, and for other bodies relative to the ground.
+    /// The displacement of a barrel is measured in the frame of its rack; that of the foot of a rack on posts, in the
+    /// frame of the rack below; that of a rack on barrels, relative to the mean position of these barrels; and that of
+    /// any other body, relative to the ground.
     #[inline(always)]
     #[expect(
         clippy::inline_always,
@@ -440,7 +441,7 @@ fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
-/// Returns a value in the lanes of a mask, and zero in others.
+/// Returns a value in the lanes of a mask, and zero in all other lanes.
 #[inline(always)]
 #[expect(
     clippy::inline_always,

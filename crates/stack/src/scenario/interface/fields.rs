@@ -66,8 +66,8 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a linear law per \
-         node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to \
+        "in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a \
+         linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to \
          the ground; must be given otherwise",
     ),
     "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
@@ -106,7 +106,8 @@ const LINEAR: &[Field] = &[
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
         Default::Derived(
-            "the mass of the rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise",
+            "the mass of the rack's seats in the catalog for constants per seat; must be given with `restitution` \
+             otherwise",
         ),
         "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
@@ -152,7 +153,8 @@ const LAWS: Variants = Variants {
         },
         Variant {
             name: "rebound",
-            help: "Spring whose force is proportional to the penetration to the power 1.5; it returns a stated fraction of the impact speed, whatever the mass.",
+            help: "Spring whose force is proportional to the penetration to the power 1.5; it returns a stated \
+                fraction of the impact speed, whatever the mass.",
             fields: &fields! {
                 /// Ratio of normal speeds after and before an impact.
                 restitution = Kind::Number(Range::up_to(1.0)), Default::Value("0.3");
@@ -239,7 +241,9 @@ table! {
             /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
             /// friction sooner, but needs a smaller time step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("the ratio of the rack's seats in the catalog for constants per seat: 2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4 on the ground, where tubes that do not lie flat bend; 1 otherwise");
+                Default::Derived("the ratio of the rack's seats in the catalog for constants per seat: 2 on barrels, \
+                    whose staves are softer across than along their surface; 2 on posts; 4 on the ground, where tubes \
+                    that do not lie flat bend; 1 otherwise");
             /// Ratio of the tangential damping of the stick to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
