@@ -67,8 +67,8 @@ const STIFFNESS: Field = Field::new(
     ),
     Default::Derived(
         "in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a \
-         linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to \
-         the ground; must be given otherwise",
+         linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
+         racks and from a fallen rack to the ground; must be given otherwise",
     ),
     "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
 );
