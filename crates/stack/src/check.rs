@@ -50,7 +50,7 @@ described! {
         pub steps: u64,
         /// Largest distance by which a body sank into its contacts.
         pub deepest_sinking: f64 as "m",
-        /// Unbalanced force that remains, as a fraction of gravity.
+        /// Remaining unbalanced force, as a fraction of gravity.
         pub unbalanced: f64 as "1",
         /// Friction locked in while the stack settled, as a fraction of the normal forces.
         pub locked_friction: f64 as "1",
@@ -120,10 +120,10 @@ impl Checked {
     }
 }
 
-/// Checks a scenario: performs everything in a run that precedes the shaking.
+/// Checks a scenario: performs all steps of a run that precede the shaking.
 ///
 /// # Errors
-/// As [`Scenario::run`].
+/// Same as [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = scenario.ground()?;

@@ -9,7 +9,7 @@ use crate::watch::{Fate, Fates, Joints, PeakMotion, StressEnvelope, Stresses};
 /// Part of a run over which demands and largest forces are determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// Until the first body leaves its seat; the whole run if none does.
+    /// Until the first body leaves its seat; the whole run if no body leaves its seat.
     UntilLoss,
     /// The whole run, including falls.
     WholeRun,
@@ -120,7 +120,8 @@ demands! {
     /// Largest slip of the bottom rack on the ground.
     base_slip_peak "m": "largest slip of the bottom rack on the ground", 100.0 "cm" 1,
         |sources, body| Some(sources.motion(body, PartKind::Rack, Some(1))?.slip);
-    /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
+    /// Slip of the bottom rack on the ground, at the moment of the collapse, or at the end of the run if there was no
+    /// collapse.
     base_slip_at_collapse "m": "slip of the bottom rack at the collapse", 100.0 "cm" 1,
         |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
     /// Slip of the bottom rack on the ground at the end of the run.

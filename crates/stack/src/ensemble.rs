@@ -89,7 +89,7 @@ impl Ensemble {
         self.run_until(observer, &|| false)
     }
 
-    /// Runs as [`Ensemble::run_watched`], and stops as soon as `asked_to_stop` returns `true`.
+    /// Runs like [`Ensemble::run_watched`], and stops as soon as `asked_to_stop` returns `true`.
     ///
     /// `asked_to_stop` is polled many times a second.
     pub fn run_until(
@@ -100,7 +100,7 @@ impl Ensemble {
         self.run_as_far(observer, asked_to_stop).into_iter().collect()
     }
 
-    /// Runs as [`Ensemble::run_until`], but keeps the results of a stopped run: `None` for each unfinished case.
+    /// Runs like [`Ensemble::run_until`], but keeps the results of a stopped run: `None` for each unfinished case.
     ///
     /// Cases with a collapse end earlier, so the finished cases are a biased sample.
     pub fn run_as_far(
@@ -131,7 +131,7 @@ pub fn simulate(cases: &[Prepared], audience: &mut Audience<'_>) -> Option<Vec<C
     simulate_in(Width::widest(), cases, audience)
 }
 
-/// Runs as [`simulate`] in lanes of a given width; a machine without such lanes runs one case after the other.
+/// Runs like [`simulate`] in lanes of a given width; a machine without such lanes runs one case after the other.
 pub fn simulate_in(
     width: Width,
     cases: &[Prepared],
@@ -140,7 +140,7 @@ pub fn simulate_in(
     simulate_as_far(width, cases, audience).into_iter().collect()
 }
 
-/// Runs as [`simulate_in`], but keeps the results of a stopped run: `None` for each unfinished case.
+/// Runs like [`simulate_in`], but keeps the results of a stopped run: `None` for each unfinished case.
 fn simulate_as_far(
     width: Width,
     cases: &[Prepared],

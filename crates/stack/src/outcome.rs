@@ -95,7 +95,7 @@ impl Outcome {
     }
 }
 
-/// Judges a run by the first body that left its seat; later losses follow from it.
+/// Judges a run by the first body that left its seat, because later losses of seats follow from the first.
 ///
 /// - The bottom rack: overturning of the whole stack.
 /// - A rack that passed the ends of the barrels below before it tilted, in a longitudinal view: rack

@@ -49,7 +49,7 @@ pub struct Boundaries {
 enum Depth {
     /// The part is a barrel.
     Barrel,
-    /// The part stands beside the barrels and touches none.
+    /// The part stands beside the barrels and touches no barrel.
     Beside,
     /// The part can touch all others.
     Any,

@@ -127,7 +127,7 @@ impl Scenario {
     /// The observer receives the progress every 0.05 s of simulated time.
     ///
     /// # Errors
-    /// As [`Scenario::run`].
+    /// Same as [`Scenario::run`].
     pub fn run_watched(
         &self,
         observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -191,7 +191,7 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// As [`Scenario::run_on`].
+    /// Same as [`Scenario::run_on`].
     pub fn run_before(
         &self,
         ground: Ground,

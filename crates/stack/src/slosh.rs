@@ -12,7 +12,7 @@ pub struct Wave {
     pub share: f64,
     /// Length (m) of the pendulum, `g/ω²`.
     pub length: f64,
-    /// Depth (m) of the moving mass below the middle of the tank, if it is modeled as a mass on a spring.
+    /// Depth (m) of the moving mass below the middle of the tank, if the wave is modeled as a mass on a spring.
     pub depth: f64,
 }
 

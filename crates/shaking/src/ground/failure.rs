@@ -14,7 +14,7 @@ pub enum GroundError {
         path: PathBuf,
         /// Message of the operating system.
         reason: String,
-        /// Advice on obtaining the file, as a clause that continues the reason; may be empty.
+        /// Advice on obtaining the file, worded as a continuation of `reason`; may be empty.
         obtain: String,
     },
     /// The content of the file cannot be read as a record.
@@ -26,7 +26,7 @@ pub enum GroundError {
     /// The record has no vertical component of the requested name.
     #[error("{error}; for a record without a vertical component set `motion.vertical = false`")]
     Vertical {
-        /// Error that names the missing component and the available ones.
+        /// Error that names the missing component and the available components.
         error: MotionError,
     },
     /// There is no bundled record of this name.

@@ -112,7 +112,7 @@ table! {
         }
         /// Velocity pulse of near-fault records.
         "mavroeidis-papageorgiou" {
-            /// Oscillatory character, greater than 1.
+            /// Parameter γ, which determines the oscillatory character of the pulse; greater than 1.
             gamma = Kind::Number(Range { least: 1.0, above: true, greatest: 100.0 }), Default::Required;
             /// Phase.
             phase = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
@@ -167,10 +167,10 @@ table! {
     vertical = Kind::TextOrFalse, Default::Nothing;
     /// File of the vertical motion, relative to the scenario file.
     vertical_record = Kind::Text, Default::Nothing;
-    /// Time step, only for a file that states none.
+    /// Time step, only for a file that does not state its time step.
     time_step = Kind::Quantity(&[Dimension::TIME], Range { least: 1e-6, above: false, greatest: 10.0 }),
         Default::Derived("the time step of the file");
-    /// Unit of acceleration, only for a file that states none.
+    /// Unit of acceleration, only for a file that does not state its unit.
     unit = Kind::Unit(Dimension::ACCELERATION), Default::Derived("the unit of the file");
     /// Counts per m/s², only for a file that contains counts (miniSEED, SAC).
     sensitivity = Kind::Number(Range::up_to(1e15)), Default::Nothing;

@@ -48,9 +48,9 @@ pub struct RecordMotion {
     pub component: Option<String>,
     /// Vertical component.
     pub vertical: Vertical,
-    /// Time step for files that state none (s).
+    /// Time step (s) for files that do not state their time step.
     pub time_step: Option<f64>,
-    /// Acceleration of one file unit for files that state none (m/s²).
+    /// Acceleration (m/s²) of one file unit, for files that do not state their unit.
     pub unit: Option<f64>,
     /// Counts per m/s² for files that contain counts (s²/m).
     pub sensitivity: Option<f64>,
@@ -144,7 +144,7 @@ pub enum PulseKind {
     },
     /// Velocity pulse of Mavroeidis and Papageorgiou (2003).
     MavroeidisPapageorgiou {
-        /// Oscillatory character, greater than 1.
+        /// Parameter γ, which determines the oscillatory character of the pulse; greater than 1.
         gamma: f64,
         /// Phase (rad).
         phase: f64,
@@ -218,7 +218,7 @@ named! {
 pub struct MotionSpec {
     /// Source of the motion.
     pub source: MotionSource,
-    /// Scaling, of all components by the same factor.
+    /// Scaling of the motion, by the same factor for all components.
     pub scale: Scale,
     /// Length scale `λ` of Froude similitude, applied to the motion alone: times are multiplied by `√λ`, accelerations
     /// are unchanged.

@@ -23,7 +23,7 @@ pub(crate) struct Builder<'a> {
     pub(super) touches: Vec<Vec<Touch>>,
     /// Index of the law between barrels and their cradles.
     pub(crate) cradle_law: usize,
-    /// Contact laws of devices, numbered after those of the stack.
+    /// Contact laws of devices, numbered after the contact laws of the stack.
     pub(super) laws: Vec<Interface<Planar>>,
     /// Contact pairs of devices, which use the laws of devices.
     pub(crate) pairs: Vec<ContactPair>,

@@ -18,7 +18,8 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack, one behind the other in the plane across the barrels; posts also stand two in a row.
+/// Number of rails of a rack, which stand one behind the other in the plane across the barrels; also the number of
+/// posts one behind the other.
 const RAILS: f64 = 2.0;
 
 /// The kind of model that represents a stack.
@@ -93,7 +94,7 @@ impl Bundle {
         }
     }
 
-    /// Returns the ratio of the normal stiffness and damping of the bundle to those of one seat.
+    /// Returns the normal stiffness and damping of the bundle, divided by the values of one seat.
     pub(super) fn elements(self) -> f64 {
         self.count * self.cosine * self.cosine
     }

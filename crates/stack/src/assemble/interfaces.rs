@@ -1,4 +1,4 @@
-//! Conversion of the contact laws of a scenario to those of the model.
+//! Conversion of the contact laws of a scenario to the contact laws of the model.
 
 use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Space};

@@ -23,8 +23,8 @@ pub const CHIME_RADIUS: f64 = 0.01;
 /// nodes of the seat carry the contact.
 ///
 /// Contacts at larger angles, such as the chime of a barrel that has slid off, are tested exactly. Among cosines from 0
-/// to 0.7, tried on seven stacks that include the worst ones known, this one gave the smallest residual of the energy
-/// balance: 8.3e-5 at most.
+/// to 0.7, tried on seven stacks that include the worst known cases, this value gave the smallest residual of the
+/// energy balance: 8.3e-5 at most.
 const WIDEST: f64 = 0.3;
 
 /// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer
@@ -85,7 +85,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
 
 /// Returns the spacing (m) of racks, divided by the number of barrels that a rack carries end to end.
 ///
-/// It follows from the length of the barrels, or from that of the frame if the frame is longer.
+/// The spacing follows from the length of the barrels, or from the length of the frame if the frame is longer.
 fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     let pitch = barrel + gap;
     let deep = f64::from(rack.barrels_deep);
@@ -95,7 +95,7 @@ fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     })
 }
 
-/// Adds one rack with its barrels end to end, and returns the ID of the rack and those of the barrels.
+/// Adds one rack with its barrels end to end, and returns the IDs of the rack and of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     profile: &BarrelProfile,
@@ -225,7 +225,7 @@ fn corner_of(rack: &Rack) -> f64 {
 struct Seating {
     /// Height (m) of the middle of the barrel above the mean top of its rails.
     seat: f64,
-    /// Height (m) of the right rail above the mean of both; the left rail is as far below the mean.
+    /// Height (m) of the right rail above the mean height of both rails; the left rail is as far below the mean.
     ///
     /// The upper side of a barrel mirrors its underside. Between inclined barrels, the underside of a rail is therefore
     /// raised by as much as its top: both rails keep their thickness, and one rail sits a little higher than the other.

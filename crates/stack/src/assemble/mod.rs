@@ -71,7 +71,7 @@ pub struct Outline {
 /// Description of a body of the model.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Name in results, the same as that of the body in the model.
+    /// Name in results, the same as the name of the body in the model.
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,
@@ -157,7 +157,7 @@ impl Assembly {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
     }
 
-    /// Returns the force elements of the model, followed by those of devices that are not installed yet.
+    /// Returns the force elements of the model, followed by the force elements of devices that are not installed yet.
     pub fn elements(&self) -> impl Iterator<Item = &Element<Planar>> {
         let loose = self.loose.iter().map(|loose| &loose.element);
         self.model.elements().iter().chain(loose)
@@ -259,7 +259,7 @@ pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
     stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }
 
-/// Converts a contact law of a scenario to that of a model in space.
+/// Converts a contact law of a scenario to a contact law of a model in space.
 pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
     interfaces::interface(name, law, bundle::Bundle::ONE, Similitude::FULL)
 }

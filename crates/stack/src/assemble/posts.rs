@@ -8,7 +8,7 @@ use super::solid::{Seat, Solid};
 use super::transverse::TUBE_CORNER;
 use crate::scenario::{Posts, Rack};
 
-/// Play (m) between the cup of a foot and the post in it: an assumption.
+/// Play (m) between a post and the cup of the foot that stands on the post: an assumption.
 const SPIGOT_PLAY: f64 = 0.005;
 
 /// Half the thickness (m) of the lips of a cup: an assumption.
@@ -30,7 +30,7 @@ pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
 /// Returns the two posts of a rack at `spacing` (m) from its middle, and the cups with which the rack sits on the posts
 /// below.
 ///
-/// Cups are lips that hold a rack in place until it is lifted off; a rack on the floor has none.
+/// Cups are lips that hold a rack in place until the rack is lifted off; a rack on the floor has no cups.
 pub(super) fn posts_and_cups(
     rack: &Rack,
     posts: &Posts,

@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::math;
 
-/// Scale factors from full-scale quantities to those at a length scale λ.
+/// Scale factors from full-scale quantities to quantities at a length scale λ.
 ///
 /// Lengths scale by λ, times by √λ, masses by λ³; accelerations, friction coefficients, damping ratios and restitutions
 /// are unchanged. With these factors, the trajectories at both scales are the same apart from the scales of length and

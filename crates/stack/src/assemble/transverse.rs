@@ -82,7 +82,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     bearing + radius * sin
 }
 
-/// Adds one rack with its barrels, and returns the ID of the rack and those of the barrels.
+/// Adds one rack with its barrels, and returns the IDs of the rack and of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     level: u32,

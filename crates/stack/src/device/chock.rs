@@ -24,7 +24,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [15.0, 60.0],
         each: Each::Level,
-        source: "four wedges of hardwood, or horns welded to a rack: an assumption",
+        source: "four hardwood wedges, or horns welded to a rack: an assumption",
     },
     many: "chocks",
     ..Words::silent("chock")

@@ -29,7 +29,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [100.0, 250.0],
         each: Each::Level,
-        source: "a rack turned over, with clamps: an assumption",
+        source: "an upside-down rack with clamps: an assumption",
     },
 };
 
@@ -54,7 +54,7 @@ section! {
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// Reach of a lid to either side of its barrel, as a share of the barrel's radius: an assumption.
+/// Reach of a lid to either side of its barrel, as a fraction of the radius of the barrel: an assumption.
 const HALF_WIDTH: f64 = 0.6;
 
 /// Reads the table of lids.

@@ -36,7 +36,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [20.0, 60.0],
         each: Each::Level,
-        source: "eight pads of rubber of 1 cm: an assumption",
+        source: "eight rubber pads 1 cm thick: an assumption",
     },
     many: "pads",
     ..Words::silent("pad")
@@ -87,7 +87,7 @@ impl Pads {
         })
     }
 
-    /// Replaces the contact law of the cradles by that of the pads.
+    /// Replaces the contact law of the cradles by the contact law of the pads.
     #[expect(clippy::unnecessary_wraps, reason = "the signature is the same for all devices")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {

@@ -43,7 +43,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [40.0, 120.0],
         each: Each::Level,
-        source: "two ratchet straps of 5 kN with hooks and half an hour of two people: an assumption",
+        source: "two ratchet straps of 5 kN with hooks, and half an hour of work by two people: an assumption",
     },
 };
 

@@ -30,7 +30,7 @@ impl Grounds {
     /// Returns the ground motion of a scenario, bit-identical to that of [`Scenario::ground`].
     ///
     /// # Errors
-    /// As [`Scenario::ground`].
+    /// Same as [`Scenario::ground`].
     pub fn of(&self, scenario: &Scenario) -> Result<Arc<Ground>, GroundError> {
         let (spec, similitude) = (&scenario.motion, scenario.run.similitude);
         let alone = match (&spec.source, spec.scale) {

@@ -39,9 +39,9 @@ section! {
     /// Row along the barrels in space, 1 nearest to the viewer; for a rack, rows of racks are counted; for a barrel,
     /// rows of barrels.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
-    /// Mass of the body, instead of the regular one.
+    /// Mass of the body, instead of the regular mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-    /// Contents of the barrel, instead of the regular ones; for barrels only.
+    /// Contents of the barrel, instead of the regular contents; for barrels only.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
     /// Displacement from the regular position, positive to the right before mirroring.
     offset_x: f64 =
@@ -59,7 +59,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
     if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
     {
         let message = format!(
-            "`{}` is for `stack.view = \"spatial\"`; a plane has only one row, and no displacement out of it",
+            "`{}` is for `stack.view = \"spatial\"`; a planar model has only one row, and no displacement out of the plane",
             reader.path_of(name)
         );
         return Err(reader.inconsistent(name, message));

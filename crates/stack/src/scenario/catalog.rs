@@ -225,8 +225,7 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Stands on the barrels below with feet.",
-        source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
-                 an assumption",
+        source: "`two-barrel` with a foot over each barrel below, as wide as the foot of the reconstructed `candia-2008`: an assumption",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
@@ -239,8 +238,7 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Two racks end to end.",
-        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one are those of \
-                 `two-barrel`, the mass is an assumption",
+        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one rack are those of `two-barrel`, the mass is an assumption",
     },
     CatalogRack {
         rack: Rack {

@@ -48,8 +48,8 @@ section! {
     /// on steel racks from 0.37 to 0.45 in tests; with 0.35, nine in ten variants lie within a factor of 1.8; the
     /// number is an assumption).
     friction: f64 = DISPERSION, Default::Value("0.35");
-    /// Ignorance: standard deviation of ln μ of barrels on racks only, to be stated where this friction was measured;
-    /// it is then the scatter of ln μ between racks and barrels.
+    /// Ignorance: standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured; the
+    /// value is then the scatter of ln μ between racks and barrels.
     friction_barrel_rack: Option<f64> = DISPERSION, Default::Derived("`friction`");
     /// Ignorance: standard deviation of ln μ on the ground (floors are washed daily; steel on concrete ranges from 0.4 in design to 0.65 in tests; the number is an assumption).
     friction_ground: f64 = DISPERSION, Default::Value("0.2");

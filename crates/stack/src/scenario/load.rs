@@ -13,8 +13,8 @@ use crate::system;
 /// Maximum size of a scenario file (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Maximum number of bytes that are read from a file. It exceeds [`SIZE_LIMIT`], so that the size of a file that is too
-/// large can be reported.
+/// Maximum number of bytes that are read from a file. This number exceeds [`SIZE_LIMIT`], so that the size of a file
+/// that is too large can be reported.
 const READ_LIMIT: usize = 256 << 20;
 
 /// Maximum number of scenarios in a chain of `extends`.
@@ -42,10 +42,10 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`].
+    /// Same as [`Scenario::parse`].
     #[expect(
         clippy::should_implement_trait,
-        reason = "the trait is implemented, too, but this needs no import"
+        reason = "the trait is also implemented, but this function needs no import"
     )]
     pub fn from_str(text: &str) -> Result<Self, ScenarioError> {
         Self::parse("scenario", text, &[])
@@ -55,7 +55,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::load`].
+    /// Same as [`Scenario::load`].
     pub fn from_path(path: impl AsRef<Path>) -> Result<Self, ScenarioError> {
         Self::load(path.as_ref(), &[])
     }
@@ -90,11 +90,11 @@ impl Scenario {
         read(source_name, text.as_bytes(), overrides, Access::BuiltinOnly)
     }
 
-    /// Reads a scenario as [`Scenario::parse`] does, from bytes that are expected to be UTF-8.
+    /// Reads a scenario like [`Scenario::parse`], from bytes that are expected to be UTF-8.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and if the bytes are not UTF-8.
+    /// Same as [`Scenario::parse`]; also if the bytes are not UTF-8.
     pub fn parse_bytes(
         source_name: &str,
         bytes: &[u8],
@@ -107,7 +107,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse_bytes`], and if a file cannot be read.
+    /// Same as [`Scenario::parse_bytes`]; also if a file cannot be read.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
         let bytes = read_file(path, Place::Whole { file: name.clone() })?;
@@ -137,7 +137,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::load`].
+    /// Same as [`Scenario::load`].
     pub fn from_tree(name: &str, mut tree: Table) -> Result<Self, ScenarioError> {
         let mut sources = Sources::default();
         add_source(&mut sources, name, &[], PathBuf::new())?;

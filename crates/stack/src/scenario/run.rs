@@ -83,7 +83,10 @@ section! {
     pub struct RunSpec;
     /// Settings of the run.
     pub static RUN = "run", by method of METHODS;
-    /// Criterion that ends the run: "rest" when the ground is still, or below 0.02 g after a collapse, and all bodies have come to rest; "verdict" 2 s after the first loss of a seat, or when a standing stack has come to rest on ground that stays below 0.02 g; "duration" when `duration` is over. Variants of a run that ends by "rest" end by `imperfections.until`.
+    /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
+    /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
+    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. Variants of a run
+    /// that ends by "rest" end by `imperfections.until`.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
     /// Maximum time for which a run that ends by "rest" continues after the end of the motion.

@@ -10,13 +10,15 @@ use crate::scenario::OutcomeSpec;
 /// Thresholds beyond which a body counts as having left its seat, or as fallen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
-    /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which it has left its seat.
+    /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which the barrel has left its
+    /// seat.
     pub seat_loss_ratio: f64,
     /// Drop (m) below its position at rest beyond which a body has fallen.
     pub fall_drop: f64,
-    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which it has left its seat.
+    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left its
+    /// seat.
     pub rack_slide_ratio: f64,
-    /// Tilt (rad) of a rack relative to the rack below beyond which it has left its seat by rocking.
+    /// Tilt (rad) of a rack relative to the rack below beyond which the rack has left its seat by rocking.
     pub rocking_angle: f64,
     /// Tilt (rad) of the bottom rack beyond which the stack has overturned.
     pub overturning_angle: f64,
@@ -68,7 +70,8 @@ pub struct Fate {
     pub peak_displacement: f64,
     /// Displacement (m) along `x` relative to the ground, at the end.
     pub residual_displacement: f64,
-    /// Displacement (m) along `x` relative to the ground at the collapse; at the end if there was none.
+    /// Displacement (m) along `x` relative to the ground at the collapse, or at the end of the run if there was no
+    /// collapse.
     pub displacement_at_collapse: f64,
     /// Largest displacement (m) relative to the support, before the collapse: of a rack on the barrels below, or of a
     /// barrel in its cradle.
@@ -275,7 +278,8 @@ fn known(time: f64) -> Option<f64> {
 }
 
 impl<R: Real> Fates<R> {
-    /// Returns the time (s) at which the first body left its seat; infinite in lanes where none has.
+    /// Returns the time (s) at which the first body left its seat; infinite in lanes in which no body has left its
+    /// seat.
     pub fn collapse(&self) -> R {
         self.collapse
     }

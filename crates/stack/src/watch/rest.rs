@@ -109,7 +109,8 @@ lanewise!(struct Mover<R> { body, inertia, floor });
 lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
 
 impl Rest {
-    /// Creates the criterion of a scenario under its ground motion; no body is at rest before it has been observed.
+    /// Creates the rest criterion for a scenario and its ground motion. No body counts as at rest before it has been
+    /// observed.
     pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         let scale = scenario.run.similitude;
         let mover = |(body, part): (BodyId, &crate::assemble::Part)| {

@@ -139,7 +139,9 @@ const LAWS: Variants = Variants {
                 Field::new(
                     "damping",
                     Kind::Quantity(&[Dimension::HUNT_CROSSLEY_DAMPING], Range::NOT_NEGATIVE),
-                    Default::Derived("must be given, or `restitution` with `reference_speed`"),
+                    Default::Derived(
+                        "must be given, unless `restitution` and `reference_speed` are given",
+                    ),
                     "Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.",
                 ),
                 RESTITUTION,
@@ -247,7 +249,7 @@ table! {
             /// Ratio of the tangential damping of the stick to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
-        /// Sliding friction smoothed around zero slip rate; it creeps and never sticks.
+        /// Sliding friction smoothed around zero slip rate; contacts creep and never stick.
         "regularized" with [COEFFICIENT_FIELD] {
             /// Slip rate at which the friction is fully developed.
             velocity = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Required;

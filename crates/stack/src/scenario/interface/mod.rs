@@ -96,7 +96,7 @@ pub enum Friction {
         /// Ratio of the tangential to the normal damping.
         tangential_damping_ratio: f64,
     },
-    /// Coulomb friction smoothed near zero slip rate: it creeps and never sticks.
+    /// Coulomb friction smoothed near zero slip rate; contacts creep and never stick.
     Regularized {
         /// Kinetic coefficient.
         coefficient: f64,
