@@ -95,8 +95,8 @@ impl Checked {
                 rest.unbalanced
             ));
             lines.push(format!(
-                "  friction      locked in as the stack sank: {:.0} % of the normal forces, at {} contacts \
-                 that hold and {} at their limit",
+                "  friction      locked in as the stack settled: {:.0} % of the normal forces, at {} sticking \
+                 contacts and {} contacts at their limit",
                 100.0 * rest.locked_friction,
                 rest.holding,
                 rest.slipping

@@ -96,8 +96,8 @@ demands! {
         let drift = sources.motion(body, PartKind::Barrel, Some(sources.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
     };
-    /// Largest normal stress on a barrel of the bottom level, divided by the largest at rest. The two may occur at
-    /// different points of the barrel.
+    /// Largest normal stress on a barrel of the bottom level, divided by the largest stress at rest. The two may occur
+    /// at different points of the barrel.
     stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.amplification(),

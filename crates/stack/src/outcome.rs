@@ -11,8 +11,8 @@ pub enum CollapseMode {
     Ejection,
     /// Two or more upper levels rock and fall together.
     Rocking,
-    /// A rack walks along the barrels below until its rail passes their ends; among planar models, only the model along
-    /// the barrels can show this mode.
+    /// A rack walks along the barrels below until its rail passes the ends of these barrels. Among planar models, only
+    /// the model along the barrels can show this mode.
     RackSliding,
     /// The whole stack overturns about its foot.
     Overturning,

@@ -94,7 +94,7 @@ pub struct Progress {
     pub end_time: f64,
 }
 
-/// Remaining time (s) of a motion above which a run counts as cut short.
+/// Duration (s) of the remaining motion above which a run counts as cut short.
 pub const CUT: f64 = 0.01;
 
 /// Maximum number of steps of a run; about 10⁵ steps of a stack are computed in a second.

@@ -1,10 +1,9 @@
 //! Sloshing wine in partly filled barrels.
 //!
 //! Across the barrels, the pressure between wall and wine acts through the axis of the barrel. The first wave is
-//! therefore a pendulum that hangs from the axis, whatever the motion of the barrel, and the rest of the wine moves
-//! with the axis.
-//! Along the barrels, the first wave is approximated by a mass on a spring, as in a rectangular tank of the same
-//! length and fill. The depth of the mass preserves the center of mass of the wine.
+//! therefore modeled as a pendulum that hangs from the axis, whatever the motion of the barrel, and the rest of the
+//! wine moves with the axis. Along the barrels, the first wave is approximated by a mass on a spring, as in a
+//! rectangular tank of the same length and fill. The depth of the mass preserves the center of mass of the wine.
 
 use std::f64::consts::PI;
 

@@ -146,8 +146,8 @@ pub struct Assembly {
     pub stave_capacity: f64,
     /// Displacement (m) of a rack, relative to the barrels below, beyond which the rack is no longer supported.
     ///
-    /// Beyond it, across the barrels, friction no longer holds the rack on the round of the barrel. Along the barrels,
-    /// the rail of the rack has passed the ends of the barrels.
+    /// Beyond this displacement across the barrels, friction no longer holds the rack on the round of the barrel.
+    /// Beyond this displacement along the barrels, the rail of the rack has passed the ends of the barrels.
     pub rack_reach: f64,
 }
 

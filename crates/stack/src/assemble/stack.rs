@@ -10,7 +10,7 @@ use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
 use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
-/// Lever (m) of the rolling resistance of barrels that roll with their hoops on floors, racks or other barrels: an
+/// Lever arm (m) of the rolling resistance of barrels that roll with their hoops on floors, racks or other barrels: an
 /// assumption.
 const ROLLING_LEVER: f64 = 0.01;
 

@@ -1,4 +1,5 @@
-//! Elastomer pads in the cradles, which are softer, more damped and less slippery than wood on steel.
+//! Elastomer pads in the cradles. The pads are softer than the contact of wood on steel, and have more damping and
+//! friction.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};

@@ -164,7 +164,7 @@ impl Straps {
         Ok((strap, give))
     }
 
-    /// Installs the straps from the ground up, those on the left first.
+    /// Installs the straps from the ground up, first the left strap of each pair.
     ///
     /// # Errors
     /// If the pretension would stretch a strap by more than its whole length.

@@ -1,6 +1,6 @@
 //! Stops that keep racks from walking on the barrels below: hooks over the ends of the barrels, or saddles.
 //!
-//! Once a rack has been lifted above its lips, it stays disengaged.
+//! Once a rack has been lifted above the lips of its stops, it stays disengaged.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;

@@ -173,7 +173,7 @@ columns! {
     rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
     /// largest displacement of a rack on its supports, until the first loss of seat
     rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
-    /// largest normal stress on a bottom barrel divided by the largest at rest, until the first loss of seat
+    /// largest normal stress on a bottom barrel divided by the largest stress at rest, until the first loss of seat
     stress_amplification "": Demand Number |case| case.demands.stress_amplification;
     /// like stress_amplification, but with stresses averaged over the part of the boundary that is loaded at rest
     mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;

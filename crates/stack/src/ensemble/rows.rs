@@ -27,7 +27,7 @@ pub struct Grounds(Mutex<Vec<(MotionSpec, Arc<Ground>)>>);
 const KEPT: usize = 64;
 
 impl Grounds {
-    /// Returns the ground motion of a scenario, bit-identical to that of [`Scenario::ground`].
+    /// Returns the ground motion of a scenario, bit-identical to the result of [`Scenario::ground`].
     ///
     /// # Errors
     /// Same as [`Scenario::ground`].

@@ -10,8 +10,8 @@ use crate::watch::Ending;
 
 /// Ratio of the energy residual to the throughput above which a run is invalid.
 ///
-/// It is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate time
-/// step.
+/// This limit is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate
+/// time step.
 const BOOKS_BROKEN: f64 = 0.1;
 
 /// Ratio of the energy residual to the throughput above which the reader is warned.
@@ -40,7 +40,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Judges a run that ended at `time` (s), and adds warnings about its end; its motion ends at `motion_end` (s).
+    /// Judges a run that ended at `time` (s), and adds warnings about the end of the run. The ground motion ends at
+    /// `motion_end` (s).
     pub fn of(
         ended: Result<Ended, RunError>,
         judge: impl FnOnce() -> Outcome,

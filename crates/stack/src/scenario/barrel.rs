@@ -19,8 +19,8 @@ use crate::slosh::{self, Wave};
 named! {
     /// Contents of a barrel, and whether they rotate with the barrel.
     pub enum Fill {
-        /// Full, with the wine as an ideal fluid: it does not rotate about the axis of the barrel, and only in
-        /// part about a transverse axis.
+        /// Full, with the wine as an ideal fluid: the wine does not rotate about the axis of the barrel, and only part
+        /// of the wine rotates about a transverse axis.
         FullFluid = "full-fluid",
         /// Full, with wine that rotates with the wood like a solid.
         FullFrozen = "full-frozen",
@@ -200,8 +200,8 @@ impl Barrel {
         }
     }
 
-    /// Returns half of the distance (m) between the heads with which the interior has the nominal volume. If the
-    /// interior is smaller at the largest possible distance, returns half of that distance.
+    /// Returns half of the distance (m) between the heads at which the interior has the nominal volume. If the interior
+    /// is smaller at the largest possible distance, returns half of that distance.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);

@@ -59,7 +59,8 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
     if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
     {
         let message = format!(
-            "`{}` is for `stack.view = \"spatial\"`; a planar model has only one row, and no displacement out of the plane",
+            "`{}` is for `stack.view = \"spatial\"`; a planar model has only one row, and no displacement out of the \
+             plane",
             reader.path_of(name)
         );
         return Err(reader.inconsistent(name, message));

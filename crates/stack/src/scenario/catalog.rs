@@ -161,16 +161,16 @@ const ON_BARRELS: Seats = Seats {
     source: "a shell of oak staves 27 mm thick under a point load beside a hoop, in series with joints that open and \
              with the tube wall: 2.7 to 4.4 MN/m, between the 0.89 MN/m that Candia, de la Llera and Almazán (2008) \
              measured on local barrels and racks and the 12 MN/m of a stave clamped between hoops; on floors, tubes \
-             that lie hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat, \
-             and for an empty rack on a floor: derived, nobody has measured these racks",
+             with a gap of a fraction of a millimeter under them; restitution for a quarter of a full barrel on one \
+             seat, \
+             and for an empty rack on a floor: derived values, since nobody has measured these racks",
 };
 
 /// Seats of racks whose rails span from post to post and bend under their barrels.
 const ON_POSTS: Seats = Seats {
     barrel: Seat::new(6e5, 70.0, STICK_ON_BARREL),
     source: "as for racks on barrels, in series with the 1.2 MN/m under each barrel of a rail of 60 mm square tube \
-             that spans 1.54 m from post to post; steel posts with play, on floors and on each other: derived, nobody \
-             has measured these racks",
+             that spans 1.54 m from post to post; steel posts with play, on floors and on each other: derived values, since nobody has measured these racks",
     ..ON_BARRELS
 };
 
@@ -225,7 +225,8 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Stands on the barrels below with feet.",
-        source: "`two-barrel` with a foot over each barrel below, as wide as the foot of the reconstructed `candia-2008`: an assumption",
+        source: "`two-barrel` with a foot over each barrel below, as wide as the foot of the reconstructed \
+            `candia-2008`: an assumption",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
@@ -238,7 +239,8 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Two racks end to end.",
-        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one rack are those of `two-barrel`, the mass is an assumption",
+        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one rack are those of \
+            `two-barrel`, the mass is an assumption",
     },
     CatalogRack {
         rack: Rack {
@@ -257,15 +259,17 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_POSTS,
         help: "Stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
-                 assumption, the post height gives the usual level pitch, the posts stand clear of the barrels on both \
-                 sides of them, and along the barrels within the 38 in on which racks for two barrels stand",
+            assumption; the post height gives the usual level pitch; across the barrels, the posts stand clear of the \
+            barrels on both sides; along the barrels, the posts stand within the 38 in on which racks for two barrels \
+            stand",
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-inclined", incline: 3.5 * PI / 180.0, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
         source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
-                 Filiatrault et al. 2010), there across the shelf, here along the barrels; no maker of such a rack is \
+            Filiatrault et al. 2010), in those tests across the shelf, here along the barrels; no maker of such a \
+            rack is \
                  known: an assumption",
     },
     CatalogRack {

@@ -149,7 +149,8 @@ table! {
 /// Kind of the field `nodes` of a boundary.
 const NODES_KIND: Kind = Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES);
 const NODES_DEFAULT: Default = Default::Derived(
-    "`rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart; must be given if there is no shape",
+    "`rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart; must be given if there is no \
+     shape",
 );
 
 table! {

@@ -30,7 +30,8 @@ section! {
     /// Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run only
     /// the stack as stated.
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
-    /// Criterion that ends a variant if `run.until` is "rest": "verdict" ends it 2 s after the first loss of a seat, or at rest on ground that stays below 0.02 g; "rest" ends it when every barrel has come to its end.
+    /// Criterion that ends a variant if `run.until` is "rest": "verdict" ends it 2 s after the first loss of a seat, or
+    /// at rest on ground that stays below 0.02 g; "rest" ends it when all bodies have come to rest.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the random sequence that draws the variants.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
@@ -41,7 +42,9 @@ section! {
     /// distributed (assumption: forklifts do not place racks and barrels more precisely).
     placement: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.02)), Default::Value("\"1 mm\"");
-    /// Hair: standard deviation of the mass of every barrel and rack as a fraction of that mass, normally distributed and cut off at three standard deviations (assumption: 3 L of ullage or of wet wood in a full barrel).
+    /// Hair: standard deviation of the mass of every barrel and rack as a fraction of that mass, normally distributed
+    /// and cut off at three standard deviations (assumption: 3 L of missing wine, or of water in the wood, in a full
+    /// barrel).
     mass: f64 = SHARE, Default::Value("0.01");
     /// Ignorance: standard deviation of ln μ where racks or barrels touch each other, lognormal, one draw for each pair
     /// of materials (the friction coefficient of wood on steel ranges from 0.1 to 0.6 with moisture and finish, pallets

@@ -80,7 +80,7 @@ impl StackSpec {
         })
     }
 
-    /// Returns the stack as a planar model of a stack in space.
+    /// Returns the planar model of a stack that is modeled in space.
     ///
     /// Overrides of single rows are dropped. In the plane along the barrels, overrides of single columns are dropped as
     /// well.

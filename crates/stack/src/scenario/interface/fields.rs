@@ -96,8 +96,8 @@ const LINEAR: &[Field] = &[
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
         Default::Derived(
-            "in a stack, from the restitution of the rack's seats in the catalog for constants per seat, and 22 N s/cm per \
-             node if the stiffness is not given either",
+            "in a stack, derived from the restitution of the rack's seats in the catalog for constants per seat, and \
+             22 N s/cm per node if the stiffness is not given either",
         ),
         "Damping c: N s/m per seat or node or N s/m^2 per length.",
     ),

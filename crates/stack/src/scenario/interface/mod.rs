@@ -38,7 +38,7 @@ pub enum Damping {
     },
 }
 
-/// Normal law: compressive force from penetration and its rate.
+/// Normal law: compressive force as a function of the penetration and its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NormalLaw {
     /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
@@ -80,7 +80,7 @@ pub enum NormalLaw {
     },
 }
 
-/// Friction law: tangential force from slip.
+/// Friction law: tangential force as a function of the slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
     /// No friction.
