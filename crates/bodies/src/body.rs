@@ -14,10 +14,10 @@ section! {
     pub struct Viscous;
     /// Viscous drag on the motion of a body in space, the same in all directions.
     pub static VISCOUS = "viscous-in-space";
-    /// Drag force per velocity of the center of mass.
+    /// Drag force divided by the velocity of the center of mass.
     linear: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Drag moment per angular velocity.
+    /// Drag moment divided by the angular velocity.
     angular: f64 =
         Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
 }

@@ -126,7 +126,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         }
         Solid::Block { sides, .. } if sides.iter().any(|side| !(2e-4..=1e4).contains(side)) => {
             let message = format!(
-                "every side of `{}` must be between 0.0002 m and 10000 m; correct the one outside this range",
+                "every side of `{}` must be between 0.0002 m and 10000 m; correct the side outside this range",
                 reader.path_of("sides")
             );
             return Err(reader.inconsistent("sides", message));

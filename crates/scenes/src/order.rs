@@ -52,7 +52,7 @@ impl<S: Space<Real = f64>> Order<S> {
         Ok(worst)
     }
 
-    /// Runs the bodies and returns the positions (m) of all of them after every step.
+    /// Runs a scene with the given bodies and returns the positions (m) of all bodies after every step.
     fn path(
         &self,
         bodies: Vec<Body<S>>,

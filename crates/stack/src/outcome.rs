@@ -4,7 +4,7 @@ use crate::assemble::{Assembly, PartKind};
 use crate::scenario::View;
 use crate::watch::{Fates, Loss};
 
-/// Collapse mode of a stack; all except gravity are modes of the shaking-table tests of the paper.
+/// Collapse mode of a stack; all modes except gravity are taken from the shaking-table tests of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollapseMode {
     /// Barrels of the top level are thrown out of their cradles, or off the stack with their rack.

@@ -92,7 +92,8 @@ impl End {
 /// Duration (s), at full scale, that a run continues after the first loss of a seat if the run ends by the verdict.
 pub const VERDICT: f64 = 2.0;
 
-/// Returns the duration (s) that a run continues after a collapse, at its time scale; infinity for no limit.
+/// Returns the duration (s) that a run continues after a collapse, at the time scale of the scenario; infinity for no
+/// limit.
 pub fn after_collapse(scenario: &Scenario) -> f64 {
     let run = &scenario.run;
     let by_verdict = (run.until == Until::Verdict).then_some(VERDICT);
@@ -103,10 +104,7 @@ impl<R: Real> End<R> {
     /// Observes an accepted state. Returns the lanes whose run is over after a collapse, and the lanes whose run is
     /// over by rest.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(
         &mut self,
         state: &State<Planar<R>>,

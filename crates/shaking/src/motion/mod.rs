@@ -188,7 +188,7 @@ pub enum Scale {
     Pga(f64),
     /// The motion is scaled to this peak horizontal velocity (m/s).
     Pgv(f64),
-    /// The motion is scaled to a value of any measure that grows with it.
+    /// The motion is scaled so that an intensity measure reaches a value; the measure must grow with the motion.
     Measure {
         /// The measure.
         measure: IntensityMeasure,
@@ -204,9 +204,9 @@ named! {
     pub enum MeasuredOn {
         /// The horizontal component that drives the stack.
         Component = "component",
-        /// Both horizontals of the record: median over all directions.
+        /// Both horizontals of the record: the median over all directions.
         RotD50 = "rotd50",
-        /// Both horizontals of the record: largest over all directions.
+        /// Both horizontals of the record: the maximum over all directions.
         RotD100 = "rotd100",
         /// Both horizontals of the record: their geometric mean.
         GeometricMean = "geomean",

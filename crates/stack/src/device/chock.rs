@@ -69,7 +69,7 @@ impl Chocks {
     #[expect(
         clippy::unnecessary_wraps,
         clippy::unused_self,
-        reason = "the signature is the same for all devices"
+        reason = "every device has this signature"
     )]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())

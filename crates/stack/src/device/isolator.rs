@@ -119,7 +119,7 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
 /// Largest sine of the slope of a dish at its stops.
 const STEEPEST: f64 = 0.5;
 
-/// Half of the angle (rad) that a dish spans, which extends beyond its stops.
+/// Half of the angle (rad) that a dish spans. A dish extends beyond its stops.
 const DISH: f64 = 1.2;
 
 /// Damping of bearings divided by their stiffness (s): an assumption. The damping acts on approach only.

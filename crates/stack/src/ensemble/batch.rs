@@ -140,10 +140,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
     }
 
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask {
         self.steps += 1;
         if self.steps == PATIENCE {

@@ -25,7 +25,8 @@ section! {
     /// Random differences between the scenario and the variants of its stack.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Imperfections;
-    /// Random differences of the variants of a stack from the scenario, which is always their center.
+    /// Random differences between the scenario and the variants of its stack; the differences are always centered on
+    /// the scenario.
     pub static IMPERFECTIONS = "imperfections";
     /// Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run only
     /// the stack as stated.

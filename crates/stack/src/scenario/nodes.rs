@@ -109,7 +109,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     let cradle = parts.iter().any(|part| matches!(part.shape, Shape::Cradle { .. }));
     match rule {
         Nodes::Exact if cradle => {
-            let message = "a cradle is not convex; give it nodes a stated distance apart";
+            let message = "a cradle is not convex; set a spacing for its nodes";
             return Err(nodes.inconsistent("rule", message.to_owned()));
         }
         Nodes::Rolling if !circle => {

@@ -68,7 +68,7 @@ pub struct Fate {
     pub drop: f64,
     /// Largest displacement (m) along `x` relative to the ground, before the collapse.
     pub peak_displacement: f64,
-    /// Displacement (m) along `x` relative to the ground, at the end.
+    /// Displacement (m) along `x` relative to the ground, at the end of the run.
     pub residual_displacement: f64,
     /// Displacement (m) along `x` relative to the ground at the collapse, or at the end of the run if there was no
     /// collapse.
@@ -76,7 +76,7 @@ pub struct Fate {
     /// Largest displacement (m) relative to the support, before the collapse: of a rack on the barrels below, or of a
     /// barrel in its cradle.
     pub peak_slip: f64,
-    /// Displacement (m) relative to the support, at the end.
+    /// Displacement (m) relative to the support, at the end of the run.
     pub residual_slip: f64,
     /// Largest tilt (rad) of a rack, before the collapse.
     pub peak_tilt: f64,
@@ -113,11 +113,11 @@ pub struct Fates<R: Real = f64> {
     /// Drop (m) beyond which a body has fallen.
     fall_drop: R,
     bodies: Vec<Followed<R>>,
-    /// Time (s) at which the first body left its seat; infinite before.
+    /// Time (s) at which the first body left its seat; infinite until then.
     collapse: R,
     /// The first body that left its seat.
     first: PerLane<Option<BodyId>>,
-    /// Time (s) at which the first barrel had fallen; infinite before.
+    /// Time (s) at which the first barrel had fallen; infinite until then.
     first_fall: R,
 }
 
@@ -151,13 +151,13 @@ struct Followed<R: Real> {
     most_slip: R,
     /// Limit (rad) of the tilt of a rack.
     most_tilt: R,
-    /// Time (s) of its loss of seat; infinite before.
+    /// Time (s) at which the body left its seat; infinite until then.
     left_seat: R,
     /// Kind of the loss of seat.
     loss: PerLane<Loss>,
-    /// Time (s) of its fall; infinite before.
+    /// Time (s) at which the body fell; infinite until then.
     fell_at: R,
-    /// Time (s) of its landing; infinite before.
+    /// Time (s) at which the body landed; infinite until then.
     landed_at: R,
     /// Largest downward speed (m/s) between fall and landing.
     landing_speed: R,
@@ -286,20 +286,14 @@ impl<R: Real> Fates<R> {
 
     /// Returns the lanes in which no body has left its seat.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
     }
 
     /// Records an accepted state.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.stands();
@@ -355,10 +349,7 @@ impl<R: Real> Fates<R> {
 
     /// Records whether a body has left its seat, and the kind of the loss.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
@@ -403,10 +394,7 @@ impl<R: Real> Fates<R> {
     /// frame of the rack below; that of a rack on barrels, relative to the mean position of these barrels; and that of
     /// any other body, relative to the ground.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
@@ -437,20 +425,14 @@ impl<R: Real> Fates<R> {
 
 /// Raises a peak to a value if the value is larger.
 #[inline(always)]
-#[expect(
-    clippy::inline_always,
-    reason = "without inlining, the lanes do not use vector instructions"
-)]
+#[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
 /// Returns a value in the lanes of a mask, and zero in all other lanes.
 #[inline(always)]
-#[expect(
-    clippy::inline_always,
-    reason = "without inlining, the lanes do not use vector instructions"
-)]
+#[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn masked<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
 }

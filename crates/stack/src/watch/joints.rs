@@ -43,7 +43,7 @@ pub struct Joints<R: Real = f64> {
     pub joints: Vec<Joint<R>>,
     /// For every body, the lower bodies of its joints, each with the index of the joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
-    /// `true` if bodies that touch without support by design are also observed.
+    /// `true` if bodies that touch, but do not support each other by design, are also observed.
     follows_all: bool,
 }
 
@@ -84,7 +84,8 @@ impl<R: Real> Lanewise for Joints<R> {
 }
 
 impl Joint {
-    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" without support by design.
+    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" for bodies that do not support
+    /// each other by design.
     pub fn name(&self, assembly: &Assembly) -> String {
         self.named(|body| &assembly.parts[body].name)
     }
@@ -195,10 +196,7 @@ impl<R: Real> Joint<R> {
     /// Raises the peaks to the current force, at a time (s); the peaks until the first loss of seat are raised in
     /// `standing` lanes only.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
         let Vec2 { x, z } = self.force;
         let Self { until_loss, whole_run, .. } = self;
@@ -210,10 +208,7 @@ impl<R: Real> Joint<R> {
 /// Raises two peaks to a force (N) at a time (s) if the force is larger; the first peak is raised in standing lanes
 /// only.
 #[inline(always)]
-#[expect(
-    clippy::inline_always,
-    reason = "without inlining, the lanes do not use vector instructions"
-)]
+#[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn raise<R: Real>(
     until_loss: &mut (R, R),
     whole_run: &mut (R, R),
@@ -232,10 +227,7 @@ fn raise<R: Real>(
 impl<R: Real> Joints<R> {
     /// Returns the index of the joint of two bodies, and `true` if the first body is the upper one.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let joint = |upper: BodyId, lower: BodyId| {
             self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
@@ -248,10 +240,7 @@ impl<R: Real> Joints<R> {
     ///
     /// A missing joint is added; `None` if joints without support by design are not observed.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let known = self.number(one, other);
         if known.is_some() || !self.follows_all {
@@ -264,7 +253,7 @@ impl<R: Real> Joints<R> {
         Some((self.add(first, second), first == one))
     }
 
-    /// Adds a joint of two bodies without support by design.
+    /// Adds a joint of two bodies that do not support each other by design.
     fn add(&mut self, upper: BodyId, lower: BodyId) -> usize {
         let at = self.joints.len();
         self.of_upper[upper].push((lower, at));
@@ -275,10 +264,7 @@ impl<R: Real> Joints<R> {
     /// Records the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
     /// before the step.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(&mut self, time: R, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
         for joint in &mut self.joints {
             joint.force = Vec2::default();

@@ -169,10 +169,7 @@ pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
 impl<R: Real> Rest<R> {
     /// Observes an accepted state, given the lanes that have collapsed, and returns the lanes at rest.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
@@ -196,10 +193,7 @@ impl<R: Real> Rest<R> {
 
     /// Returns the lanes in which a body is a barrel on the floor that approaches no other body.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn rolls_away(&self, state: &State<Planar<R>>, at: usize) -> R::Mask {
         let ground = state.poses[Assembly::GROUND].position;
         let own = &self.bodies[at];

@@ -46,7 +46,7 @@ pub struct StressEnvelope {
     /// Where the boundary is loaded at rest, this is the loaded length, so that the stress at rest multiplied by the
     /// length is the contact force.
     pub lengths: Vec<f64>,
-    /// `true` if the boundary is closed, so that the last point is next to the first.
+    /// `true` if the boundary is closed, so that the last point is adjacent to the first point.
     pub closed: bool,
     /// Stress at rest (N/m).
     pub at_rest: Vec<f64>,

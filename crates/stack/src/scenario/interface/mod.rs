@@ -43,21 +43,21 @@ pub enum Damping {
 pub enum NormalLaw {
     /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
     SpeedGap {
-        /// `k` (N/m per node or seat, or N/m² on the basis of length).
+        /// `k` (N/m per node or seat, or N/m² per length of boundary).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `max(0, k δ + c δ̇)`.
     KelvinVoigt {
-        /// `k` (N/m per node or seat, or N/m² on the basis of length).
+        /// `k` (N/m per node or seat, or N/m² per length of boundary).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `k δⁿ (1 + d δ̇)`.
     HuntCrossley {
-        /// `k` (N/mⁿ per node or seat, or N/mⁿ⁺¹ on the basis of length).
+        /// `k` (N/mⁿ per node or seat, or N/mⁿ⁺¹ per length of boundary).
         stiffness: f64,
         /// `n`, either 1 or 1.5.
         exponent: f64,
@@ -66,7 +66,7 @@ pub enum NormalLaw {
     },
     /// `k δ^1.5` on approach and `e² k δ^1.5` on separation, with a gradual transition over speeds of about `v`.
     Rebound {
-        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
+        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
         stiffness: f64,
         /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
@@ -75,7 +75,7 @@ pub enum NormalLaw {
     },
     /// `k δ^1.5`, without dissipation.
     Hertz {
-        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
+        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
         stiffness: f64,
     },
 }

@@ -71,10 +71,7 @@ struct Pair<R: Real> {
 impl<R: Real> Pair<R> {
     /// Transforms a contact point (m) from the frame of the target's surface to the frame of the body of a side.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn in_body(
         &self,
         side: Side,
@@ -102,10 +99,7 @@ impl Bounds {
 
 impl<R: Real> Bounds<R> {
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
         match place {
@@ -152,7 +146,7 @@ pub(crate) struct StressWatch<R: Real = f64> {
     lanes: Vec<Lane>,
     /// The lanes that have a run.
     watched: R::Mask,
-    /// The lanes with a run in which a seat has been lost.
+    /// The lanes with a run in which a body has left its seat.
     lost: R::Mask,
     pairs: Vec<Pair<R>>,
     /// Index of the first entry of every pair in `bounds`.
@@ -357,10 +351,7 @@ impl<R: Real> StressWatch<R> {
     /// `standing` are the lanes in which no seat had been lost before this state, and `model` returns the model of a
     /// lane.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "without inlining, the lanes do not use vector instructions"
-    )]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe<'a>(
         &mut self,
         standing: R::Mask,
