@@ -66,11 +66,7 @@ impl Chocks {
     }
 
     /// Does nothing, because chocks are solids of the racks.
-    #[expect(
-        clippy::unnecessary_wraps,
-        clippy::unused_self,
-        reason = "every device has this signature"
-    )]
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "common device signature")]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())
     }

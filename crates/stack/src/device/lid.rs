@@ -98,7 +98,7 @@ impl Lids {
     }
 
     /// Installs a lid over every barrel of the levels that have lids.
-    #[expect(clippy::unnecessary_wraps, reason = "every device has this signature")]
+    #[expect(clippy::unnecessary_wraps, reason = "common device signature")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let lowest = lowest(self.levels, spec.levels);

@@ -89,7 +89,7 @@ impl Pads {
     }
 
     /// Replaces the contact law of the cradles by the contact law of the pads.
-    #[expect(clippy::unnecessary_wraps, reason = "every device has this signature")]
+    #[expect(clippy::unnecessary_wraps, reason = "common device signature")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {
             builder.cradle_law = builder.add_cradle("pad", &law);

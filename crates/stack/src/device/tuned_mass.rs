@@ -166,7 +166,7 @@ impl TunedMass {
     }
 
     /// Installs a mass on every rack of its level, at the center of mass of the rack.
-    #[expect(clippy::unnecessary_wraps, reason = "every device has this signature")]
+    #[expect(clippy::unnecessary_wraps, reason = "common device signature")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let level = self.level_of(spec.levels);
