@@ -163,7 +163,7 @@ impl Assembly {
         self.model.elements().iter().chain(loose)
     }
 
-    /// ID of the ground, the body that follows the ground motion; every assembly has it.
+    /// ID of the ground, the body that follows the ground motion. Every assembly has this body.
     pub const GROUND: BodyId = 0;
 }
 

@@ -99,13 +99,13 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Starts to count time as bringing stacks to rest.
+    /// Creates a guard that counts the time from now on as settling.
     pub fn settling() -> Self {
         SETTLING.enter();
         Self { shaking: false }
     }
 
-    /// Counts the stacks of `cases` cases as brought to rest, and the time from now on as shaking.
+    /// Counts the stacks of `cases` cases as brought to rest, and counts the time from now on as shaking.
     ///
     /// Only the first call has an effect.
     pub fn shake(&mut self, cases: usize) {

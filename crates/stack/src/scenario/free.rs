@@ -344,7 +344,7 @@ fn read_interfaces(
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
             let message = format!(
-                "the order of kinds with exact or rolling nodes does not matter, and \"{}\" with \"{}\" is already \
+                "the order of two kinds with exact or rolling nodes does not matter, and \"{}\" with \"{}\" is already \
                  stated above; keep one",
                 between[1], between[0]
             );

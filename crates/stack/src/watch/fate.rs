@@ -46,7 +46,7 @@ pub enum Loss {
     Slid,
     /// A rack tilted too far.
     Tilted,
-    /// A body dropped without being displaced, sliding or tilting too far.
+    /// A body dropped, although it had not been displaced, slid or tilted too far.
     Dropped,
 }
 
