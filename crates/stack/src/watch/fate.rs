@@ -46,7 +46,7 @@ pub enum Loss {
     Slid,
     /// A rack tilted too far.
     Tilted,
-    /// A body dropped, although it had not been displaced, slid or tilted too far.
+    /// A body dropped, although it had neither moved nor tilted too far.
     Dropped,
 }
 
