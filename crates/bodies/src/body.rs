@@ -8,16 +8,16 @@ use barrelstack_input::{Dimension, InputError, section};
 use crate::solid::{SOLID, Solid};
 
 section! {
-    /// Viscous drag on a body, proportional to its absolute velocity rather than to that relative to the shaking
-    /// ground.
+    /// Viscous drag on a body, proportional to the absolute velocity of the body, not to its velocity relative to the
+    /// shaking ground.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
     /// Viscous drag on the motion of a body in space, the same in all directions.
     pub static VISCOUS = "viscous-in-space";
-    /// Drag force per velocity of the center of mass.
+    /// Drag force divided by the velocity of the center of mass.
     linear: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Drag moment per angular velocity.
+    /// Drag moment divided by the angular velocity.
     angular: f64 =
         Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
 }
@@ -30,23 +30,25 @@ section! {
     pub static BODY = "body-in-space", at most one of &["mass", "density"];
     /// Unique name.
     name: String = Kind::Text, Default::Required;
-    /// Kind of the body, by which interfaces refer to it; several bodies may be of one kind.
+    /// Kind of the body. Interfaces refer to bodies by their kind, and several bodies may have the same kind.
     kind: Option<String> = Kind::Text, Default::Derived("the name");
     /// Contact geometry.
     solid: Solid = Kind::Table(&SOLID), Default::Required;
     /// Mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
-        Default::Derived("`density` times the volume of the solid; a body that is not fixed to the ground needs one of the two");
+        Default::Derived("`density` times the volume of the solid; a body that is not fixed to the ground needs a \
+            mass or a density");
     /// Density of the solid, as an alternative to the mass.
     density: Option<f64> =
-        Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass over the volume");
-    /// Moments of inertia about the axes through the center of mass along local x, y and z, which are taken as
-    /// principal axes.
+        Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass divided by the volume of \
+            the solid");
+    /// Moments of inertia about the axes through the center of mass that are parallel to local x, y and z. These axes
+    /// are taken as the principal axes.
     inertia: Option<[f64; 3]> =
-        Kind::Triple(Dimension::INERTIA), Default::Derived("those of a homogeneous solid");
+        Kind::Triple(Dimension::INERTIA), Default::Derived("the moments of inertia of a homogeneous solid");
     /// Center of mass, relative to the reference point of the solid.
     center_of_mass: Option<[f64; 3]> =
-        Kind::Triple(Dimension::LENGTH), Default::Derived("that of a homogeneous solid");
+        Kind::Triple(Dimension::LENGTH), Default::Derived("the center of mass of a homogeneous solid");
     /// Initial position of the reference point of the solid.
     position: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;
     /// Initial orientation: rotations about the fixed axes x, then y, then z, each counterclockwise.
@@ -67,7 +69,7 @@ section! {
 }
 
 impl SpatialBody {
-    /// Returns the kind of the body, by which interfaces refer to it.
+    /// Returns the kind by which interfaces refer to the body.
     pub fn kind(&self) -> &str {
         self.kind.as_deref().unwrap_or(&self.name)
     }
@@ -92,8 +94,9 @@ impl SpatialBody {
         }
         if !free && (body.velocity != [0.0; 3] || body.spin != [0.0; 3]) {
             let field = if body.velocity == [0.0; 3] { "spin" } else { "velocity" };
-            let message =
-                format!("a body fixed to the ground moves only with it; leave `{field}` out");
+            let message = format!(
+                "a body fixed to the ground moves only with the ground; leave `{field}` out"
+            );
             return wrong(field, message);
         }
         // The inertia of a homogeneous solid is known only about the center of mass of that solid.
@@ -108,8 +111,8 @@ impl SpatialBody {
             let most = x.max(y).max(z);
             if x.min(y).min(z) <= 0.0 || most > (x + y + z - most) * (1.0 + 1e-9) {
                 let message = format!(
-                    "no rigid body has moments of inertia of {x}, {y} and {z} kg·m²: each must be above zero, and none more \
-                     than the sum of the other two; correct them"
+                    "no rigid body has moments of inertia of {x}, {y} and {z} kg·m²: each must be above zero, and \
+                     none may exceed the sum of the other two; correct them"
                 );
                 return wrong("inertia", message);
             }

@@ -17,7 +17,8 @@ struct Piece {
 }
 
 impl SpatialBody {
-    /// Builds the body in its initial state; the body frame is that of the principal axes at the center of mass.
+    /// Builds the body in its initial state. The body frame has its origin at the center of mass and its axes along the
+    /// principal axes.
     pub fn build(&self) -> Body<Spatial> {
         let pieces = pieces(&self.solid);
         let turned = turn(self.orientation);
@@ -106,7 +107,7 @@ fn pieces(solid: &Solid) -> Vec<Piece> {
         .collect()
 }
 
-/// Returns the surface of one solid and its bulk at unit density; `None` for a compound.
+/// Returns the surface of a solid and its mass distribution at unit density; `None` for a compound.
 fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     const ROUND: f64 = std::f64::consts::PI;
     let ball = |radius: f64| 4.0 / 3.0 * ROUND * radius * radius * radius;

@@ -33,7 +33,7 @@ choices! {
     Block = "block" {
         /// Side lengths along local x, y and z.
         sides: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;
-        /// Radius of the rounded edges; the penetration at a contact must stay below it.
+        /// Radius of the rounded edges; the penetration at a contact must stay below this radius.
         rounding: f64 = SIZE, Default::Value("\"5 mm\"");
     }
     /// A homogeneous barrel with its axis along local x; the reference point is the middle.
@@ -51,12 +51,12 @@ choices! {
     HalfSpace = "half-space";
     /// Several solids joined into one rigid body; the reference point is the local origin.
     Compound = "compound" {
-        /// The solids, all of the same density; where they overlap, the mass counts twice.
+        /// The solids, all of the same density; where two of them overlap, the mass of the overlap counts twice.
         parts: Vec<PartSolid> = Kind::Tables(&PART), Default::Required;
     }
 }
 
-/// The shapes allowed in a compound: those before the half-space.
+/// The shapes allowed in a compound: all shapes listed before the half-space.
 static OF_PARTS: &[Variant] = SOLIDS.split_at(4).0;
 
 /// Returns the names of the shapes allowed in a compound.
@@ -84,7 +84,8 @@ table! {
     of *OF_PARTS, by type;
 }
 
-/// Reads and writes the solid of a part: the type is that of a whole body, the table another one.
+/// Reads and writes the solid of a part. The solid of a part has the same Rust type as the solid of a body, but a table
+/// of its own.
 impl Held for Solid {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         read(reader.section(name)?)
@@ -116,7 +117,8 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
     match &solid {
         Solid::Capsule { length, radius } if *length < 2.0 * radius => {
             let message = format!(
-                "`{}` of {length} m is too short for two round ends with a radius of {radius} m; it must be at least {} m, which is a ball",
+                "`{}` of {length} m is too short for two round ends with a radius of {radius} m; it must be at least \
+                 {} m, the length of a ball",
                 reader.path_of("length"),
                 2.0 * radius
             );
@@ -124,7 +126,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         }
         Solid::Block { sides, .. } if sides.iter().any(|side| !(2e-4..=1e4).contains(side)) => {
             let message = format!(
-                "every side of `{}` must be between 0.0002 m and 10000 m; correct the one outside this range",
+                "every side of `{}` must be between 0.0002 m and 10000 m; correct the side outside this range",
                 reader.path_of("sides")
             );
             return Err(reader.inconsistent("sides", message));

@@ -40,7 +40,7 @@ pub enum Shake {
         /// Angular frequency ω (rad/s).
         omega: f64,
     },
-    /// Acceleration `a sin ωt` for all times, about a fixed position.
+    /// Acceleration `a sin ωt` for all times, with the initial velocity that keeps the motion about a fixed position.
     Harmonic {
         /// Acceleration amplitude `a` (m/s²).
         acceleration: f64,
@@ -78,7 +78,7 @@ impl Shake {
         }
     }
 
-    /// Returns the acceleration (m/s²) at a time (s); at the end time, its value just before.
+    /// Returns the acceleration (m/s²) at a time (s). At the end time, this is the acceleration just before the end.
     pub fn acceleration(&self, t: f64) -> f64 {
         if t > self.end() {
             return 0.0;
@@ -170,12 +170,12 @@ impl Sampled {
         Self { step, acceleration, velocity, displacement }
     }
 
-    /// Returns the duration (s).
+    /// Returns the duration (s) of the record.
     pub fn duration(&self) -> f64 {
         (self.acceleration.len() - 1) as f64 * self.step
     }
 
-    /// Returns the index of the last sample before a time, and the time elapsed since that sample (s).
+    /// Returns the index of the last sample at or before a time (s), and the time elapsed since that sample (s).
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "times from 0 on")]
     fn cell(&self, t: f64) -> (usize, f64) {
         let i = ((t / self.step) as usize).min(self.acceleration.len() - 2);
@@ -192,8 +192,10 @@ impl Sampled {
     }
 }
 
-/// Returns displacement and velocity at the time `s` within a step, from `x` and `v` at its start, where the
-/// acceleration changes linearly from `a` to `b` over the step.
+/// Returns the displacement and velocity at the time `s` after the start of a step.
+///
+/// At the start of the step, the displacement is `x` and the velocity is `v`. Over the step, the acceleration changes
+/// linearly from `a` to `b`.
 fn advance(a: f64, b: f64, step: f64, s: f64, v: f64, x: f64) -> (f64, f64) {
     let slope = (b - a) / step;
     (x + v * s + 0.5 * a * s * s + slope * s * s * s / 6.0, v + a * s + 0.5 * slope * s * s)

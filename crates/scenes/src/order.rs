@@ -1,6 +1,6 @@
 //! Scenes that test whether results depend on the order in which bodies are listed.
 //!
-//! In reverse order, every two free bodies swap the roles of contactor and target.
+//! When the order is reversed, the contactor and the target of every pair of free bodies swap roles.
 
 use std::ops::ControlFlow;
 
@@ -16,7 +16,7 @@ use crate::scene::{DOWN, Scene, all_pairs, centered, coulomb, disc, floor, inter
 use crate::tumble::Random;
 use crate::{GRAVITY, spatial};
 
-/// A scene that is run with its bodies in the given and in the reverse order.
+/// A scene that is run twice: with its bodies in the given order and in reverse order.
 pub struct Order<S: Space> {
     /// Name of the scene.
     pub name: String,
@@ -27,8 +27,8 @@ pub struct Order<S: Space> {
 }
 
 impl<S: Space<Real = f64>> Order<S> {
-    /// Runs the scene with its free bodies in the given and in the reverse order, and returns the largest difference
-    /// in the position (m) of any body until `end` (s).
+    /// Runs the scene with its free bodies in the given order and in reverse order until `end` (s). Returns the largest
+    /// difference (m) between the two runs in the position of any body.
     ///
     /// # Errors
     /// If a run fails.
@@ -52,7 +52,7 @@ impl<S: Space<Real = f64>> Order<S> {
         Ok(worst)
     }
 
-    /// Runs the bodies and returns the positions (m) of all of them after every step.
+    /// Runs a scene with the given bodies and returns the positions (m) of all bodies after every step.
     fn path(
         &self,
         bodies: Vec<Body<S>>,
@@ -71,7 +71,7 @@ impl<S: Space<Real = f64>> Order<S> {
     }
 }
 
-/// Returns the contact law of all scenes: 2 MN/m and a friction coefficient of 0.35.
+/// Returns the contact law of all scenes, with a stiffness of 2 MN/m and a friction coefficient of 0.35.
 fn laws<S: Space<Real = f64>>() -> Interface<S> {
     let normal = NormalLaw::SpeedGap { stiffness: 2e6, damping: 2e3 };
     interface(normal, coulomb(0.35, 2e6, 1e3))
@@ -114,7 +114,7 @@ fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Sp
     body
 }
 
-/// Names of the kinds of bodies: first those in the plane, then those in space.
+/// Names of the kinds of bodies: planar bodies first, then bodies in space.
 const KINDS: [[&str; 4]; 2] =
     [["circle", "box", "round box", "barrel profile"], ["ball", "tube", "barrel", "block"]];
 

@@ -94,7 +94,7 @@ pub fn finely_noded_block(
     }
 }
 
-/// Converts boundary nodes of a shape to nodes of a body whose shape is centered.
+/// Converts the boundary nodes of a shape to nodes of a body that has the shape at its origin.
 pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
     let node = |n: &BoundaryNode| Node {
         position: n.position,
@@ -114,7 +114,7 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
     )
 }
 
-/// Returns an interface whose constants hold per node.
+/// Returns an interface whose constants apply to each node.
 pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw) -> Interface<S> {
     Interface {
         name: "contact".into(),
@@ -140,7 +140,7 @@ pub fn coulomb(
     }
 }
 
-/// Returns the contact pair of the first node set of one body and the first surface of another, with interface 0.
+/// Returns the contact pair between the first node set of one body and the first surface of another, with interface 0.
 pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     ContactPair {
         contactor,
@@ -152,9 +152,9 @@ pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     }
 }
 
-/// Returns the contact pairs of every body that has nodes with the first surface of every other body.
+/// Returns the contact pairs between every body that has nodes and the first surface of every other body.
 ///
-/// Two discs, or two solids, form one pair only; of a disc and a convex boundary, only the disc is the contactor.
+/// Two discs, or two solids, form only one pair. Between a disc and a convex boundary, only the disc is a contactor.
 pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
     let round =
         |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. } | Nodes::Whole(_)));
@@ -188,7 +188,7 @@ pub struct Scene<S: Space = Planar> {
 }
 
 impl<S: Space<Real = f64>> Scene<S> {
-    /// Creates a scene of bodies that can all touch each other, with one interface.
+    /// Creates a scene of bodies that can all touch each other, with the same interface between all of them.
     ///
     /// # Errors
     /// If the bodies do not make a valid model.
@@ -201,7 +201,7 @@ impl<S: Space<Real = f64>> Scene<S> {
         Ok(Self::of(Model::new(bodies, vec![interface], pairs, gravity)?))
     }
 
-    /// Creates a scene of a model in its initial state.
+    /// Creates a scene from a model in its initial state.
     pub fn of(model: Model<S>) -> Self {
         let state = State::initial(&model);
         let scratch = Scratch::new(&model);
@@ -217,7 +217,8 @@ impl<S: Space<Real = f64>> Scene<S> {
         Ok(self)
     }
 
-    /// Brings the scene to static equilibrium and returns the measures of the equilibrium.
+    /// Brings the scene to static equilibrium and returns the number of steps, the residual acceleration, and the
+    /// friction locked in.
     ///
     /// # Errors
     /// If the bodies do not come to rest.

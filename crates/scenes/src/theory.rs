@@ -19,10 +19,11 @@ pub fn housner_restitution(alpha: f64) -> f64 {
     1.0 - 1.5 * sin(alpha) * sin(alpha)
 }
 
-/// Returns p times the time in which a rocking rectangle returns from rest at the rotation `share · α` to upright.
+/// Returns the time, multiplied by p, in which a rocking rectangle returns to upright from rest at the rotation `share
+/// · α`.
 ///
-/// Exact for any α. Conservation of energy gives θ'²/2p² = cos(α − θ₀) − cos(α − θ). The substitution
-/// θ = θ₀ (1 − s²) removes the square root from the integrand, which is then integrated by the midpoint rule.
+/// The result is exact for any α. Conservation of energy gives θ'²/2p² = cos(α − θ₀) − cos(α − θ). The substitution θ =
+/// θ₀ (1 − s²) removes the square root from the integrand, which is then integrated by the midpoint rule.
 pub fn quarter_period(alpha: f64, share: f64) -> f64 {
     let start = share * alpha;
     let parts = 20_000;
@@ -37,13 +38,13 @@ pub fn quarter_period(alpha: f64, share: f64) -> f64 {
         .sum()
 }
 
-/// Returns p times the quarter period of a slender block that starts at rest from φ = θ₀/α: arcosh[1/(1 − φ)]
+/// Returns the quarter period, multiplied by p, of a slender block that starts at rest from φ = θ₀/α: arcosh[1/(1 − φ)]
 /// (Housner 1963).
 pub fn slender_quarter_period(share: f64) -> f64 {
     acosh(1.0 / (1.0 - share))
 }
 
-/// Returns the ratio of the next peak rotation to α after an impact that keeps the fraction `ratio` = η² of the energy.
+/// Returns the peak rotation, divided by α, after an impact that keeps the fraction `ratio` = η² of the energy.
 ///
 /// The block starts at rest from the rotation `share · α`; the result is exact for any α.
 pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
@@ -58,8 +59,8 @@ pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
     0.5 * (low + high) / alpha
 }
 
-/// Returns the least amplitude A/(gα) of a rectangular pulse of duration t₁ that overturns a slender block, from
-/// `p t₁` (Housner 1963).
+/// Returns the least amplitude A/(gα) of a rectangular pulse of duration t₁ that overturns a slender block, as a
+/// function of `p t₁` (Housner 1963).
 pub fn rectangular_overturning(rate_times_duration: f64) -> f64 {
     1.0 / (1.0 - exp(-rate_times_duration))
 }
@@ -108,7 +109,7 @@ pub fn slide_in_rectangular_pulse(a: f64, n: f64, duration: f64) -> f64 {
 }
 
 /// Returns the slip (m) of a block with yield acceleration `n g` under a half-sine pulse of amplitude `a g` and
-/// `duration` (s), by integration.
+/// `duration` (s), by integration in closed form.
 pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     let omega = PI / duration;
     let start = atan(n / (a * a - n * n).sqrt());
@@ -126,8 +127,8 @@ pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()
 }
 
-/// Returns the restitution and the deepest penetration (in units of v₀/ω) of a mass that falls on a spring with a
-/// damper that acts on approach only.
+/// Returns the restitution and the deepest penetration (in units of v₀/ω) of a mass that falls on a spring and a
+/// damper, where the damper acts on approach only.
 ///
 /// The restitution is `None` if the mass does not lift off. `gravity_number` is Γ = g/(ωv₀). The approach is a damped
 /// motion about the rest position Γ (in units of v₀/ω), and the rebound is undamped: e = √(x² − 2Γx), where x is
@@ -143,7 +144,8 @@ pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option
     ((square > 0.0).then(|| square.sqrt()), deepest)
 }
 
-/// Returns the least Γ = g/(ωv₀) at which a mass does not lift off after the impact of [`rebound_under_gravity`].
+/// Returns the least Γ = g/(ωv₀) at which a mass does not lift off after the impact described in
+/// [`rebound_under_gravity`].
 pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..100 {
@@ -157,9 +159,9 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns the duration of an impact, as the phase ω t, with a damper that acts on approach only.
+/// Returns the duration of an impact on a spring and a damper that acts on approach only, as the phase ω t.
 ///
-/// It is the sum of the damped approach and an undamped rebound of a quarter period.
+/// The duration is the sum of the damped approach and the undamped rebound, which lasts a quarter period.
 pub fn contact_phase(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let way_in = if (zeta - 1.0).abs() < 1e-9 {
@@ -179,8 +181,7 @@ pub fn rolling_share(ratio: f64) -> f64 {
     ratio / (1.0 + ratio)
 }
 
-/// Returns the angular frequency (rad/s) at which a cylinder rolls to and fro in a round cradle without slip, at small
-/// amplitude.
+/// Returns the angular frequency (rad/s) of small oscillations of a cylinder that rolls without slip in a round cradle.
 ///
 /// `ratio` is k²/r², with the radius of gyration k and the radius r of the cylinder.
 pub fn swing_in_cradle(cradle_radius: f64, radius: f64, ratio: f64) -> f64 {

@@ -46,7 +46,7 @@ pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     bodies
 }
 
-/// Returns a contact law that suits the bodies of a heap: speed-gap with Coulomb friction.
+/// Returns a contact law that suits the bodies of a heap: a speed-gap law with Coulomb friction.
 ///
 /// `factor` multiplies the stiffnesses, and `damping` the damping constants.
 pub fn rough(factor: f64, damping: f64) -> Interface<Planar> {

@@ -37,12 +37,12 @@ pub use record::{RECORD_LIMIT, from_disk, held};
 pub struct Ground {
     /// The motion; `None` for ground at rest.
     pub motion: Option<GroundMotion>,
-    /// Warnings of the readers, one sentence each.
+    /// Warnings from reading the motion, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Ground {
-    /// Scales and stretches the motion according to a scenario.
+    /// Scales the amplitude and the time axis of the motion as the scenario specifies.
     fn rescale(&mut self, spec: &MotionSpec, similitude: f64) -> Result<(), MotionError> {
         if let Some(motion) = self.motion.take() {
             self.motion = Some(scaled(motion, spec, similitude)?);
@@ -60,7 +60,7 @@ impl Ground {
         self.motion.as_ref().map(|motion| motion.duration)
     }
 
-    /// Returns the time (s) from which the ground is still: the end of the motion, or zero.
+    /// Returns the time (s) from which the ground is still: the end of the motion, or zero if there is no motion.
     pub fn end(&self) -> f64 {
         self.motion_end().unwrap_or(0.0)
     }
@@ -113,7 +113,8 @@ pub fn of_record(
     Ok(ground)
 }
 
-/// Scales and stretches a motion according to a scenario, for a stack built at the length scale `run_scale`.
+/// Scales the amplitude and the time axis of a motion as the scenario specifies, for a stack built at the length scale
+/// `run_scale`.
 ///
 /// # Errors
 /// If the motion cannot be scaled as specified.
@@ -147,7 +148,7 @@ pub fn scaled(
     Ok(motion)
 }
 
-/// Returns the name of the event of a scenario's record; `None` if no file states it.
+/// Returns the name of the event in which the record of the scenario was measured; `None` if no file states the name.
 ///
 /// # Errors
 /// If the record cannot be read.
@@ -204,8 +205,8 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
     Ok(Ground { motion: Some(motion), warnings })
 }
 
-/// Aligns a horizontal component in time with the first channel of a separate vertical file, if both state their start;
-/// returns both, with a warning if their combination is questionable.
+/// Aligns a horizontal component in time with the first channel of a separate vertical file, if both state their start
+/// times. Returns both records, with a warning if combining them is questionable.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,
@@ -224,7 +225,8 @@ fn on_one_clock(
     Ok((first, second, notes.into_iter().collect()))
 }
 
-/// Rejects implausible ground motion, such as a step of 5 ms written as 5 s, or a file of three values.
+/// Rejects a record that is no plausible ground motion, for example because its step of 5 ms is written as 5 s, or
+/// because it has only three values.
 fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     match record.channels.iter().find_map(Channel::implausible) {
         None => Ok(()),
@@ -235,7 +237,7 @@ fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     }
 }
 
-/// Returns the combination of both horizontals that a scaling refers to; `None` for one component.
+/// Returns how a scaling combines both horizontal components; `None` if the scaling uses one component.
 fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
     match of {
         MeasuredOn::Component => None,
@@ -245,7 +247,9 @@ fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
     }
 }
 
-/// Scales the motion so that a measure of both horizontals of its record, with the same processing, has a value.
+/// Scales the motion so that a measure of both horizontal components of its record reaches the specified value.
+///
+/// The components are processed like the motion. Other kinds of scaling leave the motion unchanged.
 fn scaled_by_both(
     motion: GroundMotion,
     record: &Record,
@@ -264,7 +268,7 @@ fn scaled_by_both(
     Ok(scaled)
 }
 
-/// Returns the requested processing; by default that of the record's stage, without pads.
+/// Returns the requested processing; by default, the processing that suits the stage of the record, without pads.
 ///
 /// Pads are half a minute of rest before the first arrival, which a settled stack does not need. Once they are removed,
 /// the ends are corrected so that velocity and displacement end at zero.
@@ -275,7 +279,7 @@ fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     }
 }
 
-/// Parses the name of a component: first as the name of a channel, then as an azimuth in degrees.
+/// Parses the name of a component: the name of a channel or, if no channel has this name, an azimuth in degrees.
 fn component_of(record: &Record, name: Option<&str>) -> Result<Component, MotionError> {
     let Some(name) = name else {
         let horizontal = record.channels.iter().any(|channel| !channel.is_vertical());

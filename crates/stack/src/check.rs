@@ -1,4 +1,4 @@
-//! Check of a scenario without shaking it: whether it is sound, and whether its stack stands.
+//! Check of a scenario without shaking: whether the scenario is sound, and whether its stack stands.
 
 use barrelstack_dynamics::Settled;
 use barrelstack_dynamics::settle::Locked;
@@ -12,7 +12,7 @@ use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 
 described! {
-    /// Result of a check that found the scenario sound.
+    /// Result of a check in which the scenario was found sound.
     #[derive(Clone, Debug)]
     pub struct Checked {
         /// Name and version of the schema.
@@ -50,7 +50,7 @@ described! {
         pub steps: u64,
         /// Largest distance by which a body sank into its contacts.
         pub deepest_sinking: f64 as "m",
-        /// Unbalanced force that remains, as a fraction of gravity.
+        /// Remaining unbalanced force, as a fraction of gravity.
         pub unbalanced: f64 as "1",
         /// Friction locked in while the stack settled, as a fraction of the normal forces.
         pub locked_friction: f64 as "1",
@@ -95,8 +95,8 @@ impl Checked {
                 rest.unbalanced
             ));
             lines.push(format!(
-                "  friction      locked in as the stack sank: {:.0} % of the normal forces, at {} contacts \
-                 that hold and {} at their limit",
+                "  friction      locked in as the stack settled: {:.0} % of the normal forces, at {} sticking \
+                 contacts and {} contacts at their limit",
                 100.0 * rest.locked_friction,
                 rest.holding,
                 rest.slipping
@@ -120,10 +120,10 @@ impl Checked {
     }
 }
 
-/// Checks a scenario: performs everything in a run that precedes the shaking.
+/// Checks a scenario: performs all steps of a run that precede the shaking.
 ///
 /// # Errors
-/// As [`Scenario::run`].
+/// Same as [`Scenario::run`].
 pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = scenario.ground()?;

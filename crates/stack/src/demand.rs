@@ -9,7 +9,7 @@ use crate::watch::{Fate, Fates, Joints, PeakMotion, StressEnvelope, Stresses};
 /// Part of a run over which demands and largest forces are determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// Until the first body leaves its seat; the whole run if none does.
+    /// Until the first body leaves its seat; the whole run if no body leaves its seat.
     UntilLoss,
     /// The whole run, including falls.
     WholeRun,
@@ -22,15 +22,15 @@ pub struct Demand {
     pub name: &'static str,
     /// Description of the demand in a sentence.
     pub meaning: &'static str,
-    /// Label in print.
+    /// Displayed label.
     pub label: &'static str,
     /// Unit in files, which is SI; `1` for a ratio.
     pub unit: &'static str,
-    /// Unit in print.
+    /// Displayed unit.
     pub shown_unit: &'static str,
-    /// Factor that converts the value in files to the value in print.
+    /// Factor that converts the value in files to the displayed value.
     pub factor: f64,
-    /// Number of decimals in print; further digits are not significant.
+    /// Number of displayed decimals; further digits are not significant.
     pub decimals: usize,
     /// Returns the value in files; `None` if the demand does not apply.
     pub get: fn(&Demands) -> Option<f64>,
@@ -42,13 +42,14 @@ impl Demand {
         self.name == "base_slip_residual"
     }
 
-    /// Returns the value in print; `None` if the demand does not apply.
+    /// Returns the displayed value; `None` if the demand does not apply.
     pub fn shown(&self, demands: &Demands) -> Option<f64> {
         (self.get)(demands).map(|value| value * self.factor)
     }
 }
 
-/// Declares the demands. Each line has a doc comment, key, unit, label, factor, unit and decimals in print, and source.
+/// Declares the demands. Each line has a doc comment, the key and the unit in files, the label, the displayed factor,
+/// unit and decimals, and the source.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+
@@ -95,15 +96,15 @@ demands! {
         let drift = sources.motion(body, PartKind::Barrel, Some(sources.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
     };
-    /// Largest normal stress on a barrel of the bottom level, divided by the largest at rest, wherever on it each
-    /// occurs.
+    /// Largest normal stress on a barrel of the bottom level, divided by the largest stress at rest. The two may occur
+    /// at different points of the barrel.
     stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.amplification(),
             Span::WholeRun => sources.stress(body)?.amplification_whole_run(),
         };
-    /// Largest normal stresses on a barrel of the bottom level, averaged over the part of its boundary that is loaded
-    /// at rest, divided by the average at rest.
+    /// Largest normal stress at each point of a barrel of the bottom level, averaged over the part of the boundary that
+    /// is loaded at rest, and divided by the average stress at rest.
     mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.mean_amplification(),
@@ -111,7 +112,7 @@ demands! {
         };
     /// Largest vertical force between a barrel and a rack in any step, divided by the capacity of the staves
     /// (`stack.barrel.stave_capacity`).
-    stave_utilization "1": "largest load on a barrel between its racks, relative to what its staves bear", 100.0 "%" 0, |sources, body| {
+    stave_utilization "1": "largest load on a barrel between its racks, relative to the capacity of its staves", 100.0 "%" 0, |sources, body| {
         sources.fate(body, PartKind::Barrel, None)?;
         let load = sources.joints.stave_load(body, &|id| sources.assembly.parts[id].kind, sources.span);
         Some(load? / sources.assembly.stave_capacity)
@@ -119,7 +120,8 @@ demands! {
     /// Largest slip of the bottom rack on the ground.
     base_slip_peak "m": "largest slip of the bottom rack on the ground", 100.0 "cm" 1,
         |sources, body| Some(sources.motion(body, PartKind::Rack, Some(1))?.slip);
-    /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
+    /// Slip of the bottom rack on the ground, at the moment of the collapse, or at the end of the run if there was no
+    /// collapse.
     base_slip_at_collapse "m": "slip of the bottom rack at the collapse", 100.0 "cm" 1,
         |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
     /// Slip of the bottom rack on the ground at the end of the run.
@@ -146,8 +148,8 @@ impl Described for Demands {
             schema: <Option<f64> as Described>::schema,
         };
         let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
-        let meaning = "Demands on the stack, until the first loss of seat or over the whole run, as stated by the field \
-                       that holds them; slips at the collapse and at the end of the run are the same in both.";
+        let meaning = "Demands on the stack until the first loss of seat or over the whole run, depending on the \
+            field that contains them. The slips at the collapse and at the end of the run are the same in both.";
         described::object(objects, "Demands", meaning, &fields)
     }
 }

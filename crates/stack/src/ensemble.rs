@@ -1,8 +1,8 @@
 //! Ensembles: many cases that run together and keep only their results.
 //!
-//! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has ended takes the
-//! next one.
-//! Every case gives the same bits as if it ran alone, whatever runs beside it and however many lanes there are.
+//! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has ended takes the next
+//! case. The result of every case is bit-identical to the result of running the case alone, whatever cases run beside
+//! it and however many lanes there are.
 
 mod batch;
 mod case;
@@ -34,7 +34,8 @@ pub use work::{Share, Stage, Work};
 
 /// Version of the results of an ensemble.
 ///
-/// It is raised whenever the same case may give other bits, so that results of two versions are never combined.
+/// It is raised with every change of the program that may change a bit of any result, so that results of two versions
+/// are never combined.
 pub const VERSION: u32 = 13;
 
 /// Number of cases that a thread takes at once: enough to fill its lanes, few enough to leave work for all threads.
@@ -65,7 +66,7 @@ pub struct Audience<'a> {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Ensemble {
-    /// The cases; those with the same stack or motion share its data.
+    /// The cases; cases with the same stack or motion share the data of that stack or motion.
     pub cases: Vec<Prepared>,
     /// Vector unit to use; by default the widest of the machine. Results do not depend on it.
     pub lanes: Option<Width>,
@@ -78,7 +79,7 @@ impl Ensemble {
         self.run_watched(&|_| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// Runs all cases with an observer that may stop the ensemble; `None` if it was stopped.
+    /// Runs all cases with an observer that may stop the ensemble; returns `None` if the ensemble was stopped.
     ///
     /// The observer is called for every finished case, in any order and from several threads.
     pub fn run_watched(
@@ -88,7 +89,7 @@ impl Ensemble {
         self.run_until(observer, &|| false)
     }
 
-    /// Runs as [`Ensemble::run_watched`], and stops as soon as `asked_to_stop` returns `true`.
+    /// Runs like [`Ensemble::run_watched`], and stops as soon as `asked_to_stop` returns `true`.
     ///
     /// `asked_to_stop` is polled many times a second.
     pub fn run_until(
@@ -99,7 +100,7 @@ impl Ensemble {
         self.run_as_far(observer, asked_to_stop).into_iter().collect()
     }
 
-    /// Runs as [`Ensemble::run_until`], but keeps the results of a stopped run: `None` for each unfinished case.
+    /// Runs like [`Ensemble::run_until`], but keeps the results of a stopped run: `None` for each unfinished case.
     ///
     /// Cases with a collapse end earlier, so the finished cases are a biased sample.
     pub fn run_as_far(
@@ -130,7 +131,7 @@ pub fn simulate(cases: &[Prepared], audience: &mut Audience<'_>) -> Option<Vec<C
     simulate_in(Width::widest(), cases, audience)
 }
 
-/// Runs as [`simulate`] in lanes of a given width; a machine without such lanes runs one case after the other.
+/// Runs like [`simulate`] in lanes of a given width; a machine without such lanes runs one case after the other.
 pub fn simulate_in(
     width: Width,
     cases: &[Prepared],
@@ -139,7 +140,7 @@ pub fn simulate_in(
     simulate_as_far(width, cases, audience).into_iter().collect()
 }
 
-/// Runs as [`simulate_in`], but keeps the results of a stopped run: `None` for each unfinished case.
+/// Runs like [`simulate_in`], but keeps the results of a stopped run: `None` for each unfinished case.
 fn simulate_as_far(
     width: Width,
     cases: &[Prepared],
@@ -193,10 +194,10 @@ impl Stack<'_> {
         self.standing.as_ref().map_err(ToString::to_string)
     }
 
-    /// Returns the result of every case on a stack that cannot be shaken; `None` if it can.
+    /// Returns the result that all cases of a stack have if the stack cannot be shaken; `None` if it can be shaken.
     ///
-    /// The result is a collapse if the stack falls under its own weight; it has no verdict if the stack cannot be
-    /// built or does not come to rest.
+    /// If the stack falls under its own weight, the result is a collapse. If the stack cannot be built or does not come
+    /// to rest, the result has no verdict.
     fn refusal(&self) -> Option<CaseResult> {
         let failure = self.standing.as_ref().err()?;
         Some(

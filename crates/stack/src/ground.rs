@@ -65,9 +65,9 @@ impl Scenario {
 
     /// Returns the scenario with the records of its motion loaded into memory, so that it opens no file from then on.
     ///
-    /// `fetch` returns the content of a file by its path; records already in memory are not fetched. A run fetches
-    /// with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as
-    /// "there is no such file".
+    /// `fetch` returns the content of a file by its path; records already in memory are not fetched. A run loads files
+    /// with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as "there is no such
+    /// file".
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -112,8 +112,8 @@ impl Scenario {
         scenario
     }
 
-    /// Returns a record with the record settings of the scenario; without such settings, with the first horizontal
-    /// component and the default processing.
+    /// Returns a record with the record settings of the scenario. If the scenario has no record, the first horizontal
+    /// component with the default processing is used.
     fn recorded(&self, source: RecordSource) -> RecordMotion {
         match &self.motion.source {
             MotionSource::Record(own) => RecordMotion { source, ..own.clone() },

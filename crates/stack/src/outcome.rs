@@ -4,15 +4,15 @@ use crate::assemble::{Assembly, PartKind};
 use crate::scenario::View;
 use crate::watch::{Fates, Loss};
 
-/// Collapse mode of a stack; all except gravity are modes of the shaking-table tests of the paper.
+/// Collapse mode of a stack; all modes except gravity are taken from the shaking-table tests of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollapseMode {
     /// Barrels of the top level are thrown out of their cradles, or off the stack with their rack.
     Ejection,
     /// Two or more upper levels rock and fall together.
     Rocking,
-    /// A rack walks along the barrels below until its rail passes their ends; of the planes, only that along the
-    /// barrels can show it.
+    /// A rack walks along the barrels below until its rail passes the ends of these barrels. Among planar models, only
+    /// the model along the barrels can show this mode.
     RackSliding,
     /// The whole stack overturns about its foot.
     Overturning,
@@ -58,7 +58,7 @@ pub enum Outcome {
         first: String,
         /// Lowest level whose seat or support was lost.
         from_level: u32,
-        /// Highest level that collapsed with it.
+        /// Highest level that collapsed with that level.
         to_level: u32,
     },
     /// Not judged, because a free scene has no seats that could be lost.
@@ -95,7 +95,7 @@ impl Outcome {
     }
 }
 
-/// Judges a run by the first body that left its seat; later losses follow from it.
+/// Judges a run by the first body that left its seat, because later losses of seats follow from the first.
 ///
 /// - The bottom rack: overturning of the whole stack.
 /// - A rack that passed the ends of the barrels below before it tilted, in a longitudinal view: rack

@@ -8,7 +8,8 @@ use crate::assemble::{AssembleError, Assembly, Part, PartKind};
 /// Largest initial overlap (m) of two bodies that can be explained by settlement under their weight.
 pub const ALLOWED: f64 = 2e-3;
 
-/// Number of corners n of the polygon that represents a circle, which lies inside it by at most `r (1 − cos π/n)`.
+/// Number of corners n of the polygon that represents a circle; the polygon lies inside the circle by at most `r (1 −
+/// cos π/n)`.
 const AROUND: usize = 256;
 
 /// Rejects an initial state in which bodies overlap.
@@ -48,7 +49,7 @@ pub struct Boundaries {
 enum Depth {
     /// The part is a barrel.
     Barrel,
-    /// The part stands beside the barrels and touches none.
+    /// The part stands beside the barrels and touches no barrel.
     Beside,
     /// The part can touch all others.
     Any,
@@ -63,7 +64,7 @@ enum Outline {
 }
 
 impl Boundaries {
-    /// Creates the boundaries of all bodies of a model, from the outlines as drawn.
+    /// Creates the boundaries of all bodies of a model, from the outlines that are drawn.
     pub fn new(assembly: &Assembly) -> Self {
         let turn = |i: usize| Rotation2::new(std::f64::consts::TAU * i as f64 / AROUND as f64);
         let around: Vec<Rotation2> = (0..AROUND).map(turn).collect();
@@ -139,7 +140,8 @@ impl Boundaries {
 }
 
 impl Outline {
-    /// Returns the outline at a pose, and its bounding box: least `x`, `z`, greatest `x`, `z` (m).
+    /// Returns the outline at a pose, and the bounding box of the outline: least `x` and `z`, then greatest `x` and `z`
+    /// (m).
     fn at(&self, pose: &Pose<Planar>) -> (Self, [f64; 4]) {
         let rotation = Rotation2::new(pose.orientation);
         let place = |point: &Vec2| pose.position + rotation.apply(*point);
@@ -188,7 +190,7 @@ fn deepest_of(first: &[Solid], second: &[Solid]) -> f64 {
 
 /// Returns the shortest displacement (m) that separates two convex outlines; zero or less if they are apart.
 ///
-/// For two convex polygons it is along a normal of a side of one of them.
+/// For two convex polygons, this displacement is along the normal of a side of one of the polygons.
 fn parting(a: &Outline, b: &Outline) -> f64 {
     match (a, b) {
         (Outline::Polygon(a), Outline::Polygon(b)) => least_along(a, b).min(least_along(b, a)),

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Runs all tasks on all cores and returns their results in the order of the tasks.
 ///
-/// Threads take the tasks in order, so put the long ones first. The assignment to threads does not affect results.
-/// `done` is called with the number of finished tasks.
+/// Threads take the tasks in order, so long tasks should come first. The assignment of tasks to threads does not affect
+/// results. `done` is called with the number of finished tasks.
 pub fn map<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T) -> R + Sync,

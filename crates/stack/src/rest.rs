@@ -31,25 +31,24 @@ impl Restless {
 fn remedy(lack: &Lack) -> String {
     match lack {
         Lack::Support => {
-            "put something under it, or let it fall from the start (run.settle = false)".to_owned()
+            "put a support under the body, or let it fall from the start (run.settle = false)".to_owned()
         }
         Lack::Stiffness { interface, .. } => format!(
             "check whether interface.{interface}.stiffness has the right unit, or take fewer levels"
         ),
         Lack::Friction { interface, .. } => format!(
-            "a larger coefficient of interface.{interface}.friction may hold it, or a place where it \
+            "to hold the body, try a larger coefficient of interface.{interface}.friction, or place the body where it \
              does not slide"
         ),
         Lack::Stick { interface, .. } => format!(
-            "interface.{interface}.friction.law = \"coulomb\" holds it; or start without equilibrium \
+            "set interface.{interface}.friction.law = \"coulomb\" to hold the body, or start without equilibrium \
              (run.settle = false) and let it creep"
         ),
         Lack::Balance { .. } => {
-            "fewer levels, stiffer or wider bearings, or a place further from the \
-                                 edge may keep it upright"
+            "to keep the body upright, try fewer levels, stiffer or wider bearings, or a place further from the edge"
                 .to_owned()
         }
-        Lack::Place => "check whether it has room, and is placed where it should be".to_owned(),
+        Lack::Place => "check whether the body has enough room, and whether its position is right".to_owned(),
         Lack::Time { .. } => {
             "check whether the stiffnesses of its contacts have the right unit, or \
                               start without equilibrium (run.settle = false)"

@@ -90,11 +90,11 @@ pub struct Work {
 pub struct Progress {
     /// Simulated time (s) reached.
     pub time: f64,
-    /// Simulated time (s) at which the run ends, unless rest or a collapse ends it earlier.
+    /// Simulated time (s) at which the run ends unless it ends earlier, at rest or after a collapse.
     pub end_time: f64,
 }
 
-/// Remaining time (s) of a motion above which a run counts as cut short.
+/// Duration (s) of the remaining motion above which a run counts as cut short.
 pub const CUT: f64 = 0.01;
 
 /// Maximum number of steps of a run; about 10⁵ steps of a stack are computed in a second.
@@ -121,12 +121,13 @@ impl Scenario {
         self.run_watched(&mut |_| ControlFlow::Continue(()))
     }
 
-    /// Runs the scenario with an observer that may stop the run; the results up to then are returned.
+    /// Runs the scenario with an observer that may stop the run. If the run is stopped, the results up to that time are
+    /// returned.
     ///
     /// The observer receives the progress every 0.05 s of simulated time.
     ///
     /// # Errors
-    /// As [`Scenario::run`].
+    /// Same as [`Scenario::run`].
     pub fn run_watched(
         &self,
         observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -137,8 +138,8 @@ impl Scenario {
 
     /// Runs the scenario on a given ground with an observer.
     ///
-    /// The scenario's own motion is ignored, but enters the fingerprint of the run. Use [`Scenario::with_record`] for
-    /// a scenario with another record.
+    /// The motion stated in the scenario is ignored, although it enters the fingerprint of the run. Use
+    /// [`Scenario::with_record`] for a scenario with another record.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -190,7 +191,7 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// As [`Scenario::run_on`].
+    /// Same as [`Scenario::run_on`].
     pub fn run_before(
         &self,
         ground: Ground,
@@ -266,7 +267,8 @@ impl Scenario {
 }
 
 impl Run {
-    /// Returns the time (s) of the motion that was left when `run.duration` ended the run; `None` if none was left.
+    /// Returns the duration (s) of the ground motion that remained when `run.duration` ended the run; `None` if nothing
+    /// remained.
     pub fn cut(&self) -> Option<f64> {
         verdict::cut(self.ending, self.ground.end(), self.end_time)
     }
@@ -288,9 +290,9 @@ pub(crate) fn conclude(
     verdict
 }
 
-/// Returns the time step (s) that a scenario sets, or by default the one that its stiffest contact suggests.
+/// Returns the time step (s) that a scenario sets; by default, a step that suits its stiffest contact.
 ///
-/// A stack at another length scale takes the scaled step of the full-size stack, so that both runs are equivalent.
+/// At another length scale, the step is the scaled step of the full-size stack, so that both runs are equivalent.
 ///
 /// # Errors
 /// If the step in the scenario is above the critical step, at which every explicit fixed-step method is unstable.
@@ -311,7 +313,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     })
 }
 
-/// Converts a time step (s) to milliseconds, rounded for print.
+/// Converts a time step (s) to milliseconds, rounded for display.
 fn milliseconds(step: f64) -> f64 {
     (1e9 * step).round() / 1e6
 }
@@ -326,7 +328,7 @@ pub fn method(scenario: &Scenario) -> Method {
     }
 }
 
-/// Returns the thresholds beyond which a body of a scenario counts as off its seat, or as fallen.
+/// Returns the thresholds beyond which a body of a scenario counts as having left its seat, or as fallen.
 pub fn thresholds(scenario: &Scenario) -> Thresholds {
     match &scenario.scene {
         Scene::Stack { outcome, .. } => Thresholds::of(outcome, scenario.run.similitude),
@@ -341,7 +343,8 @@ pub fn thresholds(scenario: &Scenario) -> Thresholds {
     }
 }
 
-/// Returns the latest time (s) at which a run ends, from its scenario and the end of its motion (s), if any.
+/// Returns the latest time (s) at which a run ends, from the scenario and, if there is a motion, the time (s) at which
+/// the motion ends.
 ///
 /// `time_scale` is the time scale of similitude.
 ///
@@ -383,9 +386,9 @@ pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     )))
 }
 
-/// Rejects a recording that would not fit into memory, before any of it is allocated.
+/// Rejects a recording that would not fit into memory, before memory is allocated.
 ///
-/// The rates (Hz) are those of frames and of histories.
+/// The rates (Hz) are the sampling rates of frames and of histories.
 pub(crate) fn check_memory(
     assembly: &Assembly,
     end_time: f64,
@@ -397,10 +400,11 @@ pub(crate) fn check_memory(
     check_kept(frame, (end_time * history_rate + 1.0, channels))
 }
 
-/// Checks the memory for a number of frames, with some numbers for each body, and for the samples of histories.
+/// Checks the memory needed for a number of frames, each with several numbers for each body, and for the samples of
+/// histories.
 ///
 /// # Errors
-/// If they take more than 2 GB.
+/// If the frames and histories take more than 2 GB.
 pub fn check_kept(
     (frames, bodies, numbers): (f64, usize, usize),
     (samples, channels): (f64, usize),
@@ -434,7 +438,7 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 impl Run {
     /// Returns the basis of the contact constants, such as "seat", or "mixed" if they differ.
     ///
-    /// In a stack, only seats count; in a free scene, all interfaces.
+    /// In a stack, only the contact laws of seats are considered; in a free scene, all interfaces.
     pub fn stiffness_basis(&self) -> &'static str {
         let model = &self.assembly.model;
         let seats = |interface: &&Interface<Planar>| {

@@ -1,4 +1,5 @@
-//! First sloshing wave of the wine in a partly filled barrel: its period, and the share of the wine that moves with it.
+//! First sloshing wave of the wine in a partly filled barrel: its period, and the share of the wine that moves with the
+//! wave.
 
 use std::f64::consts::PI;
 
@@ -11,15 +12,15 @@ pub struct Wave {
     pub share: f64,
     /// Length (m) of the pendulum, `g/ω²`.
     pub length: f64,
-    /// Depth (m) of the moving mass below the middle of the tank, if it is modeled as a mass on a spring.
+    /// Depth (m) of the moving mass below the middle of the tank, if the wave is modeled as a mass on a spring.
     pub depth: f64,
 }
 
 /// Number of basis functions on the free surface.
 const TERMS: usize = 60;
 
-/// Half the length of the strip to which the surface is mapped (dimensionless); beyond it, the surface is at the wall
-/// to within rounding error.
+/// Half the length of the strip to which the surface is mapped (dimensionless); the ends of the strip correspond to the
+/// wall to within rounding error.
 const HALF_STRIP: f64 = 16.0;
 
 /// Number of quadrature points.
@@ -28,13 +29,12 @@ const POINTS: usize = 400;
 /// Returns the first wave across a horizontal circular cylinder with a radius (m), filled to a fraction of its volume.
 ///
 /// In the potential theory of small waves, the segment of the circle is mapped to a strip by `x + i z = b tanh(w/2)`,
-/// where `b` is half the width of the surface. In the strip, a function `sin k ξ` on the surface has the normal
-/// derivative `k tanh k β` times itself, where `β` is the angle between surface and wall. The remaining eigenvalue
-/// problem on the surface has a rapidly converging basis.
-/// For a half-full cylinder, the result is `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960).
-/// The limit for a nearly empty one is `ω² R/g = 1`, and for a nearly full one the ice-fishing problem with
-/// `ω² b/g = 2.0061` (Fox and Kuttler 1983).
-/// The mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005, section 5).
+/// where `b` is half the width of the surface. In the strip, the normal derivative of a function `sin k ξ` on the
+/// surface is the function multiplied by `k tanh k β`, where `β` is the angle between surface and wall. The remaining
+/// eigenvalue problem on the surface has a rapidly converging basis. For a half-full cylinder, the result is `ω² R/g =
+/// 1.35573`, in agreement with McIver (1989) and Budiansky (1960). The limit for a nearly empty cylinder is `ω² R/g =
+/// 1`, and the limit for a nearly full cylinder is the ice-fishing problem with `ω² b/g = 2.0061` (Fox and Kuttler
+/// 1983). The moving mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005, section 5).
 pub fn across(radius: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
     let b = sin(angle);
@@ -78,7 +78,7 @@ pub fn across(radius: f64, filled: f64) -> Wave {
     Wave { share: push * push / (norm * inverse * area), length, depth: length }
 }
 
-/// Returns the first wave along a barrel, approximated by that of a rectangular tank.
+/// Returns the first wave along a barrel, approximated by the first wave of a rectangular tank.
 ///
 /// The tank has the length L (m) of the barrel, and is filled to the mean depth h of the wine under its surface:
 /// `ω² = π g/L tanh(π h/L)`, where the fraction `8 tanh(π h/L)/(π³ h/L)` of the mass moves (Ibrahim 2005, section 5).

@@ -16,7 +16,7 @@ pub const UNBALANCED: f64 = 1e-10;
 
 /// Minimum number of stacks or cases of one topology that run in lanes.
 ///
-/// A bundle costs as much as about three single runs, however few of its lanes are used.
+/// Running in lanes costs as much as about three single runs, even if few lanes are used.
 pub(crate) const FEWEST: usize = 3;
 
 /// A stack at rest, ready to be shaken.
@@ -42,7 +42,7 @@ impl Standing {
     }
 }
 
-/// The stack of a scenario, built or settled, or the error that prevented it.
+/// The stack of a scenario, built or settled; or the error that prevented building or settling it.
 #[derive(Debug)]
 pub(crate) struct Stack<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -93,7 +93,7 @@ pub fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure>
 
 /// Settles built stacks and installs their devices; `None` if stopped.
 ///
-/// Stacks of one topology settle side by side, each with the same bits as if it settled alone.
+/// Stacks of one topology settle side by side, and the result of each is bit-identical to settling it alone.
 pub(crate) fn stand_all(
     width: Width,
     stacks: &mut [Stack<'_>],

@@ -1,4 +1,4 @@
-//! Default time step, which seats determine and impacts divide.
+//! Default time step, which is determined by the seats and divided during impacts.
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::model::FORESEEN;
@@ -15,53 +15,58 @@ const SHARE: f64 = 0.3;
 
 /// Largest time step as a fraction of the time 1/γ in which dampers stop a body.
 ///
-/// With more than the whole time, velocities predicted from the last step overshoot. With 0.7, some of a thousand
-/// random stacks that had come to rest (`tests/settling.rs`) drifted by millimeters.
+/// With a fraction above 1, velocities predicted from the last step overshoot. With a fraction of 0.7, some of a
+/// thousand random stacks that had come to rest (`tests/settling.rs`) drifted by millimeters.
 const DAMPING_SHARE: f64 = 0.33;
 
 /// Penetration (m) at full scale at which nonlinear laws are linearized.
 const REFERENCE: f64 = 0.01;
 
-/// Time step during impacts, which last some milliseconds, as a fraction of their critical time step.
+/// Time step during impacts, which last some milliseconds, as a fraction of the critical time step of impacts.
 ///
-/// With it, the energy balance of the paper's cases closes to 3e-5, and halving the step changes the time of no fall by
-/// more than 0.3 ms (`tests/paper.rs`).
+/// With this fraction, the energy balance of the paper's cases closes to 3e-5. Halving the step changes the time of
+/// every fall by at most 0.3 ms (`tests/paper.rs`).
 const IMPACT_SHARE: f64 = 0.4;
 
-/// Penetration up to which impacts take whole steps, as a fraction of [`REFERENCE`]; resting contacts are below it.
+/// Penetration up to which impacts take whole steps, as a fraction of [`REFERENCE`]; the penetration of resting
+/// contacts is smaller.
 ///
-/// With it, the energy residual of the demo along the barrels is 1.1e-5; with four times as much, it is 2.4e-4.
+/// With this value, the energy residual of the demo along the barrels is 1.1e-5; with a value four times as large, it
+/// is 2.4e-4.
 const WHOLE_STEP: f64 = 0.05;
 
-/// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], sticks included.
+/// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
+/// springs.
 ///
-/// Bodies at rest require stability only. At twice that penetration, up to which a resting contact takes whole steps,
-/// the step is 0.83 of the critical one, since the stiffness grows with the root of the penetration.
+/// Bodies at rest require stability only. A resting contact takes whole steps up to twice that penetration. At twice
+/// that penetration, the step is 0.83 of the critical step, since the stiffness grows with the square root of the
+/// penetration.
 const WHOLE_STEP_SHARE: f64 = 0.7;
 
-/// Load on the lightest body through impact contacts, in weights of the heaviest body.
+/// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.
 const LOAD: f64 = 3.0;
 
 /// Largest time step as a fraction of the time in which impact contacts under [`LOAD`] stop the lightest body.
 ///
-/// The damping of these contacts grows with the load; with longer steps, heaps of racks under barrels do not come to
+/// The damping of these contacts grows with the load. With longer steps, heaps of racks under barrels do not come to
 /// rest.
 const LOADED_SHARE: f64 = 1.4;
 
-/// Time step during a contact with a stated restitution, as a fraction of its critical time step.
+/// Time step during a contact with a stated restitution, as a fraction of the critical time step of the contact.
 ///
-/// The damper of the contact engages abruptly within a step, which is an error of first order. With this fraction, a
-/// restitution of 0.7 is kept to 0.002, and one of 0.3 to 0.003, apart from the work of gravity during the contact.
+/// The damper of the contact engages abruptly within a step, which causes an error of first order. With this fraction,
+/// a restitution of 0.7 is reproduced within 0.002, and a restitution of 0.3 within 0.003, apart from the work of
+/// gravity during the contact.
 const RESTITUTION_SHARE: f64 = 0.005;
 
-/// Gap (m) at full scale within which closing contacts with a stated restitution are foreseen: enough for 40 m/s at
-/// steps of 1 ms.
+/// Gap (m) at full scale within which closing contacts with a stated restitution are detected in advance: enough for 40
+/// m/s at steps of 1 ms.
 const FORESEEN_REBOUND: f64 = 0.05;
 
-/// Radius (m) above which a round piece counts as nearly straight: for contacts with constants per seat, and for
-/// others.
+/// Radius (m) above which a round piece counts as nearly straight: first for contacts with constants per seat, then for
+/// other contacts.
 ///
-/// The levers of rounder pieces, such as the staves of the paper's cases, are overestimated by up to four times.
+/// The lever arms of rounder pieces, such as the staves of the paper's cases, are overestimated by up to four times.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
 /// Time step of a model and its division in impacts.
@@ -120,7 +125,7 @@ impl TimeStepping {
 
 /// Largest tolerance at which the adaptive method, whose steps are not divided, reproduces a stated restitution.
 ///
-/// The motion is then within 1 % of the exact one; with 1e-3, the error is 4 %.
+/// At this tolerance, the motion is within 1 % of the exact motion; at 1e-3, the error is 4 %.
 const KEEPS_RESTITUTION: f64 = 1e-6;
 
 /// Returns a warning if the adaptive method is too inaccurate for the restitution that a free scene states.
@@ -140,8 +145,8 @@ pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     })
 }
 
-/// Divides the steps of a free scene while contacts with a stated restitution are closed or about to close, so that
-/// they reproduce it.
+/// Divides the steps of a free scene while contacts with a stated restitution are closed or about to close, so that the
+/// contacts reproduce this restitution.
 ///
 /// `step` is the time step (s), `critical` returns the critical time step (s) of the contacts of an interface at a
 /// penetration (m), and `time_scale` is the time scale of similitude.
@@ -169,7 +174,7 @@ pub(crate) fn critical_of_interface(model: &Model<Planar>, depth: f64, interface
     critical(model, 0.0, depth, &|pair| pair.interface == interface)
 }
 
-/// Returns `true` if a pair touches in impacts only, and carries little load between them.
+/// Returns `true` if a pair touches in impacts only, and carries little load between impacts.
 fn is_impact(model: &Model<Planar>, pair: &ContactPair) -> bool {
     let law = &model.interfaces()[pair.interface].normal;
     let nodes = &model.bodies()[pair.contactor].nodes[pair.nodes];
@@ -197,9 +202,9 @@ fn loaded(model: &Model<Planar>) -> f64 {
 
 /// Returns the critical time step (s) of an assembly whose steps are divided in impacts; infinity if nothing can touch.
 ///
-/// For an explicit method, it is 2/ω with ω² = Σk/m for the stiffest body. The sum is over the springs of all nodes of
-/// one of its boundaries that face one target, and of its force elements. Nonlinear laws are linearized at a
-/// penetration of 1 cm at full scale; `time_scale` is the time scale of similitude.
+/// For an explicit method, this step is 2/ω with ω² = Σk/m for the stiffest body. The sum covers the springs of all
+/// nodes on one boundary of the body that face one target, and the force elements of the body. Nonlinear laws are
+/// linearized at a penetration of 1 cm at full scale; `time_scale` is the time scale of similitude.
 pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let model = &assembly.model;
     let depth = REFERENCE * time_scale * time_scale;
@@ -210,8 +215,8 @@ pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     seats.min(model.substepping().substeps * impacts)
 }
 
-/// Returns the critical time step (s) of the pairs that `of` selects at a penetration (m); force elements add the rate
-/// `held` (1/s²).
+/// Returns the critical time step (s) of the pairs that `of` selects at a penetration (m); `held` (1/s²) is the
+/// additional rate due to force elements.
 fn critical(
     model: &Model<Planar>,
     held: f64,
@@ -227,8 +232,8 @@ fn critical(
 
 /// Returns the largest rate of any body due to its force elements.
 ///
-/// It is the sum of `constant` × (1/mass + arm²/inertia) over the elements, where the constant is their stiffness or
-/// damping.
+/// The rate is twice the sum of `constant` × (1/mass + arm²/inertia) over the elements of a body, where `constant`
+/// returns the stiffness or the damping of an element.
 fn of_elements<'a>(
     model: &'a Model<Planar>,
     loose: impl Iterator<Item = &'a Element<Planar>>,
@@ -294,7 +299,8 @@ fn per_stiffness(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>)
     facing(model, pair, |nodes| if is_straight(nodes) { 1.0 } else { 0.25 }) / body.mass
 }
 
-/// Returns the stiffness (N/m) of a node at a penetration (m), or that of its stick if larger.
+/// Returns the stiffness (N/m) of a node at a penetration (m), or the stiffness of its tangential spring if that is
+/// larger.
 fn stiffness(model: &Model<Planar>, pair: &ContactPair, depth: f64) -> f64 {
     let interface = &model.interfaces()[pair.interface];
     interface.normal.tangent_stiffness(depth).max(interface.friction.stick_stiffness())
@@ -302,7 +308,7 @@ fn stiffness(model: &Model<Planar>, pair: &ContactPair, depth: f64) -> f64 {
 
 /// Returns the rate Σc/m, or Σc d²/I if larger (1/s), from the nodes that face a target at the same time.
 ///
-/// These are half of the nodes around a body on a flat target, and a quarter on a round one.
+/// These are half of the nodes around a body on a flat target, and a quarter of these nodes on a round target.
 fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, depth: f64) -> f64 {
     let damping = model.interfaces()[pair.interface].normal.tangent_damping(depth);
     let flat = match &model.bodies()[pair.target].surfaces[pair.surface].surface {
@@ -353,9 +359,10 @@ fn is_straight(nodes: &[Node<Planar>]) -> bool {
     nodes.iter().all(|node| aside(node) <= 1e-9 * along.dot(along))
 }
 
-/// Returns the mean square lever (m²) of node forces about the center of mass.
+/// Returns the mean square lever arm (m²) of node forces about the center of mass.
 ///
-/// It is zero for a rolling node, which turns a body by friction only, and friction is bounded by the stick.
+/// The result is zero for a rolling node, because such a node turns the body by friction only, and friction is limited
+/// by the tangential spring.
 fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
@@ -369,7 +376,8 @@ fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     }
 }
 
-/// Returns a bound of the lever (m) of the force on a round piece, whose normals pass through its center.
+/// Returns a bound of the lever arm (m) of the force on a round piece, whose normals pass through the center of the
+/// piece.
 ///
 /// The center of nearly straight staves is hundreds of meters away, but their contacts stay between their ends, where
 /// the limits are perpendicular to the outermost normals.
@@ -391,7 +399,7 @@ fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
     arms.map(|arm| arm * arm).sum::<f64>() / count
 }
 
-/// Rounds down to a number with one or two digits: one of a few factors times a power of ten.
+/// Rounds down to a number with one or two digits: a power of ten multiplied by one of a few factors.
 pub fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 10] = [1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0];
     let power = math::pow(10.0, math::log10(value).floor());

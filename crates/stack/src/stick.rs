@@ -1,8 +1,9 @@
 //! Error of the elastic stick under reversing slip.
 //!
 //! An elastic stick reverses its friction gradually, over twice its yield displacement, so every reversal of slip is
-//! delayed by √(4 yield / acceleration). For a block on oscillating ground, this changed the slip by 0.3 to 2.7 times
-//! √(yield / amplitude), up or down (`crates/dynamics/tests/reversal.rs`), so this root is reported as the error.
+//! delayed by √(4 yield / acceleration). For a block on oscillating ground, this delay changed the slip, up or down, by
+//! 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). The square root is therefore reported
+//! as the relative error.
 
 use std::fmt;
 
@@ -11,14 +12,15 @@ use barrelstack_motion::GroundMotion;
 
 use crate::assemble::Assembly;
 
-/// Relative error of slip above which it is reported.
+/// Relative error of slip above which the error is reported.
 const REPORTED: f64 = 0.05;
 
 /// An interface whose elastic stick is too soft for the ground motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
-    /// Displacement (m) at which the sticks of all its contacts at rest yield together.
+    /// Tangential displacement (m) at which the sticks of all contacts of the interface, loaded as at rest, yield
+    /// together.
     yields: f64,
     /// Peak displacement of the ground (m).
     swing: f64,
@@ -64,8 +66,8 @@ impl fmt::Display for SoftStick {
         write!(
             f,
             "{}: the elastic stick yields after {:.2} mm, so reversing slip on ground that moves by \
-             {:.0} mm may be {:.0} % off that of rigid friction; {:.0} times its \
-             friction.tangential_stiffness_ratio reduces this to {:.0} %",
+             {:.0} mm may differ by {:.0} % from slip with rigid friction; {:.0} times its \
+             friction.tangential_stiffness_ratio reduces this error to {:.0} %",
             self.interface,
             1e3 * self.yields,
             1e3 * self.swing,

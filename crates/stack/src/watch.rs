@@ -44,7 +44,7 @@ pub struct Watch<'a> {
     next_look: f64,
     /// Number of accepted states so far.
     states: u64,
-    /// Reason for the end of the run; `None` while it continues, and if it reaches its end time.
+    /// Reason for the end of the run; `None` while the run continues, and if the run reaches its end time.
     pub ending: Option<Ending>,
 }
 
@@ -89,10 +89,11 @@ impl End {
     }
 }
 
-/// Duration (s), at full scale, that a run continues after the first loss of a seat if it ends with its verdict.
+/// Duration (s), at full scale, that a run continues after the first loss of a seat if the run ends by the verdict.
 pub const VERDICT: f64 = 2.0;
 
-/// Returns the duration (s) that a run continues after a collapse, at its time scale; infinity for no limit.
+/// Returns the duration (s) that a run continues after a collapse, at the time scale of the scenario; infinity for no
+/// limit.
 pub fn after_collapse(scenario: &Scenario) -> f64 {
     let run = &scenario.run;
     let by_verdict = (run.until == Until::Verdict).then_some(VERDICT);
@@ -100,9 +101,10 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 }
 
 impl<R: Real> End<R> {
-    /// Observes an accepted state, and returns the lanes whose run is over: after a collapse, and by rest.
+    /// Observes an accepted state. Returns the lanes whose run is over after a collapse, and the lanes whose run is
+    /// over by rest.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(
         &mut self,
         state: &State<Planar<R>>,

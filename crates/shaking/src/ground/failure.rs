@@ -14,10 +14,10 @@ pub enum GroundError {
         path: PathBuf,
         /// Message of the operating system.
         reason: String,
-        /// Advice on obtaining the file, as a clause that continues the reason; may be empty.
+        /// Advice on obtaining the file, worded as a continuation of `reason`; may be empty.
         obtain: String,
     },
-    /// The file is not a record.
+    /// The content of the file cannot be read as a record.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The record lacks the component, or cannot be scaled as specified.
@@ -26,7 +26,7 @@ pub enum GroundError {
     /// The record has no vertical component of the requested name.
     #[error("{error}; for a record without a vertical component set `motion.vertical = false`")]
     Vertical {
-        /// Error that names the missing component and the available ones.
+        /// Error that names the missing component and the available components.
         error: MotionError,
     },
     /// There is no bundled record of this name.
@@ -37,7 +37,7 @@ pub enum GroundError {
         /// The available names.
         known: String,
     },
-    /// The unit is not one of acceleration files.
+    /// The requested unit is not a unit of acceleration files.
     #[error(
         "motion.unit = {unit} m/s² is not a unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
          1 cm/s^2, 1 mm/s^2, 1 ft/s^2 or 1 in/s^2"

@@ -1,4 +1,4 @@
-//! Analytic motions: sines and pulses of a given peak.
+//! Analytic motions: sines and pulses with a given peak.
 
 use barrelstack_motion::{
     GroundMotion, History, IntensityMeasure, MotionError, Pulse as MotionPulse,
@@ -24,8 +24,8 @@ pub(super) fn harmonic(sine: &Sine) -> Result<GroundMotion, MotionError> {
 
 /// Creates a pulse with the peak that the scenario states.
 ///
-/// Each form is defined by an amplitude of acceleration or of velocity. If the scenario states another quantity, the
-/// pulse is scaled to it.
+/// Each form of pulse is defined by an acceleration or by a velocity. If the scenario states the other quantity, the
+/// pulse is scaled so that its peak reaches the stated value.
 pub(super) fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
     let (acceleration, velocity) = (1.0, 1.0);

@@ -4,8 +4,8 @@ use super::record::read;
 use super::{GroundError, component_of, of_spec};
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
 
-/// Returns the motion of the other horizontal component of the record, with the same scale factor; `None` if there is
-/// none.
+/// Returns the specification of the motion in the other horizontal component of the record, with the same scale factor;
+/// `None` if there is no such component.
 ///
 /// # Errors
 /// If the record cannot be read, or cannot be scaled as specified.
@@ -28,7 +28,7 @@ pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundEr
 }
 
 /// Returns the clockwise angle (degrees, 0 to 360, viewed from above) from the component of a motion to the other
-/// horizontal component; `None` if no file states it.
+/// horizontal component; `None` if the directions of the components are unknown.
 ///
 /// # Errors
 /// If the record cannot be read, or lacks the requested component.
@@ -44,8 +44,10 @@ pub fn turn_to_other(spec: &MotionSpec) -> Result<Option<f64>, GroundError> {
     Ok(own.zip(other).map(|(own, other)| (other - own).rem_euclid(360.0)))
 }
 
-/// Returns the name of the other horizontal component: that of another channel that is not vertical or, if the motion
-/// is rotated from two channels, that of the perpendicular direction.
+/// Returns the name of the other horizontal component; `None` if there is none.
+///
+/// The other component is the first other channel that is not vertical or, if the motion is rotated from two channels,
+/// the perpendicular direction.
 fn other(spec: &RecordMotion) -> Result<Option<String>, GroundError> {
     let record = read(spec)?;
     let own = record.component(&component_of(&record, spec.component.as_deref())?)?;

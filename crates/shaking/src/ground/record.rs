@@ -26,7 +26,7 @@ pub fn held(record: &Record) -> Result<FileRef, MotionError> {
 /// Reads a file from disk, for [`MotionSpec::with_files`]; `records.zip/a.AT2` is the file `a.AT2` in an archive.
 ///
 /// # Errors
-/// A message if the file cannot be read, or is larger than [`RECORD_LIMIT`].
+/// If the file cannot be read, or is larger than [`RECORD_LIMIT`].
 pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
     let Some((archive, inner)) = Archive::path_inside(path).filter(|_| !path.exists()) else {
         return system::read(path, RECORD_LIMIT);
@@ -38,8 +38,9 @@ pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 impl MotionSpec {
-    /// Returns the motion with its files loaded by `fetch`, which is called with their paths; files that are already
-    /// loaded are not fetched again.
+    /// Returns the motion with its files loaded.
+    ///
+    /// `fetch` is called with the path of every file that is not loaded yet.
     ///
     /// The error of `fetch` is a message in the style of the operating system, such as "there is no such file".
     ///
@@ -79,7 +80,7 @@ fn unreadable(path: PathBuf, reason: String, obtain: &str) -> GroundError {
     GroundError::Unreadable { path, reason, obtain: obtain.to_owned() }
 }
 
-/// Returns advice on obtaining the file of a record, as a clause that continues the reason of an error.
+/// Returns advice on obtaining the file of a record, worded as a continuation of the reason of an error.
 fn how_to_obtain(record: &RecordMotion) -> String {
     record.obtain.as_ref().map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"))
 }
@@ -148,7 +149,7 @@ pub(super) fn read_file(
 
 /// Returns `true` if a file lies outside the folder of the file that names it.
 ///
-/// Messages do not quote such a file, since a scenario from someone else could name a private one.
+/// Messages do not quote the content of such a file, since a scenario from someone else could name a private file.
 fn is_outside(file: &FileRef) -> bool {
     if file.is_of_caller() {
         return false;

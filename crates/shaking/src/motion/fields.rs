@@ -33,7 +33,7 @@ pub fn record_names() -> Vec<&'static str> {
     barrelstack_motion::BUNDLED.to_vec()
 }
 
-/// Periods, from a microsecond to an hour.
+/// A period, from a microsecond to an hour.
 const PERIOD: Kind =
     Kind::Quantity(&[Dimension::TIME], Range { least: 1e-6, above: false, greatest: 3600.0 });
 const FREQUENCY: Kind = Kind::Quantity(
@@ -48,16 +48,17 @@ table! {
     /// Amplitude of displacement, velocity or acceleration, according to its unit.
     amplitude = Kind::Quantity(&[Dimension::LENGTH, Dimension::VELOCITY, Dimension::ACCELERATION], Range::POSITIVE),
         Default::Required;
-    /// Period; or give the frequency.
+    /// Period; the frequency can be stated instead.
     period = PERIOD, Default::Derived("1 / `frequency`");
-    /// Frequency in place of the period.
+    /// Frequency, as an alternative to the period.
     frequency = FREQUENCY, Default::Derived("1 / `period`");
-    /// Number of cycles, ramps included; or give the duration.
+    /// Number of cycles, including ramps; the duration can be stated instead.
     cycles = Kind::Number(Range::up_to(1e6)), Default::Derived("`duration` / `period`");
-    /// Duration in place of the cycles.
+    /// Duration, as an alternative to the number of cycles.
     duration = Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST)),
         Default::Derived("`cycles` times `period`");
-    /// Cycles over which the amplitude grows from zero, and again falls to zero.
+    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles at
+    /// the end.
     ramp_cycles = Kind::Number(Range::between(0.0, 1e6)), Default::Value("0.0");
     /// Direction of the motion.
     direction = Kind::Choice(names::<Direction>), Default::Value("\"horizontal\"");
@@ -73,9 +74,9 @@ table! {
     /// Peak acceleration or peak velocity, according to its unit.
     amplitude = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY], Range::POSITIVE),
         Default::Required;
-    /// Period; or give the frequency.
+    /// Period; the frequency can be stated instead.
     period = PERIOD, Default::Derived("1 / `frequency`");
-    /// Frequency in place of the period.
+    /// Frequency, as an alternative to the period.
     frequency = FREQUENCY, Default::Derived("1 / `period`");
     /// Time at which the pulse starts.
     start = Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST)), Default::Value("\"0 s\"");
@@ -84,17 +85,17 @@ table! {
     by kind {
         /// Second derivative of a Gaussian, in acceleration.
         "ricker" {}
-        /// Half a sine of acceleration.
+        /// Acceleration in the form of half a sine wave.
         "half-sine" {}
-        /// One sine of acceleration.
+        /// Acceleration in the form of one sine wave.
         "one-sine" {}
-        /// One cosine of acceleration.
+        /// Acceleration in the form of one cosine wave.
         "one-cosine" {}
         /// Constant acceleration.
         "rectangular" {}
-        /// Harmonic under a Gaussian envelope.
+        /// Harmonic wave with a Gaussian envelope.
         "gabor" {
-            /// Width of the envelope in cycles.
+            /// Width of the envelope, as a number of cycles.
             gamma = Kind::Number(Range::up_to(100.0)), Default::Required;
             /// Phase.
             phase = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
@@ -102,7 +103,7 @@ table! {
         }
         /// One forward displacement.
         "cycloid-a" {}
-        /// Forward and back.
+        /// One displacement forward and back.
         "cycloid-b" {}
         /// Several cycles that start and end at rest.
         "cycloid-c" {
@@ -111,7 +112,7 @@ table! {
         }
         /// Velocity pulse of near-fault records.
         "mavroeidis-papageorgiou" {
-            /// Oscillatory character, greater than 1.
+            /// Parameter γ, which determines the oscillatory character of the pulse; greater than 1.
             gamma = Kind::Number(Range { least: 1.0, above: true, greatest: 100.0 }), Default::Required;
             /// Phase.
             phase = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
@@ -122,7 +123,7 @@ table! {
 }
 
 table! {
-    /// Scaling of all components by one factor, given by one of the fields.
+    /// Scaling of all components by the same factor; one of the fields determines the factor.
     pub static SCALE = "scale";
     /// Factor; a negative factor reverses the motion.
     factor = Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }),
@@ -131,8 +132,9 @@ table! {
     pga = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)), Default::Nothing;
     /// Peak horizontal velocity to reach.
     pgv = Kind::Quantity(&[Dimension::VELOCITY], Range::up_to(1e3)), Default::Nothing;
-    /// Any other measure that grows with the motion, to be scaled to `value`: `pgd`, `arias`, `cav`, `cav-std`, `rms`,
-    /// `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in seconds, damping 5 %) or `sa(1.0,0.02)`.
+    /// Any other intensity measure that grows with the motion. The motion is scaled so that the measure reaches
+    /// `value`: `pgd`, `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in
+    /// seconds, damping 5 %) or `sa(1.0,0.02)`.
     measure = Kind::Text, Default::Nothing;
     /// Value of `measure` to reach.
     value = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH], Range::up_to(1e4)),
@@ -165,12 +167,12 @@ table! {
     vertical = Kind::TextOrFalse, Default::Nothing;
     /// File of the vertical motion, relative to the scenario file.
     vertical_record = Kind::Text, Default::Nothing;
-    /// Time step, only for a file that states none.
+    /// Time step, only for a file that does not state its time step.
     time_step = Kind::Quantity(&[Dimension::TIME], Range { least: 1e-6, above: false, greatest: 10.0 }),
-        Default::Derived("that of the file");
-    /// Unit of acceleration, only for a file that states none.
-    unit = Kind::Unit(Dimension::ACCELERATION), Default::Derived("that of the file");
-    /// Counts to one m/s², only for a file that holds counts (miniSEED, SAC).
+        Default::Derived("the time step of the file");
+    /// Unit of acceleration, only for a file that does not state its unit.
+    unit = Kind::Unit(Dimension::ACCELERATION), Default::Derived("the unit of the file");
+    /// Counts per m/s², only for a file that contains counts (miniSEED, SAC).
     sensitivity = Kind::Number(Range::up_to(1e15)), Default::Nothing;
     /// Signal processing of the record.
     processing = Kind::Choice(names::<Processing>), Default::Value("\"default\"");

@@ -48,9 +48,9 @@ pub struct RecordMotion {
     pub component: Option<String>,
     /// Vertical component.
     pub vertical: Vertical,
-    /// Time step for files that state none (s).
+    /// Time step (s) for files that do not state their time step.
     pub time_step: Option<f64>,
-    /// Acceleration of one file unit for files that state none (m/s²).
+    /// Acceleration (m/s²) of one file unit, for files that do not state their unit.
     pub unit: Option<f64>,
     /// Counts per m/s² for files that contain counts (s²/m).
     pub sensitivity: Option<f64>,
@@ -76,7 +76,7 @@ impl RecordMotion {
     }
 }
 
-/// An amplitude and its kind.
+/// Amplitude of a motion: the peak of the displacement, velocity or acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
     /// Peak displacement (m).
@@ -104,9 +104,10 @@ pub struct Sine {
     pub amplitude: Amplitude,
     /// Period (s).
     pub period: f64,
-    /// Number of cycles, ramps included.
+    /// Number of cycles, including ramps.
     pub cycles: f64,
-    /// Cycles over which the amplitude grows from zero, and again falls to zero.
+    /// Number of cycles over which the amplitude grows from zero at the start; it falls to zero over as many cycles at
+    /// the end.
     pub ramp_cycles: f64,
     /// Direction.
     pub direction: Direction,
@@ -117,33 +118,33 @@ pub struct Sine {
 pub enum PulseKind {
     /// Second derivative of a Gaussian in acceleration.
     Ricker,
-    /// Half a sine of acceleration.
+    /// Acceleration in the form of half a sine wave.
     HalfSine,
-    /// One sine of acceleration.
+    /// Acceleration in the form of one sine wave.
     OneSine,
-    /// One cosine of acceleration.
+    /// Acceleration in the form of one cosine wave.
     OneCosine,
     /// Constant acceleration.
     Rectangular,
-    /// Harmonic under a Gaussian envelope.
+    /// Harmonic wave with a Gaussian envelope.
     Gabor {
-        /// Width of the envelope in cycles.
+        /// Width of the envelope, as a number of cycles.
         gamma: f64,
         /// Phase (rad).
         phase: f64,
     },
     /// Cycloid A of Jacobsen and Ayre: one forward displacement.
     CycloidA,
-    /// Cycloid B: forward and back.
+    /// Cycloid B: one displacement forward and back.
     CycloidB,
-    /// Cycloid C with a number of cycles.
+    /// Cycloid C: several cycles that start and end at rest.
     CycloidC {
         /// Number of cycles.
         cycles: u32,
     },
     /// Velocity pulse of Mavroeidis and Papageorgiou (2003).
     MavroeidisPapageorgiou {
-        /// Oscillatory character, greater than 1.
+        /// Parameter γ, which determines the oscillatory character of the pulse; greater than 1.
         gamma: f64,
         /// Phase (rad).
         phase: f64,
@@ -155,7 +156,7 @@ pub enum PulseKind {
 pub struct Pulse {
     /// Form.
     pub kind: PulseKind,
-    /// Amplitude; never a displacement.
+    /// Peak acceleration or peak velocity; never a displacement.
     pub amplitude: Amplitude,
     /// Period (s).
     pub period: f64,
@@ -187,13 +188,13 @@ pub enum Scale {
     Pga(f64),
     /// The motion is scaled to this peak horizontal velocity (m/s).
     Pgv(f64),
-    /// The motion is scaled to a value of any measure that grows with it.
+    /// The motion is scaled so that an intensity measure reaches a value; the measure must grow with the motion.
     Measure {
         /// The measure.
         measure: IntensityMeasure,
         /// Value of the measure to reach (SI units).
         value: f64,
-        /// The component or components measured.
+        /// Components from which the measure is computed.
         of: MeasuredOn,
     },
 }
@@ -203,9 +204,9 @@ named! {
     pub enum MeasuredOn {
         /// The horizontal component that drives the stack.
         Component = "component",
-        /// Both horizontals of the record: median over all directions.
+        /// Both horizontals of the record: the median over all directions.
         RotD50 = "rotd50",
-        /// Both horizontals of the record: largest over all directions.
+        /// Both horizontals of the record: the maximum over all directions.
         RotD100 = "rotd100",
         /// Both horizontals of the record: their geometric mean.
         GeometricMean = "geomean",
@@ -217,7 +218,7 @@ named! {
 pub struct MotionSpec {
     /// Source of the motion.
     pub source: MotionSource,
-    /// Scaling, of all components by the same factor.
+    /// Scaling of the motion, by the same factor for all components.
     pub scale: Scale,
     /// Length scale `λ` of Froude similitude, applied to the motion alone: times are multiplied by `√λ`, accelerations
     /// are unchanged.

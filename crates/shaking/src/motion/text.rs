@@ -20,7 +20,7 @@ pub fn rest() -> MotionSpec {
 /// Reads the ground motion.
 ///
 /// # Errors
-/// The first invalid field, at its place.
+/// Returns the first invalid field, with its place in the file.
 pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let record = reader.file("record")?.map(RecordSource::File);
     let bundled = reader.optional_catalog_name("bundled")?.map(RecordSource::Bundled);

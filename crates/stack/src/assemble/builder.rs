@@ -19,15 +19,16 @@ pub(crate) struct Builder<'a> {
     pub(crate) parts: Vec<Part>,
     /// Moment of inertia (kg·m²) of an unmodified barrel.
     inertia: f64,
-    /// Contact data of each surface of each body, in the order of the bodies.
+    /// Contact data of every surface, grouped by body in the order of the bodies.
     pub(super) touches: Vec<Vec<Touch>>,
     /// Index of the law between barrels and their cradles.
     pub(crate) cradle_law: usize,
-    /// Contact laws of devices, numbered after those of the stack.
+    /// Contact laws of devices, numbered after the contact laws of the stack.
     pub(super) laws: Vec<Interface<Planar>>,
     /// Contact pairs of devices, which use the laws of devices.
     pub(crate) pairs: Vec<ContactPair>,
-    /// Force elements that act from the start, because the stack does not stand without them, each with its device.
+    /// Force elements that act from the start, because the stack does not stand without them, each with the description
+    /// of its device.
     pub(super) held: Vec<(Element<Planar>, &'static Words)>,
     /// Force elements of devices that are installed after the stack has settled.
     pub(crate) loose: Vec<Loose>,
@@ -35,7 +36,7 @@ pub(crate) struct Builder<'a> {
     pub(super) raised: f64,
 }
 
-/// Description of a body before it is added to the stack: full-scale values in a frame of the body.
+/// Description of a body before it is added to the stack. All values are at full scale, in a frame fixed to the body.
 pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) kind: PartKind,
@@ -44,11 +45,11 @@ pub(crate) struct Draft {
     pub(crate) column: u32,
     /// Mass (kg).
     pub(crate) mass: f64,
-    /// Moment of inertia (kg·m²) about the origin of the frame, which is then the center of mass.
+    /// Moment of inertia (kg·m²) about the center of mass, which is then the origin of the frame.
     ///
-    /// `None` to compute the center of mass and the inertia from the solids, all with the same density.
+    /// If `None`, the center of mass and the inertia are computed from the solids, all with the same density.
     pub(crate) inertia: Option<f64>,
-    /// Position of the frame of the body (m).
+    /// Position (m) of the origin of the body frame.
     pub(crate) position: Vec2,
     /// Characteristic size (m).
     pub(crate) size: f64,
@@ -78,8 +79,10 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the number of slices, one barrel wide, into which the plane divides a rack: 1 across the barrels, and
-    /// the number of barrels side by side along them.
+    /// Returns the number of equal slices into which a rack is divided, of which the planar model contains one.
+    ///
+    /// The number is 1 in the plane across the barrels. In the plane along the barrels, it is the number of barrels
+    /// that a rack carries side by side.
     pub(crate) fn side_by_side(&self) -> f64 {
         match self.spec.view {
             View::Transverse => 1.0,
@@ -170,8 +173,8 @@ impl<'a> Builder<'a> {
 
     /// Adds the barrels of a rack, all of the same shape and size (m), and returns their IDs.
     ///
-    /// `places` are the positions of the barrels along the rack (m), relative to `origin` (m); the column is that of
-    /// the rack.
+    /// `places` are the positions of the barrels along the rack (m), relative to `origin` (m); `column` is the column
+    /// of the rack.
     pub(super) fn add_barrels(
         &mut self,
         carrier: BodyId,

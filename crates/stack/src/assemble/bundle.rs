@@ -1,15 +1,15 @@
 //! Number of seats of a rack that one contact of the model represents.
 //!
-//! Seats that stand one behind the other coincide in a plane. Where constants are stated per seat, a contact has the
-//! constants of all the seats that it represents. The same stack is therefore equally stiff, damped and rough in
-//! either plane and in space, however `stack.rack.contact` divides its seats.
+//! Seats that stand one behind the other coincide in a planar model. Where constants are stated per seat, a contact has
+//! the combined stiffness and damping of all seats that it represents. The same stack is therefore equally stiff,
+//! damped and rough in either plane and in space, however `stack.rack.contact` divides its seats.
 //!
 //! | seat | a contact across the barrels | a contact along the barrels | a contact in space |
 //! |---|---|---|---|
 //! | a rail on the crown of a barrel | both rails | one rail | one rail |
 //! | a support of a cradle | both rails | both supports on a rail, which wedge the barrel | one support |
 //! | an end of a rail on the ground | both rails | both ends, divided by the barrels side by side | one end |
-//! | a foot on the ground | both rails, half at each corner | as an end of a rail | – |
+//! | a foot on the ground | both rails, half at each corner | like an end of a rail | – |
 //! | a post | two posts, half at each corner | the same, divided by the barrels side by side | – |
 
 use barrelstack_dynamics::math;
@@ -18,15 +18,16 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack, which stand one behind the other in the plane across the barrels; also that of posts.
+/// Number of rails of a rack, which stand one behind the other in the plane across the barrels; also the number of
+/// posts one behind the other.
 const RAILS: f64 = 2.0;
 
-/// Representation of a stack by a model.
+/// The kind of model that represents a stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shown {
-    /// The plane across or along the barrels.
+    /// A model in the plane across or along the barrels.
     Plane(View),
-    /// Space, where every seat is a contact of its own.
+    /// A model in space, where every seat is a separate contact.
     Space,
 }
 
@@ -35,7 +36,7 @@ pub(super) enum Shown {
 pub(super) struct Bundle {
     /// Number of seats.
     pub(super) count: f64,
-    /// Cosine of the angle between the contact normal and the direction in which the seats press.
+    /// Cosine of the angle between the contact normal and the direction of the forces on the seats.
     pub(super) cosine: f64,
 }
 
@@ -93,14 +94,15 @@ impl Bundle {
         }
     }
 
-    /// Returns the ratio of the normal stiffness and damping of the bundle to those of one seat.
+    /// Returns the normal stiffness and damping of the bundle, divided by the values of one seat.
     pub(super) fn elements(self) -> f64 {
         self.count * self.cosine * self.cosine
     }
 
     /// Returns the friction law of the bundle.
     ///
-    /// A barrel presses on a wedge with more than its weight, and the tangential springs of all seats act in full.
+    /// Seats that form a wedge press on the barrel with more than its weight, which divides the friction coefficient by
+    /// the cosine. The tangential springs of all seats act in full.
     pub(super) fn friction(self, friction: Friction) -> Friction {
         if self.cosine == 1.0 {
             return friction;

@@ -1,10 +1,9 @@
 //! Sloshing wine in partly filled barrels.
 //!
 //! Across the barrels, the pressure between wall and wine acts through the axis of the barrel. The first wave is
-//! therefore a pendulum that hangs from the axis, whatever the motion of the barrel, and the rest of the wine moves
-//! with the axis.
-//! Along the barrels, the first wave is approximated by a mass on a spring, as in a rectangular tank of the same
-//! length and fill. The depth of the mass preserves the center of mass of the wine.
+//! therefore modeled as a pendulum that hangs from the axis, whatever the motion of the barrel, and the rest of the
+//! wine moves with the axis. Along the barrels, the first wave is approximated by a mass on a spring, as in a
+//! rectangular tank of the same length and fill. The depth of the mass preserves the center of mass of the wine.
 
 use std::f64::consts::PI;
 
@@ -15,14 +14,15 @@ use crate::device::Words;
 use crate::scenario::{StackBody, View};
 use crate::slosh::Wave;
 
-/// Description of the elements that hold the wine, which never break and appear in no report.
+/// Description of the elements that hold the wine. These elements never break and appear in no report.
 static WORDS: Words = Words::silent("wine");
 
 /// Damping ratio of a wave, an assumption: viscosity alone gives less in a smooth barrel, and breaking waves give more.
 const DAMPING_RATIO: f64 = 0.01;
 
-/// Natural frequency (rad/s) of the support of the wave mass, 15 Hz: far above that of waves, and no stiffer than
-/// seats.
+/// Natural frequency (rad/s) of the support of the wave mass: 15 Hz.
+///
+/// This is far above the frequency of the waves, while the support is no stiffer than a seat.
 const HOLDING: f64 = 30.0 * PI;
 
 /// Damping ratio of the support of the wave mass, an assumption: wine that strikes the wall does not bounce back.
@@ -49,7 +49,7 @@ pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
     }
 }
 
-/// Takes the mass of a wave from a barrel that holds `wine` (kg), and suspends it in the barrel as a body.
+/// Moves the mass of the wave from a barrel that holds `wine` (kg) to a new body, which is suspended in the barrel.
 fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravity: f64) {
     let scale = builder.scale;
     let mass = wave.share * wine;

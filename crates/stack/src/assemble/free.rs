@@ -59,7 +59,8 @@ pub(super) fn assemble(
     })
 }
 
-/// Returns a force element between two bodies; without a stated length, it fits the distance between its ends.
+/// Returns a force element between two bodies. If no length is stated, the element is as long as the initial distance
+/// between its ends.
 fn element(
     spec: &FreeElement,
     scene: &FreeScene,
@@ -124,7 +125,7 @@ struct Outer<'a> {
     boundaries: Vec<Boundary<'a>>,
 }
 
-/// The surfaces and node sets of a body that belong to one kind, as index ranges.
+/// Index ranges of the surfaces and node sets of a body that have the same kind.
 ///
 /// The surface and the nodes of a part have the same position in both ranges; nodes chosen one by one have no
 /// surface.
@@ -147,7 +148,8 @@ impl Boundary<'_> {
     }
 }
 
-/// Returns the number of the kind of each body; bodies of one kind form the same contact pairs with any other body.
+/// Classifies the bodies and returns the number of the class of each body. Bodies of the same class form the same
+/// contact pairs with any other body.
 fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec<usize> {
     let grouped = scene.interfaces.iter().any(|interface| !interface.within_groups);
     let mut known = HashMap::new();
@@ -169,9 +171,9 @@ fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec
 
 /// Returns the contact pairs of two bodies.
 ///
-/// Two boundaries of the same kind are each tested against the other, except for two circles: the rolling node of one
-/// is enough. Two convex boundaries without nodes are also tested each against the other; of a convex boundary and a
-/// circle, only the rolling node of the circle is tested.
+/// Two boundaries of the same kind are tested in both directions, except for two circles, for which the rolling node of
+/// one circle is sufficient. Two convex boundaries without nodes are also tested in both directions. Between a convex
+/// boundary and a circle, only the rolling node of the circle is tested.
 fn pairs(
     scene: &FreeScene,
     between: [BodyId; 2],

@@ -1,4 +1,4 @@
-//! Conversion of the contact laws of a scenario to those of the model.
+//! Conversion of the contact laws of a scenario to the contact laws of the model.
 
 use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Space};
@@ -7,13 +7,14 @@ use super::Similitude;
 use super::bundle::Bundle;
 use crate::scenario;
 
-/// Penetration (m) at which the tangent stiffness of a nonlinear normal law determines the stiffness of the stick.
+/// Penetration (m) at which the tangent stiffness of a nonlinear normal law determines the stiffness of the tangential
+/// spring.
 const STICK_REFERENCE: f64 = 2e-4;
 
-/// Damping ratio of the stick of a rebound law, for a contact that carries [`STICK_MASS`].
+/// Damping ratio of the tangential spring of a rebound law, at a contact that carries the mass [`STICK_MASS`].
 const STICK_DAMPING_RATIO: f64 = 0.1;
 
-/// Mass (kg) for which the stick of a rebound law has the ratio [`STICK_DAMPING_RATIO`].
+/// Mass (kg) with which the tangential spring of a rebound law has the damping ratio [`STICK_DAMPING_RATIO`].
 const STICK_MASS: f64 = 50.0;
 
 /// Converts a contact law to an interface of the model, whose contacts each represent a bundle of seats.

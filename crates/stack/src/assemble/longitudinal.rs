@@ -1,11 +1,11 @@
 //! Assembly of a stack in the plane along its barrels.
 //!
-//! Barrel profiles lie on the rails of racks, which stand on the profiles below or on the posts of the racks below.
-//! The model is a slice one barrel wide: a rack that carries several barrels side by side contributes a share of
-//! its mass to each slice. A rail is a tube: its upper side carries the barrel above, and its lower side lies on the
-//! barrel below or on the ground. Its contacts are tested at nodes, as in the paper, or exactly, with one contact
-//! element where rail and barrel touch.
-//! Posts stand beside the barrels, at the corners of a rack: they touch racks and the ground, but no barrel.
+//! Barrel profiles lie on the rails of racks, which stand on the profiles below or on the posts of the racks below. The
+//! model is a slice one barrel wide: a rack that carries several barrels side by side contributes a share of its mass
+//! to each slice. A rail is a tube: its upper side carries the barrel above, and its lower side lies on the barrel
+//! below or on the ground. The contacts of the tube are tested at nodes, as in the paper, or exactly, with one contact
+//! element at the point where rail and barrel touch. Posts stand beside the barrels, at the corners of a rack: they
+//! touch racks and the ground, but no barrel.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
@@ -19,14 +19,16 @@ use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 /// Radius (m) of the rounding of a barrel's chime: an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
-/// Cosine of the largest angle (73°) from the normal of a rail's seat at which the nodes of the seat bear.
+/// Cosine of the largest angle (73°) between the direction of a contact and the normal of a rail's seat at which the
+/// nodes of the seat carry the contact.
 ///
-/// Contacts further to the side, such as the chime of a barrel that has slid off, are tested exactly. Among cosines
-/// from 0 to 0.7, tried on seven stacks that include the worst ones known, this one gave the smallest residual of the
+/// Contacts at larger angles, such as the chime of a barrel that has slid off, are tested exactly. Among cosines from 0
+/// to 0.7, tried on seven stacks that include the worst known cases, this value gave the smallest residual of the
 /// energy balance: 8.3e-5 at most.
 const WIDEST: f64 = 0.3;
 
-/// Adds all levels, and returns the height of the stack (m) and the reach of a rack on its supports (m).
+/// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer
+/// supported.
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let (rack, barrel) = (&spec.rack, &spec.barrel);
@@ -83,7 +85,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
 
 /// Returns the spacing (m) of racks, divided by the number of barrels that a rack carries end to end.
 ///
-/// It follows from the length of the barrels, or from that of the frame if the frame is longer.
+/// The spacing follows from the length of the barrels, or from the length of the frame if the frame is longer.
 fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     let pitch = barrel + gap;
     let deep = f64::from(rack.barrels_deep);
@@ -93,7 +95,7 @@ fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     })
 }
 
-/// Adds one rack with its barrels end to end, and returns the ID of the rack and those of the barrels.
+/// Adds one rack with its barrels end to end, and returns the IDs of the rack and of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     profile: &BarrelProfile,
@@ -175,7 +177,8 @@ fn add_rack(
 /// Returns `true` if rails carry rows of nodes.
 ///
 /// A barrel touches the rounded edge of a rail over a few millimeters, and a rail on the ground rests on its two
-/// corners. With constants per seat, each of these contacts is one element, however finely wider seats are divided.
+/// corners. Where constants are stated per seat, each of these contacts is one element, even if wider seats are divided
+/// into many.
 pub(super) fn has_rows(spec: &StackSpec) -> bool {
     spec.rack.contact == SeatContact::Nodes && spec.interfaces.barrel_rack.basis != Basis::Seat
 }
@@ -222,15 +225,16 @@ fn corner_of(rack: &Rack) -> f64 {
 struct Seating {
     /// Height (m) of the middle of the barrel above the mean top of its rails.
     seat: f64,
-    /// Height (m) of the right rail above the mean of both; the left rail is as far below the mean.
+    /// Height (m) of the right rail above the mean height of both rails; the left rail is as far below the mean.
     ///
-    /// The upper side of a barrel mirrors its underside, so on inclined barrels the undersides of the rails rise as
-    /// much as their tops: both rails keep their height, and one sits a little higher than the other.
+    /// The upper side of a barrel mirrors its underside. Between inclined barrels, the underside of a rail is therefore
+    /// raised by as much as its top: both rails keep their thickness, and one rail sits a little higher than the other.
     rise: f64,
 }
 
 impl Seating {
-    /// Computes the position of a barrel on its rails; staves slope, so a rail touches with its rounded inner corner.
+    /// Computes the position of a barrel on its rails. Because staves slope, a rail touches the barrel with its rounded
+    /// inner corner.
     fn of(profile: &BarrelProfile, rack: &Rack) -> Result<Self, AssembleError> {
         let corner = corner_of(rack);
         let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;

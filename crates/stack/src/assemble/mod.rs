@@ -71,15 +71,16 @@ pub struct Outline {
 /// Description of a body of the model.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Name in results, the same as that of the body in the model.
+    /// Name in results, the same as the name of the body in the model.
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,
     /// Level, 1 at the bottom; `None` in a free scene.
     pub level: Option<u32>,
-    /// Column, 1 at the left: racks count columns of racks, other bodies columns of barrels.
+    /// Column, 1 at the left. The column of a rack counts racks; the column of any other body counts barrels.
     pub column: Option<u32>,
-    /// Body that carries this one: the rack of a barrel or tuned mass, the barrel of wine, or the platform of a rack.
+    /// Body that carries this body: the rack that carries a barrel or a tuned mass, the barrel that contains wine, or
+    /// the platform under a rack.
     pub carrier: Option<BodyId>,
     /// Bodies on which a rack above the first level stands; empty for all other bodies.
     pub supports: Vec<BodyId>,
@@ -91,8 +92,8 @@ pub struct Part {
     pub foot: f64,
     /// Outlines to draw, in the body frame.
     pub outlines: Vec<Outline>,
-    /// For each surface, `true` if it stands beside the barrels, out of the plane of the drawing, and so never touches
-    /// a barrel.
+    /// One flag for each surface: `true` if the surface is beside the barrels, out of the plane of the drawing, so that
+    /// it never touches a barrel.
     pub out_of_plane: Vec<bool>,
 }
 
@@ -131,7 +132,7 @@ pub struct Assembly {
     pub parts: Vec<Part>,
     /// Force elements of devices that are installed once the stack has settled.
     pub(crate) loose: Vec<Loose>,
-    /// Time step (s) that the contacts require; impacts divide it further.
+    /// Time step (s) that the contacts require; during impacts, the step is divided further.
     pub step: f64,
     /// Description of the device of each force element, in the order of the model.
     pub devices: Vec<&'static Words>,
@@ -143,10 +144,10 @@ pub struct Assembly {
     pub view: Option<View>,
     /// Largest force (N) between a barrel and a rack that the staves can bear; infinite for a free scene.
     pub stave_capacity: f64,
-    /// Displacement (m) of a rack on the barrels below beyond which it is no longer supported.
+    /// Displacement (m) of a rack, relative to the barrels below, beyond which the rack is no longer supported.
     ///
-    /// Across the barrels, friction no longer holds the rack on the round of the barrel; along the barrels, its rail
-    /// has passed their ends.
+    /// Beyond this displacement across the barrels, friction no longer holds the rack on the round of the barrel.
+    /// Beyond this displacement along the barrels, the rail of the rack has passed the ends of the barrels.
     pub rack_reach: f64,
 }
 
@@ -156,13 +157,13 @@ impl Assembly {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
     }
 
-    /// Returns the force elements of the model, followed by those of devices that are not installed yet.
+    /// Returns the force elements of the model, followed by the force elements of devices that are not installed yet.
     pub fn elements(&self) -> impl Iterator<Item = &Element<Planar>> {
         let loose = self.loose.iter().map(|loose| &loose.element);
         self.model.elements().iter().chain(loose)
     }
 
-    /// ID of the ground, the body that follows the ground motion; every assembly has it.
+    /// ID of the ground, the body that follows the ground motion. Every assembly has this body.
     pub const GROUND: BodyId = 0;
 }
 
@@ -220,7 +221,7 @@ pub enum AssembleError {
 
 /// Largest time step (s) of a free scene with force elements, at full scale.
 ///
-/// With this step, an oscillation with a period of 0.3 s loses a fraction of 5e-5.
+/// With this step, the relative error of an oscillation with a period of 0.3 s is 5e-5.
 const SWINGING_STEP: f64 = 1e-3;
 
 /// Builds the model of a scenario.
@@ -253,12 +254,12 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
 
 /// Returns the contact laws of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL).
 ///
-/// They are the laws of the plane, except that every seat is a contact of its own.
+/// The laws are the same as in a planar model, except that every seat is a separate contact.
 pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
     stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }
 
-/// Converts a contact law of a scenario to that of a model in space.
+/// Converts a contact law of a scenario to a contact law of a model in space.
 pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
     interfaces::interface(name, law, bundle::Bundle::ONE, Similitude::FULL)
 }

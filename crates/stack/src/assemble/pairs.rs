@@ -1,11 +1,11 @@
 //! Contact pairs of a stack: the boundaries that can touch, each pair with its contact law.
 //!
 //! A barrel and its rack touch at the supports of the cradle, and a rack and its support at the underside of the rack:
-//! these are the seats. All other boundaries of these bodies, and any other two bodies, touch in impacts only.
-//! A circular barrel is tested against other solids at its deepest point. Two solids with corners are each tested
-//! against the other, and every contact belongs to one round piece (a corner or an arc).
-//! A face with nodes is tested at its nodes while the body that it carries lies in front of the face. Once that body
-//! has moved beside the face, it is tested exactly, so that no contact counts twice.
+//! these are the seats. All other boundaries of these bodies, and any other two bodies, touch in impacts only. A
+//! circular barrel is tested against other solids at its deepest point. Two solids with corners are each tested against
+//! the other, and every contact belongs to one round piece (a corner or an arc). A face with nodes is tested at its
+//! nodes while the body that it carries lies in front of the face. Once that body has moved beside the face, the
+//! contact between the two is tested exactly, so that no contact counts twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
@@ -62,7 +62,7 @@ impl Pairs<'_> {
         0..self.builder.touches[body].len()
     }
 
-    /// Adds the contact pair of a node set of one body and a surface of another.
+    /// Adds the contact pair between a node set of one body and a surface of another.
     fn push(
         &mut self,
         (contactor, nodes): (BodyId, usize),
@@ -78,7 +78,8 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Adds the exact tests of two solids: a circle is tested against the other solid, other solids against each other.
+    /// Adds the exact tests of two solids: a circle is tested against the other solid; two solids with corners are
+    /// tested in both directions.
     ///
     /// `counts` gives the active side of each test.
     fn exact(
@@ -99,10 +100,10 @@ impl Pairs<'_> {
         }
     }
 
-    /// Returns the face with nodes on which a solid stands on a floor.
+    /// Returns the face with nodes by which a solid stands on a floor.
     ///
-    /// A tube from end to end of a rack has a seat at each end; where constants are stated per seat, it has no row of
-    /// nodes.
+    /// A tube from end to end of a rack has a seat at each end; where constants are stated per seat, the tube has no
+    /// row of nodes.
     fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
         let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
         touch.below.filter(|_| !(per_seat && touch.seat == Seat::OnSupports))
@@ -174,7 +175,8 @@ impl Pairs<'_> {
         }
     }
 
-    /// Adds the tests of a rack against a device; a rack stands on the platform of an isolator as on the ground.
+    /// Adds the tests of a rack against a device. A rack stands on the platform of an isolator in the same way as on
+    /// the ground.
     fn rack_and_device(&mut self, rack: BodyId, device: BodyId) {
         let carried = self.builder.parts[rack].carrier == Some(device);
         for solid in self.solids(rack) {

@@ -8,7 +8,7 @@ use super::solid::{Seat, Solid};
 use super::transverse::TUBE_CORNER;
 use crate::scenario::{Posts, Rack};
 
-/// Play (m) between the cup of a foot and the post in it: an assumption.
+/// Play (m) between a post and the cup of the foot that stands on the post: an assumption.
 const SPIGOT_PLAY: f64 = 0.005;
 
 /// Half the thickness (m) of the lips of a cup: an assumption.
@@ -21,15 +21,16 @@ pub fn cup(rack: &Rack) -> f64 {
 
 /// Returns the displacement (m), relative to the rack below, beyond which the foot of a rack is no longer supported.
 ///
-/// The posts stand at `spacing` (m) from the middle of the rack below.
+/// `spacing` is the distance (m) of the posts from the middle of the rack below.
 pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
     // A foot stands on a post of its own width, so it is off the post once displaced by that width.
     rack.rail_width.min(spacing)
 }
 
-/// Returns the two posts at `spacing` (m) from the middle of a rack, and the cups of the rack over the posts below.
+/// Returns the two posts of a rack at `spacing` (m) from its middle, and the cups with which the rack sits on the posts
+/// below.
 ///
-/// Cups are lips that hold a rack in place until it is lifted off; a rack on the floor has none.
+/// Cups are lips that hold a rack in place until the rack is lifted off; a rack on the floor has no cups.
 pub(super) fn posts_and_cups(
     rack: &Rack,
     posts: &Posts,

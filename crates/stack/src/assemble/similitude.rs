@@ -2,13 +2,14 @@
 
 use barrelstack_dynamics::math;
 
-/// Scale factors from full-scale quantities to those at a length scale λ.
+/// Scale factors from full-scale quantities to quantities at a length scale λ.
 ///
-/// Lengths scale by λ, times by √λ, masses by λ³; accelerations, friction coefficients, damping ratios and
-/// restitutions stay. With these factors, the trajectories at both scales differ only in their units.
+/// Lengths scale by λ, times by √λ, masses by λ³; accelerations, friction coefficients, damping ratios and restitutions
+/// are unchanged. With these factors, the trajectories at both scales are the same apart from the scales of length and
+/// time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similitude {
-    /// λ: model length over full length.
+    /// λ: length of the model divided by the full length.
     pub length: f64,
 }
 
@@ -43,7 +44,7 @@ impl Similitude {
 
     /// Returns the factor of stiffnesses `force / lengthⁿ`, with n = `exponent`.
     ///
-    /// With `per_length`, the factor of stiffnesses per length of boundary.
+    /// If `per_length` is `true`, returns the factor of stiffnesses per length of boundary.
     pub fn stiffness(self, exponent: f64, per_length: bool) -> f64 {
         let divided = math::pow(self.length, exponent);
         self.force() / divided / if per_length { self.length } else { 1.0 }
@@ -51,7 +52,7 @@ impl Similitude {
 
     /// Returns the factor of damping constants `force / velocity`.
     ///
-    /// With `per_length`, the factor of damping constants per length of boundary.
+    /// If `per_length` is `true`, returns the factor of damping constants per length of boundary.
     pub fn damping(self, per_length: bool) -> f64 {
         self.force() / self.time() / if per_length { self.length } else { 1.0 }
     }

@@ -11,12 +11,13 @@ pub(crate) struct Solid {
     /// Position of the frame of the shape (m).
     pub(super) offset: Vec2,
     pub(super) seat: Seat,
-    /// Nodes along the flat underside: positions (m) and tributary lengths (m); empty if it is tested exactly.
+    /// Nodes along the flat underside: positions (m) and tributary lengths (m); empty if the underside is tested
+    /// exactly.
     pub(super) below: Vec<(Vec2, f64)>,
-    /// Nodes along the flat top; empty if it is tested exactly.
+    /// Nodes along the flat top; empty if the top is tested exactly.
     pub(super) above: Vec<(Vec2, f64)>,
-    /// Cosine of the largest angle from the normal of a face with nodes at which a contact belongs to that face: see
-    /// [`Face::widest`].
+    /// Cosine of the largest angle from the normal of a face with nodes at which a contact still belongs to the face;
+    /// see [`Face::widest`].
     pub(super) widest: f64,
     /// `true` if the solid contributes to the mass of its body.
     pub(super) weighs: bool,
@@ -77,8 +78,10 @@ pub(super) struct NodedFace {
     pub(super) face: usize,
 }
 
-/// Value of [`Solid::widest`] below any cosine, for a face that carries a round body: the center of that body alone
-/// decides whether its contact belongs to the face.
+/// Value of [`Solid::widest`] for a face that carries a round body.
+///
+/// The value is below any cosine, so that only the position of the center of the body decides whether its contact
+/// belongs to the face.
 const ROUND: f64 = -2.0;
 
 /// Distance (m) from a face within which a round piece counts as an end of the face.
@@ -134,8 +137,8 @@ impl Solid {
     }
 }
 
-/// Returns a row of nodes along a face at height `z` (m), `half` (m) to either side of `middle` (m), at most
-/// `spacing` (m) apart.
+/// Returns a row of nodes along a face at height `z` (m). The row extends `half` (m) to either side of `middle` (m),
+/// with nodes at most `spacing` (m) apart.
 pub(super) fn row(spacing: f64, middle: f64, half: f64, z: f64) -> Vec<(Vec2, f64)> {
     let parts = (2.0 * half / spacing - 1e-9).ceil().max(1.0);
     let step = 2.0 * half / parts;

@@ -10,11 +10,11 @@ use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
 use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
-/// Lever (m) of the rolling resistance of barrels, which roll on their hoops, on floors, racks and each other: an
+/// Lever arm (m) of the rolling resistance of barrels that roll with their hoops on floors, racks or other barrels: an
 /// assumption.
 const ROLLING_LEVER: f64 = 0.01;
 
-/// Angular velocity (rad/s) at which most of the rolling resistance is reached.
+/// Angular velocity (rad/s) at which the rolling resistance is close to its full value.
 const ROLLING_SPIN: f64 = 0.1;
 
 /// Builds the model of a stack in its plane.

@@ -29,7 +29,8 @@ pub const BAR_RADIUS: f64 = 0.015;
 /// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes never touch.
 pub const TUBE_CORNER: f64 = 0.012;
 
-/// Adds all levels, and returns the height of the stack (m) and the reach of a rack on its supports (m).
+/// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer
+/// supported.
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let rack = &spec.rack;
@@ -81,7 +82,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     bearing + radius * sin
 }
 
-/// Adds one rack with its barrels, and returns the ID of the rack and those of the barrels.
+/// Adds one rack with its barrels, and returns the IDs of the rack and of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     level: u32,
@@ -184,7 +185,7 @@ fn rack_solids(
     Ok(solids)
 }
 
-/// Adds the cradle of a barrel: two bars that stand on the beam, or a trough of bars end to end.
+/// Adds the cradle of a barrel: two bars that stand on the beam, or a trough made of bars placed end to end.
 ///
 /// The lowest point of the barrel is `rack.clearance` above the underside of the rack; `top` is the height (m) of the
 /// top of the beam.
@@ -242,7 +243,7 @@ fn cradle(
     Ok(())
 }
 
-/// Returns the chocks of a rack: bars on its beam, whose round ends are a gap away from the barrels.
+/// Returns the chocks of a rack: bars on its beam, with a gap between their round ends and the barrels.
 fn chocks(
     rack: &Rack,
     chock: Chocks,

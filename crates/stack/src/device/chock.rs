@@ -24,7 +24,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [15.0, 60.0],
         each: Each::Level,
-        source: "four wedges of hardwood, or horns welded to a rack: an assumption",
+        source: "four hardwood wedges, or horns welded to a rack: an assumption",
     },
     many: "chocks",
     ..Words::silent("chock")
@@ -66,7 +66,7 @@ impl Chocks {
     }
 
     /// Does nothing, because chocks are solids of the racks.
-    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "the same for all devices")]
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "common device signature")]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())
     }

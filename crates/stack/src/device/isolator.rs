@@ -69,7 +69,8 @@ section! {
     /// Isolators under the bottom racks.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Isolators;
-    /// A platform under every bottom rack that rolls or slides on the ground, flat or in dishes, between stops.
+    /// A platform under every bottom rack; the platform rolls or slides on the ground between stops, on a flat path or
+    /// in dishes.
     pub static SECTION = "isolator";
     /// Shape of the path on which the platform moves.
     path: Path = Kind::Choice(names::<Path>), Default::Value("\"none\"");
@@ -118,10 +119,10 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
 /// Largest sine of the slope of a dish at its stops.
 const STEEPEST: f64 = 0.5;
 
-/// Half of the angle (rad) that a dish spans, which extends beyond its stops.
+/// Half of the angle (rad) that a dish spans. A dish extends beyond its stops.
 const DISH: f64 = 1.2;
 
-/// Ratio (s) of the damping of bearings, which acts on approach only, to their stiffness: an assumption.
+/// Damping of bearings divided by their stiffness (s): an assumption. The damping acts on approach only.
 const BEARING_DAMPING: f64 = 5e-4;
 
 impl Isolators {
@@ -129,7 +130,8 @@ impl Isolators {
     pub const BEARING: f64 = 0.03;
     /// Thickness (m) of a platform: an assumption.
     pub const PLATE: f64 = 0.04;
-    /// Overhang (m) of a platform beyond the rack, an assumption; the bearings lie the same distance inside its ends.
+    /// Overhang (m) of a platform beyond the rack: an assumption. The bearings lie at the same distance inside the ends
+    /// of the platform.
     pub const MARGIN: f64 = 0.05;
 
     /// Returns `true` if the stack has isolators.
@@ -137,8 +139,8 @@ impl Isolators {
         self.path != Path::None
     }
 
-    /// Returns the contact law of the bearings at one end of a platform; `share` is the fraction that a contact
-    /// represents.
+    /// Returns the contact law of the bearings at one end of a platform; `share` is the fraction of these bearings that
+    /// one contact represents.
     pub fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
         Interface {
@@ -156,8 +158,8 @@ impl Isolators {
         }
     }
 
-    /// Returns the springs and stops of a platform along an axis of the ground; `share` is the fraction of them that
-    /// the element represents.
+    /// Returns the springs and stops of a platform along an axis of the ground; `share` is the fraction of these
+    /// springs and stops that the element represents.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,

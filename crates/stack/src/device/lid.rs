@@ -1,8 +1,8 @@
 //! Lids over the barrels of the top levels, such as a cap rack or bars above the barrels.
 //!
 //! A lid is fixed to the rack that carries the barrel, touches the barrel without friction, and has no mass. A barrel
-//! has to rise before it can roll out of its cradle, which the lid prevents. Once the barrel has moved out from under
-//! the lid, the lid no longer holds it.
+//! has to rise before it can roll out of its cradle, and the lid prevents this rise. Once the barrel has moved out from
+//! under the lid, the lid no longer holds it.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -29,7 +29,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [100.0, 250.0],
         each: Each::Level,
-        source: "a rack turned over, with clamps: an assumption",
+        source: "an upside-down rack with clamps: an assumption",
     },
 };
 
@@ -54,7 +54,7 @@ section! {
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// Reach of a lid to either side of its barrel, as a share of the barrel's radius: an assumption.
+/// Reach of a lid to either side of its barrel, as a fraction of the radius of the barrel: an assumption.
 const HALF_WIDTH: f64 = 0.6;
 
 /// Reads the table of lids.
@@ -98,7 +98,7 @@ impl Lids {
     }
 
     /// Installs a lid over every barrel of the levels that have lids.
-    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
+    #[expect(clippy::unnecessary_wraps, reason = "common device signature")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let lowest = lowest(self.levels, spec.levels);

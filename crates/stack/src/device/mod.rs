@@ -1,4 +1,4 @@
-//! Protective devices of a stack, each with a file of its own and a line in the list below.
+//! Protective devices of a stack. Each device has a file of its own and a line in the list below.
 //!
 //! A device has a table in `[stack]`, the force elements, bodies and contact laws that it adds to a stack, and a
 //! description: display strings, candidate settings, degraded states, and cost.
@@ -116,11 +116,11 @@ pub static FREE: Words = Words { many: "elements", ..Words::silent("element") };
 /// Display strings, candidate settings and cost of a device.
 #[derive(Debug, PartialEq)]
 pub struct Words {
-    /// Singular noun for its elements.
+    /// Singular noun for the elements of the device.
     pub one: &'static str,
-    /// Plural noun; with underscores for spaces, also the key in the summary.
+    /// Plural noun for the elements; with spaces replaced by underscores, it is also the key in the summary.
     pub many: &'static str,
-    /// Name of the force in an element.
+    /// Noun for the force in an element.
     pub force: &'static str,
     /// Verb for the failure of one element, such as "tears".
     pub breaks: &'static str,
@@ -130,12 +130,14 @@ pub struct Words {
     pub broken: &'static str,
     /// Settings worth trying on any stack of at least three levels.
     pub candidates: &'static [Setting],
-    /// Settings of the device when badly kept or fitted, to be applied [over](Setting::over) a candidate.
+    /// Settings that represent a badly maintained or badly fitted device, to be applied [over](Setting::over) a
+    /// candidate.
     pub degraded: &'static [Setting],
     /// Settings, applied [over](Setting::over) a candidate, with which the device has no effect, because it is out of
     /// reach or as slack or weak as possible.
     ///
-    /// Results then equal those without the device bit for bit, given the same time step and its division in impacts.
+    /// The results are then bit-identical to results without the device, if the time step and its division in impacts
+    /// are the same.
     pub idle: &'static [&'static str],
     /// Cost of the device.
     pub cost: Cost,
@@ -157,7 +159,7 @@ impl Setting {
         (self.name.to_owned(), overrides.collect())
     }
 
-    /// Returns the overrides of both settings; where both override a field, only that of `self` is kept.
+    /// Returns the overrides of both settings; where both override a field, only the override of `self` is kept.
     pub fn over(&self, other: &Self) -> Vec<&'static str> {
         let field = |setting: &&'static str| setting.split('=').next();
         let own: Vec<_> = self.overrides.iter().map(field).collect();
@@ -166,7 +168,7 @@ impl Setting {
     }
 }
 
-/// Cost of a device, bought and installed.
+/// Cost of buying and installing a device.
 #[derive(Debug, PartialEq)]
 pub struct Cost {
     /// Lower and upper bound (US$ of 2024) per unit.
@@ -219,7 +221,8 @@ impl Words {
 /// A number of levels, counted from the top; 0 for none.
 const LEVELS: Kind = Kind::Integer(0, 12);
 
-/// Returns the lowest level with a device that is on the top `highest` levels of a stack with `levels` levels.
+/// Returns the lowest level that has a device, if the device is on the top `highest` levels of a stack with `levels`
+/// levels.
 pub fn lowest(highest: u32, levels: u32) -> u32 {
     levels.saturating_sub(highest) + 1
 }
@@ -239,7 +242,7 @@ fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), Inpu
 pub(crate) struct Loose {
     /// The element on the stack as drawn, before it settles.
     pub(crate) element: Element<Planar>,
-    /// Excess (m) of its length over the distance between its ends; negative under pretension.
+    /// Length (m) of the element minus the distance between its ends; negative under pretension.
     give: f64,
     words: &'static Words,
 }

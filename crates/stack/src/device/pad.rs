@@ -1,4 +1,5 @@
-//! Elastomer pads in the cradles, which are softer, more damped and less slippery than wood on steel.
+//! Elastomer pads in the cradles. The pads are softer than the contact of wood on steel, and have more damping and
+//! friction.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
@@ -36,7 +37,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [20.0, 60.0],
         each: Each::Level,
-        source: "eight pads of rubber of 1 cm: an assumption",
+        source: "eight rubber pads 1 cm thick: an assumption",
     },
     many: "pads",
     ..Words::silent("pad")
@@ -87,8 +88,8 @@ impl Pads {
         })
     }
 
-    /// Replaces the contact law of the cradles by that of the pads.
-    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
+    /// Replaces the contact law of the cradles by the contact law of the pads.
+    #[expect(clippy::unnecessary_wraps, reason = "common device signature")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {
             builder.cradle_law = builder.add_cradle("pad", &law);

@@ -1,8 +1,8 @@
 //! Straps that hold the top levels of a stack.
 //!
-//! A strap over a barrel does not slip on it. It is therefore attached where it leaves the barrel, at the ends of the
-//! horizontal diameter, and runs straight down to the rack from there. In the plane along the barrels, both runs
-//! coincide in one line through the middle of the barrel.
+//! A strap over a barrel does not slip on the barrel. In the model, each strap is therefore attached where it leaves
+//! the barrel, at the ends of the horizontal diameter, and runs straight down to the rack from there. In the plane
+//! along the barrels, both runs coincide in one line through the middle of the barrel.
 
 use barrelstack_dynamics::{BodyId, Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -43,7 +43,7 @@ pub(super) static WORDS: Words = Words {
     cost: Cost {
         dollars: [40.0, 120.0],
         each: Each::Level,
-        source: "two ratchet straps of 5 kN with hooks and half an hour of two people: an assumption",
+        source: "two ratchet straps of 5 kN with hooks, and half an hour of work by two people: an assumption",
     },
 };
 
@@ -83,7 +83,7 @@ section! {
     levels: u32 = LEVELS, Default::Value("0");
     /// Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
-    /// Stiffness of one strap, force per elongation; a polyester strap reaches its strength at some 5 to 7 % of its
+    /// Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of some 5 to 7 % of its
     /// length.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
@@ -93,7 +93,7 @@ section! {
     /// Slack of one strap on the stack at rest: the elongation before it pulls.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"0 m\"");
-    /// Force in one strap when it is tightened; the stack settles under it, so that a part of the force is lost.
+    /// Force in one strap when it is tightened; the stack settles under this force, so that part of the force is lost.
     pretension: f64 =
         Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE), Default::Value("\"0 N\"");
     /// Force above which a strap tears permanently; if not given, straps never tear.
@@ -129,13 +129,13 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// Returns one strap over a vertical distance (m) on the stack as drawn, and the excess (m) of its length over the
-    /// distance between its ends once it is tightened on the stack at rest.
+    /// Returns one strap over a vertical distance (m) on the stack as drawn, and the difference (m) between the length
+    /// of the strap and the distance between its ends after it is tightened on the stack at rest.
     ///
-    /// The excess is negative under pretension.
+    /// The difference is negative under pretension.
     ///
     /// # Errors
-    /// If the pretension would stretch it by more than its whole length.
+    /// If the pretension would stretch the strap by more than its whole length.
     pub fn strap<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -164,7 +164,7 @@ impl Straps {
         Ok((strap, give))
     }
 
-    /// Installs the straps from the ground up, those on the left first.
+    /// Installs the straps from the ground up, first the left strap of each pair.
     ///
     /// # Errors
     /// If the pretension would stretch a strap by more than its whole length.

@@ -1,6 +1,7 @@
-//! Ties of racks to structures beside or above them: cables and rods that pull, and may have slack, yield and tear.
+//! Ties of racks to structures beside or above them: cables and rods that only pull. They may have slack, and may yield
+//! and tear.
 //!
-//! Walls and ceilings are assumed to move with the ground; real ones move more.
+//! Walls and ceilings are assumed to move with the ground; real walls and ceilings move more.
 
 use barrelstack_dynamics::{Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -48,13 +49,13 @@ named! {
         Wall = "wall",
         /// The ceiling above both ends of the rack.
         Ceiling = "ceiling",
-        /// The racks beside it on the same level.
+        /// The neighboring racks on the same level.
         Neighbors = "neighbors",
     }
 }
 
 named! {
-    /// Sides of a stack on which racks are tied.
+    /// Sides of a stack on which its racks are tied.
     pub enum Side {
         /// The left side.
         Left = "left",
@@ -81,7 +82,8 @@ section! {
     /// Distance from the end of a rack to the wall or the ceiling; the default is the 18 in that one winery keeps from its walls (Press Democrat 2014).
     distance: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.01, 20.0)), Default::Value("\"45 cm\"");
-    /// Stiffness of one tie, force per elongation, an assumption: a steel cable of 8 mm has some 2 MN divided by its length, and anchors make it softer.
+    /// Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of some 2 MN
+    /// divided by the length of the cable, and anchors make a tie softer.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
     /// Damping of one tie, force per rate of elongation, while it is taut.

@@ -44,7 +44,7 @@ pub(super) static WORDS: Words = Words {
 /// Tuning of a mass to a structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
-    /// Natural frequency divided by that of the structure.
+    /// Natural frequency of the mass divided by the natural frequency of the structure.
     pub frequency: f64,
     /// Damping ratio of the mass at its own natural frequency.
     pub damping_ratio: f64,
@@ -73,7 +73,7 @@ section! {
     /// A mass on a spring and a damper on every rack of a level.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct TunedMass;
-    /// Masses that oscillate in the plane on springs and dampers on the racks of a level, without touching anything.
+    /// Masses on the racks of one level, which oscillate on springs and dampers in the plane and touch no other body.
     pub static SECTION = "tuned_mass";
     /// Mass on each rack of the level; 0 for no tuned masses.
     mass: f64 =
@@ -106,7 +106,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
     Ok(mass)
 }
 
-/// Natural frequency (Hz) of the support of a mass: far above that of any stack, and no stiffer than seats.
+/// Natural frequency (Hz) of the support of a mass. It is far above the natural frequency of any stack, while the
+/// support is no stiffer than a seat.
 const HOLDING: f64 = 15.0;
 
 impl TunedMass {
@@ -165,7 +166,7 @@ impl TunedMass {
     }
 
     /// Installs a mass on every rack of its level, at the center of mass of the rack.
-    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
+    #[expect(clippy::unnecessary_wraps, reason = "common device signature")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let level = self.level_of(spec.levels);

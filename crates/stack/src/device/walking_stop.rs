@@ -1,6 +1,6 @@
 //! Stops that keep racks from walking on the barrels below: hooks over the ends of the barrels, or saddles.
 //!
-//! A rack that has once been lifted above its lips stays disengaged.
+//! Once a rack has been lifted above the lips of its stops, it stays disengaged.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -70,7 +70,7 @@ section! {
     holds: Holds = Kind::Choice(names::<Holds>), Default::Value("\"along\"");
     /// Displacement of a rack from its position at rest, to either side, before it meets a lip: an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"2 cm\"");
-    /// Height of the lips, an assumption: a rack that has risen by more is disengaged.
+    /// Height of the lips: an assumption. A rack that has risen by more than this height is disengaged.
     lip: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1.0)), Default::Value("\"4 cm\"");
     /// Stiffness of the lips at one barrel, force per displacement: an assumption for bent steel plate.
     stiffness: f64 =
@@ -121,7 +121,7 @@ impl WalkingStops {
     /// Installs stops between racks and each of the barrels below.
     ///
     /// # Errors
-    /// If racks stand on racks, which have no barrels below.
+    /// If the racks stand on other racks instead of barrels.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let spec = builder.spec;
         if !self.is_on() {

@@ -140,7 +140,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
     }
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask {
         self.steps += 1;
         if self.steps == PATIENCE {

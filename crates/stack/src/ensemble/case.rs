@@ -41,7 +41,8 @@ pub struct CaseResult {
     pub first_fall: Option<f64>,
     /// Number of barrels.
     pub barrels: usize,
-    /// Time (s) at which each barrel had fallen, by name, in the order of the barrels; `None` if it did not fall.
+    /// Name of each barrel and the time (s) at which the barrel had fallen, in the order of the barrels; `None` for a
+    /// barrel that did not fall.
     pub falls: Vec<(String, Option<f64>)>,
     /// Largest drop (m) of each fallen barrel, in the order of the barrels.
     pub fall_heights: Vec<f64>,
@@ -55,14 +56,16 @@ pub struct CaseResult {
     pub demands: Demands,
     /// Demands over the whole run.
     pub demands_whole_run: Demands,
-    /// Forces between bodies that are supported by or have touched each other, by name, at rest and at their maximum;
-    /// empty if the case could not run or is invalid.
+    /// Name of each pair of bodies that support or have touched each other, and the forces between the two, at rest and
+    /// at their maximum; empty if the case could not run or is invalid.
     pub joints: Vec<(String, Joint)>,
-    /// Largest residual displacement (m) of a barrel relative to the ground: in a plane along x, in space horizontal.
+    /// Largest residual displacement (m) of a barrel relative to the ground: along x in a planar model, horizontal in
+    /// space.
     pub residual_displacement: Option<f64>,
     /// Reason for the end of the run.
     pub ending: Option<Ending>,
-    /// Time (s) of the motion that remained when the run ended; zero if it ended at rest or covered all of the motion.
+    /// Duration (s) of the ground motion that remained when the run ended; zero if the run ended at rest or covered the
+    /// whole motion.
     pub cut: Option<f64>,
     /// Simulated time (s) that the run reached.
     pub end_time: Option<f64>,
@@ -151,8 +154,8 @@ impl CaseResult {
     /// Creates the result of a case whose stack falls under its own weight before it is shaken.
     ///
     /// The result is a collapse at time zero, from the level of the lowest unsupported body (name and level) upward;
-    /// the barrels of these levels count as fallen. `barrels` lists all barrels of the stack, each with its name,
-    /// level, height (m) above the floor, which counts as its drop, and wine (m³).
+    /// the barrels of these levels count as fallen. `barrels` lists all barrels of the stack, each with its name, its
+    /// level, its height (m) above the floor, and its wine (m³). The height counts as the drop of the barrel.
     pub fn fallen_at_rest(
         (first, from_level): (&str, u32),
         levels: u32,

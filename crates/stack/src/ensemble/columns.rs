@@ -18,7 +18,7 @@ pub struct CaseColumn {
     pub role: Role,
     /// Description in a sentence.
     pub meaning: &'static str,
-    /// Returns the value of a case; `None` if it does not apply or is unknown.
+    /// Returns the value of a case; `None` if the value does not apply or is unknown.
     pub get: Get,
 }
 
@@ -136,7 +136,7 @@ columns! {
     outcome "": Outcome Text |case| {
         Some(case.outcome.as_ref().map_or("error", Outcome::kind).to_owned())
     };
-    /// mode of the collapse: ejection, rocking, rack-sliding, overturning, or gravity, which is before the shaking
+    /// mode of the collapse: ejection, rocking, rack-sliding, overturning, or gravity (a collapse before the shaking)
     mode "": Outcome Text |case| match &case.outcome {
         Ok(Outcome::Collapse { mode, .. }) => Some(mode.name().to_owned()),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => None,
@@ -163,7 +163,7 @@ columns! {
     fall_wine "m3": Outcome Text |case| Some(list(&case.fall_wine));
     /// wine in all barrels of the stack
     stack_wine "m3": Outcome Number |case| case.outcome.is_ok().then_some(case.wine);
-    /// peak displacement of the top divided by its height, until the first loss of seat
+    /// largest displacement of the top divided by the height of the stack, until the first loss of seat
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
     /// largest slip of the bottom rack, until the first loss of seat
     base_slip_peak "m": Demand Number |case| case.demands.base_slip_peak;
@@ -173,15 +173,15 @@ columns! {
     rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
     /// largest displacement of a rack on its supports, until the first loss of seat
     rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
-    /// largest normal stress on a bottom barrel divided by the largest at rest, until the first loss of seat
+    /// largest normal stress on a bottom barrel divided by the largest stress at rest, until the first loss of seat
     stress_amplification "": Demand Number |case| case.demands.stress_amplification;
-    /// ratio as in stress_amplification, but of stresses averaged over the part of the boundary that is loaded at rest
+    /// like stress_amplification, but with stresses averaged over the part of the boundary that is loaded at rest
     mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;
     /// largest vertical force between two bodies, until the first loss of seat
     vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.vertical.0);
     /// largest horizontal force between two bodies, until the first loss of seat
     horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.horizontal.0);
-    /// largest vertical force between a barrel and a rack, divided by the capacity of its staves, until the first loss of seat
+    /// largest vertical force between a barrel and a rack, divided by the capacity of the staves, until the first loss of seat
     stave_utilization "": Demand Number |case| case.demands.stave_utilization;
     /// top_drift_ratio over the whole run, including falls
     top_drift_ratio_whole_run "": Outcome Number |case| case.demands_whole_run.top_drift_ratio;
@@ -207,7 +207,7 @@ columns! {
     residual_displacement "m": Demand Number |case| case.residual_displacement;
     /// reason for the end of the case: rest, after-collapse, duration, patience, broken or not-shaken
     ended "": Run Text |case| case.ending.map(|ending| ending.name().to_owned());
-    /// time of the motion that was left when the case ended
+    /// duration of the ground motion that remained when the case ended
     motion_left "s": Run Number |case| case.cut;
     /// simulated time that the case reached
     end_time "s": Run Number |case| case.end_time;

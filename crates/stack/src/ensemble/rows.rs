@@ -1,4 +1,4 @@
-//! Tables of any number of cases, which are created on demand.
+//! Tables of any number of cases, where each case is created on demand.
 //!
 //! Only table rows are kept, so memory holds no more than one batch of cases per core.
 
@@ -27,10 +27,10 @@ pub struct Grounds(Mutex<Vec<(MotionSpec, Arc<Ground>)>>);
 const KEPT: usize = 64;
 
 impl Grounds {
-    /// Returns the ground motion of a scenario, bit-identical to that of [`Scenario::ground`].
+    /// Returns the ground motion of a scenario, bit-identical to the result of [`Scenario::ground`].
     ///
     /// # Errors
-    /// As [`Scenario::ground`].
+    /// Same as [`Scenario::ground`].
     pub fn of(&self, scenario: &Scenario) -> Result<Arc<Ground>, GroundError> {
         let (spec, similitude) = (&scenario.motion, scenario.run.similitude);
         let alone = match (&spec.source, spec.scale) {
@@ -68,9 +68,9 @@ impl Grounds {
 
 /// Runs `count` cases on all cores and returns their table, one row per case; `None` if stopped.
 ///
-/// `make` creates a case from its number, and rows are in the order of these numbers. The observer is called for
-/// every case and may stop the run. A case that cannot be created has a row with the reason as its error. Cases of
-/// one topology must have the same `kind` to run together; results do not depend on it.
+/// `make` creates a case from its number, and the rows are in the order of the numbers. The observer is called for
+/// every case and may stop the run. A case that cannot be created has a row with the reason as its error. Cases of one
+/// topology run together if `kind` returns the same value for them; results do not depend on `kind`.
 ///
 /// ```
 /// use std::ops::ControlFlow;

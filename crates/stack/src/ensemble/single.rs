@@ -1,4 +1,4 @@
-//! Cases with adaptive time steps, which run one after the other because they share no step.
+//! Cases with adaptive time steps, which run one after the other because every case chooses its own steps.
 
 use std::ops::ControlFlow;
 

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Number of parts of a case in which its progress is counted.
+/// Number of equal parts in which the progress of a case is counted.
 const PARTS: f64 = 1e6;
 
 static DONE: AtomicU64 = AtomicU64::new(0);
@@ -17,12 +17,14 @@ static SHAKING: Clock = Clock::new();
 /// Instant from which the clocks measure time.
 static EPOCH: LazyLock<Instant> = LazyLock::new(Instant::now);
 
-/// Progress of the cases of this process, where each case counts by the simulated fraction of its longest duration.
+/// Progress of all cases of this process.
+///
+/// The progress of a case is the simulated time divided by the longest duration of the case.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
-    /// Sum over all cases, finished or not, since the process began.
+    /// Sum of the progress of all cases, finished or not, since the process began.
     pub done: f64,
-    /// Sum over the cases that are running.
+    /// Sum of the progress of the cases that are running.
     pub under_way: f64,
     /// Number of cases that ended before their longest duration, since the process began.
     pub early: f64,
@@ -47,7 +49,7 @@ impl Work {
         }
     }
 
-    /// Returns the work done since an earlier state of it.
+    /// Returns the work done since an earlier call of [`Work::now`].
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
         Self {
@@ -97,13 +99,13 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Starts to count time as bringing stacks to rest.
+    /// Creates a guard that counts the time from now on as settling.
     pub fn settling() -> Self {
         SETTLING.enter();
         Self { shaking: false }
     }
 
-    /// Counts the stacks of a number of cases as brought to rest, and time from now on as shaking.
+    /// Counts the stacks of `cases` cases as brought to rest, and counts the time from now on as shaking.
     ///
     /// Only the first call has an effect.
     pub fn shake(&mut self, cases: usize) {

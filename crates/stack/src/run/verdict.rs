@@ -10,7 +10,8 @@ use crate::watch::Ending;
 
 /// Ratio of the energy residual to the throughput above which a run is invalid.
 ///
-/// It is a hundred times the ratio that leads to a warning, and two thousand times that of an adequate time step.
+/// This limit is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate
+/// time step.
 const BOOKS_BROKEN: f64 = 0.1;
 
 /// Ratio of the energy residual to the throughput above which the reader is warned.
@@ -39,7 +40,8 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Judges a run that ended at `time` (s), and adds warnings about its end; its motion ends at `motion_end` (s).
+    /// Judges a run that ended at `time` (s), and adds warnings about the end of the run. The ground motion ends at
+    /// `motion_end` (s).
     pub fn of(
         ended: Result<Ended, RunError>,
         judge: impl FnOnce() -> Outcome,
@@ -99,7 +101,8 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// Returns the time (s) of the motion that was left when the stated duration ended a run; `None` if none was left.
+/// Returns the duration (s) of the ground motion that remained when the stated duration ended a run; `None` if nothing
+/// remained.
 pub(super) fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     let left = motion_end - time;
     (ending == Ending::Duration && left > CUT).then_some(left)
@@ -109,15 +112,16 @@ pub(super) fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
         Ending::Interrupted => Some(format!(
-            "the run was stopped at {time:.3} s, before its end: its results hold until then, and it has no outcome"
+            "the run was stopped at {time:.3} s, before its end: its results are valid up to that time, and it has no \
+             outcome"
         )),
         // A stack that still stands in the middle of a motion has not survived the motion yet.
         Ending::Duration
             if *outcome == Outcome::Stable && cut(ending, motion_end, time).is_some() =>
         {
             Some(format!(
-                "the run ends at {time:.1} s, but the motion at {motion_end:.1} s: the effect of the rest of the motion \
-                 is not known; leave out run.duration to see all of it"
+                "the run ends at {time:.1} s, but the motion at {motion_end:.1} s: the effect of the rest of the \
+                 motion is not known; leave out run.duration to cover the whole motion"
             ))
         }
         Ending::Patience => Some(format!(

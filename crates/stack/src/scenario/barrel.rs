@@ -17,10 +17,10 @@ use super::writer::Writer;
 use crate::slosh::{self, Wave};
 
 named! {
-    /// Contents of a barrel, and how they rotate with it.
+    /// Contents of a barrel, and whether they rotate with the barrel.
     pub enum Fill {
-        /// Full, with the wine as an ideal fluid: it does not rotate about the axis of the barrel, and only in
-        /// part about a transverse axis.
+        /// Full, with the wine as an ideal fluid: the wine does not rotate about the axis of the barrel, and only part
+        /// of the wine rotates about a transverse axis.
         FullFluid = "full-fluid",
         /// Full, with wine that rotates with the wood like a solid.
         FullFrozen = "full-frozen",
@@ -32,7 +32,8 @@ named! {
 }
 
 impl Fill {
-    /// Returns the fraction of the capacity that is filled with wine; `filled` is that of a partly filled barrel.
+    /// Returns the fraction of the capacity that is filled with wine; `filled` is this fraction for a partly filled
+    /// barrel.
     fn share(self, filled: f64) -> f64 {
         match self {
             Self::FullFrozen | Self::FullFluid => 1.0,
@@ -41,8 +42,8 @@ impl Fill {
         }
     }
 
-    /// Returns the mass (kg) of the wine in a barrel with a capacity (m³); `filled` is the fraction for a partly filled
-    /// one.
+    /// Returns the mass (kg) of the wine in a barrel with a capacity (m³); `filled` is the filled fraction of a partly
+    /// filled barrel.
     fn mass(self, capacity: f64, filled: f64) -> f64 {
         catalog::WINE_DENSITY * capacity * self.share(filled)
     }
@@ -69,7 +70,7 @@ known! {
     filled: f64 = Kind::Number(FILLED), Default::Value("0.9");
     /// Mass of wood and contents.
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-        Default::Derived("the empty mass plus the filled part of the capacity times 990 kg/m^3");
+        Default::Derived("the empty mass plus 990 kg/m^3 times the filled part of the capacity");
     /// Mass of wood and hoops.
     empty_mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
     /// Length over the chimes.
@@ -84,7 +85,7 @@ known! {
     /// Nominal volume.
     capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
     /// Diameter of the circle that represents the barrel in the plane across the barrels.
-    section_diameter: f64 = SIZE, Default::Derived("that of the barrel above the rails of the rack");
+    section_diameter: f64 = SIZE, Default::Derived("the diameter of the barrel above the rails of the rack");
     /// Force between a barrel and a rack at which its staves are crushed: an assumption, from 4.3 MPa for white oak
     /// across the grain (Record 1914) over 10 cm under each of two rails that are 5 cm wide.
     stave_capacity: f64 =
@@ -92,8 +93,8 @@ known! {
 }
 
 impl Barrel {
-    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; it is constant beyond
-    /// the heads.
+    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; beyond the heads, the
+    /// diameter is constant.
     pub fn diameter_at(&self, offset: f64) -> f64 {
         let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
         self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
@@ -117,14 +118,15 @@ impl Barrel {
         Self { mass: mass.unwrap_or(regular), fill, ..self.clone() }
     }
 
-    /// Returns the moment of inertia (kg·m²) about the center of mass in the plane of a view: about the axis of the
-    /// barrel in the transverse view, about a transverse axis in the longitudinal view.
+    /// Returns the moment of inertia (kg·m²) about the center of mass for rotation in the plane of a view. In the
+    /// transverse view, this is the moment about the axis of the barrel; in the longitudinal view, the moment about a
+    /// transverse axis.
     ///
     /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
     /// capacity. The mass of the contents is `mass` minus `empty_mass`. A frozen filling rotates with the wood. An
-    /// ideal fluid does not rotate about the axis, except for half a Stokes layer at 1 Hz. About a transverse axis, it
-    /// rotates like the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the
-    /// ellipsoidal shell filled with liquid).
+    /// ideal fluid does not rotate about the axis, except for half a Stokes layer at 1 Hz. About a transverse axis, an
+    /// ideal fluid rotates like the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb,
+    /// Hydrodynamics, on the ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -198,8 +200,8 @@ impl Barrel {
         }
     }
 
-    /// Returns half the distance (m) between the heads at which the interior has the nominal volume, or half the
-    /// largest possible distance if the interior is smaller.
+    /// Returns half of the distance (m) between the heads at which the interior has the nominal volume. If the interior
+    /// is smaller at the largest possible distance, returns half of that distance.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);
@@ -234,7 +236,8 @@ struct Solid {
 }
 
 impl Solid {
-    /// Integrates the body between an outer and an inner radius over `-half..half`, by Simpson's rule.
+    /// Integrates the body between an outer and an inner radius from `-half` to `half` along the axis, by Simpson's
+    /// rule.
     fn between(half: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(f64) -> f64) -> Self {
         const INTERVALS: u32 = 200;
         let step = half / f64::from(INTERVALS);
@@ -274,12 +277,12 @@ fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     0.5 * thickness * (staves + heads)
 }
 
-const CATALOG: Default = Default::Derived("that of the catalog");
+const CATALOG: Default = Default::Derived("the value of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 
-/// Range of the filled fraction: above it, the surface is too small for a significant wave; below it, the wine is a
-/// puddle.
+/// Range of the filled fraction: above this range, the free surface is too small for a significant wave; below this
+/// range, the wine is a puddle.
 const FILLED: Range = Range::between(0.02, 0.995);
 
 /// Definition of the table of a barrel.
@@ -320,7 +323,7 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
     }
     if 2.0 * barrel.stave_thickness >= barrel.head_diameter.min(barrel.length) {
         let message = format!(
-            "`{}` of {} m leaves no room in a head of {} m",
+            "`{}` of {} m leaves no room in a head with a diameter of {} m",
             path("stave_thickness"),
             barrel.stave_thickness,
             barrel.head_diameter

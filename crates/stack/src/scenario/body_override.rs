@@ -22,7 +22,7 @@ named! {
 }
 
 section! {
-    /// Properties of one body of a stack that differ from the others.
+    /// Properties in which one body of a stack differs from the others.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
@@ -33,14 +33,15 @@ section! {
     body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
-    /// Column, 1 at the left before mirroring; racks count columns of racks, barrels columns of barrels. In both planes
-    /// or in space, columns count across the barrels.
+    /// Column, 1 at the left before mirroring; for a rack, columns of racks are counted; for a barrel, columns of
+    /// barrels. In both planes or in space, columns count across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
-    /// Row along the barrels in space, 1 nearest; racks count rows of racks, barrels rows of barrels.
+    /// Row along the barrels in space, 1 nearest to the viewer; for a rack, rows of racks are counted; for a barrel,
+    /// rows of barrels.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
-    /// Mass of the body, instead of the regular one.
+    /// Mass of the body, instead of the regular mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-    /// Contents of the barrel, instead of the regular ones; for barrels only.
+    /// Contents of the barrel, instead of the regular contents; for barrels only.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
     /// Displacement from the regular position, positive to the right before mirroring.
     offset_x: f64 =
@@ -58,7 +59,8 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
     if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
     {
         let message = format!(
-            "`{}` is for `stack.view = \"spatial\"`; a plane has only one row, and no displacement out of it",
+            "`{}` is for `stack.view = \"spatial\"`; a planar model has only one row, and no displacement out of the \
+             plane",
             reader.path_of(name)
         );
         return Err(reader.inconsistent(name, message));

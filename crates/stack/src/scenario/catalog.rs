@@ -98,7 +98,8 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
-/// Contact constants of a seat: a place where a rack carries a barrel or rack, or is carried itself.
+/// Contact constants of a seat: a place where a rack carries a barrel or another rack, or where the rack itself is
+/// carried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seat {
     /// Stiffness (N/m).
@@ -111,26 +112,26 @@ pub struct Seat {
     pub stick: f64,
 }
 
-/// Stick ratio of seats on barrels: staves bend under normal forces, and are stiffer against tangential forces, which
-/// act in their own surface.
+/// Ratio of the tangential to the normal stiffness of seats on barrels. Staves bend under normal forces, but are
+/// stiffer against tangential forces, which act in the surface of the staves.
 const STICK_ON_BARREL: f64 = 2.0;
 
-/// Stick ratio of seats on the floor: normal forces bend tubes that do not lie flat, while tangential forces act on
-/// steel in contact, which is far stiffer.
+/// Ratio of the tangential to the normal stiffness of seats on the floor. Normal forces bend tubes that do not lie
+/// flat, while tangential forces act on steel in contact, which is far stiffer.
 ///
-/// Four is the largest ratio that needs no smaller time step. With it, friction under five levels reverses early
-/// enough to act like rigid friction.
+/// Four is the largest ratio that needs no smaller time step. With this ratio, friction under five levels reverses
+/// early enough to act like rigid friction.
 const STICK_ON_FLOOR: f64 = 4.0;
 
-/// Stick ratio of seats on posts: smaller than on the floor, because tangential forces turn light racks with the height
-/// of the posts as lever.
+/// Ratio of the tangential to the normal stiffness of seats on posts. The ratio is smaller than on the floor, because
+/// tangential forces turn light racks with the height of the posts as the lever arm.
 ///
 /// With a ratio of four, racks on posts along the barrels vibrate at their time step: after 0.05 s, the energy balance
 /// is off by 1.4e-3, but by 2e-12 with a ratio of two.
 const STICK_ON_POST: f64 = 2.0;
 
-/// Contact constants of the seats of a rack, which are the medians of those of the variants (derivations in
-/// `validation/seats.md`).
+/// Contact constants of the seats of a rack. The constants are the medians over the variants of a stack;
+/// `validation/seats.md` derives them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
     /// Seat of a rack on a barrel: one rail on the crown of a barrel below, or one support of a cradle under a barrel.
@@ -151,7 +152,8 @@ impl Seat {
     }
 }
 
-/// Seats of racks on barrels, whose rails carry each barrel directly above the crowns on which they lie.
+/// Seats of racks on barrels. The rails of these racks carry each barrel directly above the crowns on which the rails
+/// lie.
 const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0, STICK_ON_BARREL),
     floor: Seat::new(1e7, 10.0, STICK_ON_FLOOR),
@@ -159,16 +161,16 @@ const ON_BARRELS: Seats = Seats {
     source: "a shell of oak staves 27 mm thick under a point load beside a hoop, in series with joints that open and \
              with the tube wall: 2.7 to 4.4 MN/m, between the 0.89 MN/m that Candia, de la Llera and Almazán (2008) \
              measured on local barrels and racks and the 12 MN/m of a stave clamped between hoops; on floors, tubes \
-             that lie hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat, \
-             and for an empty rack on a floor: derived, nobody has measured these racks",
+             with a gap of a fraction of a millimeter under them; restitution for a quarter of a full barrel on one \
+             seat, \
+             and for an empty rack on a floor: derived values, since nobody has measured these racks",
 };
 
 /// Seats of racks whose rails span from post to post and bend under their barrels.
 const ON_POSTS: Seats = Seats {
     barrel: Seat::new(6e5, 70.0, STICK_ON_BARREL),
     source: "as for racks on barrels, in series with the 1.2 MN/m under each barrel of a rail of 60 mm square tube \
-             that spans 1.54 m from post to post; steel posts with play, on floors and on each other: derived, nobody \
-             has measured these racks",
+             that spans 1.54 m from post to post; steel posts with play, on floors and on each other: derived values, since nobody has measured these racks",
     ..ON_BARRELS
 };
 
@@ -185,7 +187,8 @@ pub struct CatalogRack {
     pub source: &'static str,
 }
 
-/// Rack for two barrels side by side on two rails: of type 2 across the barrels, and of type 1 along them.
+/// Rack for two barrels side by side on two rails: a rack of type 2 across the barrels, and of type 1 along the
+/// barrels.
 const TWO_BARREL: Rack = Rack {
     base: "two-barrel",
     kind: RackKind::OnBarrels,
@@ -222,13 +225,13 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Stands on the barrels below with feet.",
-        source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
-                 an assumption",
+        source: "`two-barrel` with a foot over each barrel below, as wide as the foot of the reconstructed \
+            `candia-2008`: an assumption",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
         seats: ON_BARRELS,
-        help: "Lies on the barrels below with one bar in place of two.",
+        help: "Lies on the barrels below with one bar instead of two.",
         source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
                  `two-barrel`, the mass is an assumption",
     },
@@ -236,8 +239,8 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Two racks end to end.",
-        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one are those of \
-                 `two-barrel`, the mass is an assumption",
+        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one rack are those of \
+            `two-barrel`, the mass is an assumption",
     },
     CatalogRack {
         rack: Rack {
@@ -256,15 +259,17 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_POSTS,
         help: "Stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
-                 assumption, the post height gives the usual level pitch, the posts stand clear of the barrels on both \
-                 sides of them, and along the barrels within the 38 in on which racks for two barrels stand",
+            assumption; the post height gives the usual level pitch; across the barrels, the posts stand clear of the \
+            barrels on both sides; along the barrels, the posts stand within the 38 in on which racks for two barrels \
+            stand",
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-inclined", incline: 3.5 * PI / 180.0, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
         source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
-                 Filiatrault et al. 2010), there across the shelf, here along the barrels; no maker of such a rack is \
+            Filiatrault et al. 2010), in those tests across the shelf, here along the barrels; no maker of such a \
+            rack is \
                  known: an assumption",
     },
     CatalogRack {

@@ -22,7 +22,7 @@ section! {
     name: String = Kind::Text, Default::Required;
     /// Law of the element.
     kind: ElementLaw = Kind::Choice(ElementLaw::names), Default::Required;
-    /// Names of the two bodies; for the ground, its label.
+    /// Names of the two bodies; the ground is named by its `kind`.
     between: [String; 2] = Kind::Pair, Default::Required;
     /// Attachment point on the first body, relative to the reference point of its shape.
     at: [f64; 2] = POINT, Default::Value("[\"0 m\", \"0 m\"]");
@@ -42,38 +42,39 @@ choices! {
     pub enum ElementLaw, among the fields of ELEMENT;
     /// The laws that a force element can have.
     static LAWS;
-    /// Pulls its bodies together and never pushes them apart.
+    /// A strap, which pulls its bodies together and never pushes them apart.
     Strap = "strap" {
-        /// Distance between its points at which it carries no force.
+        /// Distance between the attachment points at which the element carries no force.
         length: Option<f64> = LENGTH, AT_START;
-        /// Force at which it yields and becomes permanently longer; if not given, it never yields.
+        /// Force at which the strap yields and becomes permanently longer; if not given, the strap never yields.
         yields_at: Option<f64> = FORCE, Default::Nothing;
-        /// Force above which it breaks permanently; if not given, it never breaks.
+        /// Force above which the strap breaks permanently; if not given, the strap never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;
     }
-    /// Holds a distance by pulling and pushing, such as the rod of a pendulum.
+    /// A rod, which keeps a distance by pulling and pushing, such as the rod of a pendulum.
     Rod = "rod" {
-        /// Distance between its points at which it carries no force.
+        /// Distance between the attachment points at which the element carries no force.
         length: Option<f64> = LENGTH, AT_START;
-        /// Damping force per velocity of its second point perpendicular to it.
+        /// Damping force per velocity of the second attachment point perpendicular to the rod.
         sway_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
     }
-    /// A spring, a damper and stops along an axis that rotates with the first body; it carries no force
-    /// while the second point is at its initial position.
+    /// A spring, a damper and stops along an axis that rotates with the first body. The guide carries no force while
+    /// the second attachment point is at its initial position relative to the first body.
     Guide = "guide" {
         /// Inclination of the axis in the first body, counterclockwise.
         axis: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
-        /// Stroke to either side before it meets a stop; if not given, there are no stops.
+        /// Stroke to either side before the guide meets a stop; if not given, there are no stops.
         gap: Option<f64> =
             Kind::Quantity(&[Dimension::LENGTH], Range::NOT_NEGATIVE), Default::Nothing;
         /// Stiffness of the stops.
         stop_stiffness: f64 = STIFFNESS, Default::Value("\"0 N/m\"");
         /// Damping of the stops, on approach only.
         stop_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
-        /// Force above which it breaks permanently; if not given, it never breaks.
+        /// Force above which the guide breaks permanently; if not given, the guide never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;
-        /// Distance from the axis beyond which it disengages permanently; if not given, it never does.
+        /// Distance from the axis beyond which the guide disengages permanently; if not given, the guide never
+        /// disengages.
         reach: Option<f64> = LENGTH, Default::Nothing;
     }
 }
@@ -83,7 +84,7 @@ const LENGTH: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE);
 const FORCE: Kind = Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE);
 const STIFFNESS: Kind = Kind::Quantity(&[Dimension::STIFFNESS], Range::NOT_NEGATIVE);
 const DAMPING: Kind = Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE);
-const AT_START: Default = Default::Derived("the initial distance between its points");
+const AT_START: Default = Default::Derived("the initial distance between the attachment points");
 
 /// Reads the elements between bodies.
 pub(super) fn read(
@@ -134,7 +135,7 @@ fn check_law(reader: &Reader<'_>, law: ElementLaw) -> Result<(), ScenarioError> 
                 Some(_) => ("gap", "`stop_stiffness`, without which its stops hold nothing"),
                 None => ("stop_stiffness", "`gap`, without which there are no stops"),
             };
-            let message = format!("a guide with stops needs {lacks}, too; give both or none");
+            let message = format!("a guide with stops also needs {lacks}; give both or neither");
             Err(reader.inconsistent(given, message))
         }
         ElementLaw::Strap { yields_at: Some(yields_at), strength: Some(strength), .. }

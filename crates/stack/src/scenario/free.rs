@@ -35,15 +35,16 @@ section! {
 }
 
 section! {
-    /// Viscous drag on a body, proportional to its absolute velocity rather than that relative to the shaking ground.
+    /// Viscous drag on a body, proportional to the absolute velocity of the body, not to its velocity relative to the
+    /// shaking ground.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
     /// Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).
     pub static VISCOUS = "viscous";
-    /// Drag force per velocity of the center of mass.
+    /// Drag force divided by the velocity of the center of mass.
     linear: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Drag moment per angular velocity.
+    /// Drag moment divided by the angular velocity.
     angular: f64 =
         Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
 }
@@ -53,7 +54,7 @@ section! {
 pub struct FreeBody {
     /// Unique name.
     pub name: String,
-    /// Kind of the body, by which interfaces refer to it.
+    /// Kind by which interfaces refer to the body.
     pub kind: String,
     /// Outline of the body.
     pub shape: Shape,
@@ -86,7 +87,7 @@ pub struct FreeBody {
 /// An additional massless boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
-    /// Kind of the boundary, by which interfaces refer to it.
+    /// Kind by which interfaces refer to the boundary.
     pub kind: String,
     /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` for nodes only.
     pub shape: Option<Shape>,
@@ -119,7 +120,7 @@ pub struct FreeScene {
 }
 
 impl FreeBody {
-    /// Returns the kind, shape and nodes of all boundaries of the body, beginning with its own shape.
+    /// Returns the kind, shape and nodes of every boundary of the body, beginning with the shape of the body itself.
     pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
         let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
         let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));
@@ -136,7 +137,7 @@ const MOST_NODES: f64 = 2e6;
 table! {
     /// An additional massless boundary of a body.
     pub static BOUNDARY = "boundary";
-    /// Kind of the boundary, by which interfaces refer to it.
+    /// Kind by which interfaces refer to the boundary.
     kind = Kind::Text, Default::Required;
     /// Outline that other bodies touch, relative to the reference point of the body's shape; if not given, the boundary
     /// consists of its nodes only.
@@ -148,7 +149,8 @@ table! {
 /// Kind of the field `nodes` of a boundary.
 const NODES_KIND: Kind = Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES);
 const NODES_DEFAULT: Default = Default::Derived(
-    "rolling for a circle, corners for straight sides, 1 cm apart otherwise; must be given without a shape",
+    "`rolling` for a circle, `corners` for straight sides, otherwise nodes 1 cm apart; must be given if there is no \
+     shape",
 );
 
 table! {
@@ -156,7 +158,7 @@ table! {
     pub static BODY = "body";
     /// Unique name.
     name = Kind::Text, Default::Required;
-    /// Kind of the body, by which interfaces refer to it; several bodies may be of one kind.
+    /// Kind of the body. Interfaces refer to bodies by their kind, and several bodies may have the same kind.
     kind = Kind::Text, Default::Derived("the name");
     /// Outline of the body.
     shape = Kind::Table(&SHAPE), Default::Required;
@@ -164,7 +166,7 @@ table! {
     mass = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE), Default::Required;
     /// Moment of inertia about the center of mass.
     inertia = Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
-        Default::Derived("that of a uniform plate with this outline");
+        Default::Derived("the moment of inertia of a uniform plate with this outline");
     /// Center of mass, relative to the reference point of the shape.
     center_of_mass = Kind::Point(Dimension::LENGTH), Default::Derived("the centroid of the outline");
     /// Initial position of the reference point of the shape.
@@ -187,7 +189,8 @@ table! {
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
-/// Returns the message that the columns of a body would have the same names as others.
+/// Returns the message that the columns of a body would have the same names as the columns of another body or of the
+/// ground.
 pub(super) fn clash(name: &str, column: &str) -> String {
     format!(
         "the columns of \"{name}\" would be called {column}_…, like those of another body or of the ground; give the \
@@ -261,7 +264,7 @@ fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError
     // The default inertia, that of a uniform plate, holds about the centroid only.
     if inertia.is_none() && center_of_mass.is_some_and(|center| center != uniform.centroid) {
         let message = format!(
-            "the center of mass is away from the centroid [{} m, {} m], so the body is not uniform; give `{}` too",
+            "the center of mass differs from the centroid [{} m, {} m], so the body is not uniform; give `{}` too",
             uniform.centroid[0],
             uniform.centroid[1],
             reader.path_of("inertia")
@@ -341,7 +344,7 @@ fn read_interfaces(
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
             let message = format!(
-                "the order of kinds with exact or rolling nodes does not matter, and \"{}\" with \"{}\" is already \
+                "the order of two kinds with exact or rolling nodes does not matter, and \"{}\" with \"{}\" is already \
                  stated above; keep one",
                 between[1], between[0]
             );
@@ -354,7 +357,7 @@ fn read_interfaces(
     Ok(interfaces)
 }
 
-/// Returns the kind, shape and nodes of all boundaries of a kind.
+/// Returns the kind, shape and nodes of every boundary that has the given kind.
 fn of_kind<'a>(
     bodies: &'a [FreeBody],
     kind: &'a str,

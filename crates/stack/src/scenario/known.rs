@@ -1,10 +1,10 @@
-//! Declaration of types whose default values are those of a catalog entry.
+//! Declaration of types whose default values come from a catalog entry.
 
-/// Declares a type whose fields in a file override those of a catalog entry.
+/// Declares a type whose fields in a file override the fields of a catalog entry.
 ///
-/// Members without a field in files come first, followed by the fields as in [`section!`](barrelstack_input::section),
-/// each with its key in files if that differs from the name of the member. A field that a file leaves out takes the
-/// value of the catalog.
+/// Members without a field in files come first. The fields follow as in [`section!`](barrelstack_input::section), each
+/// with the key in files if the key differs from the name of the member. A field that a file leaves out takes the value
+/// of the catalog.
 macro_rules! known {
     (
         $(#[$about:meta])*

@@ -13,13 +13,14 @@ use crate::system;
 /// Maximum size of a scenario file (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Maximum number of bytes that are read of a file, so that the size of one that is too large can be reported.
+/// Maximum number of bytes that are read from a file. This number exceeds [`SIZE_LIMIT`], so that the size of a file
+/// that is too large can be reported.
 const READ_LIMIT: usize = 256 << 20;
 
 /// Maximum number of scenarios in a chain of `extends`.
 const CHAIN_LIMIT: usize = 8;
 
-/// Scenarios that `extends` may name.
+/// Kinds of scenarios that `extends` may name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Access {
     /// Files and built-in scenarios.
@@ -41,10 +42,10 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`].
+    /// Same as [`Scenario::parse`].
     #[expect(
         clippy::should_implement_trait,
-        reason = "the trait is implemented, too, but this needs no import"
+        reason = "the trait is also implemented, but this function needs no import"
     )]
     pub fn from_str(text: &str) -> Result<Self, ScenarioError> {
         Self::parse("scenario", text, &[])
@@ -54,7 +55,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::load`].
+    /// Same as [`Scenario::load`].
     pub fn from_path(path: impl AsRef<Path>) -> Result<Self, ScenarioError> {
         Self::load(path.as_ref(), &[])
     }
@@ -64,9 +65,10 @@ impl Scenario {
     /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
     /// its folder.
     ///
-    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is TOML; anything
-    /// else is taken as text. List items are addressed by name (`body.block.mass`), interfaces by pair
-    /// (`interface.block-ground.stiffness`), and both by number from 1. `extends` may name a built-in scenario only.
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is read as TOML;
+    /// a value that is not TOML is taken as text. List items are addressed by name (`body.block.mass`), interfaces by
+    /// pair (`interface.block-ground.stiffness`), and both by number from 1. `extends` may name a built-in scenario
+    /// only.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -88,11 +90,11 @@ impl Scenario {
         read(source_name, text.as_bytes(), overrides, Access::BuiltinOnly)
     }
 
-    /// Reads a scenario as [`Scenario::parse`] does, from bytes that are expected to be UTF-8.
+    /// Reads a scenario like [`Scenario::parse`], from bytes that are expected to be UTF-8.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and if the bytes are not UTF-8.
+    /// Same as [`Scenario::parse`]; also if the bytes are not UTF-8.
     pub fn parse_bytes(
         source_name: &str,
         bytes: &[u8],
@@ -105,14 +107,14 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse_bytes`], and if a file cannot be read.
+    /// Same as [`Scenario::parse_bytes`]; also if a file cannot be read.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
         let bytes = read_file(path, Place::Whole { file: name.clone() })?;
         read(&name, &bytes, overrides, Access::Files)
     }
 
-    /// Reads a scenario from a tree of values, such as those of another program.
+    /// Reads a scenario from a tree of values, such as the values that another program passes.
     ///
     /// Relative paths are relative to the current folder, and errors name the path of the value.
     ///
@@ -135,7 +137,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::load`].
+    /// Same as [`Scenario::load`].
     pub fn from_tree(name: &str, mut tree: Table) -> Result<Self, ScenarioError> {
         let mut sources = Sources::default();
         add_source(&mut sources, name, &[], PathBuf::new())?;
@@ -149,7 +151,8 @@ impl Scenario {
         finished(sources, table)
     }
 
-    /// Returns the scenario with further overrides as in [`Scenario::parse`], which replace earlier ones.
+    /// Returns the scenario with further overrides as in [`Scenario::parse`]. They replace earlier overrides of the
+    /// same fields.
     ///
     /// A record in memory ([`Scenario::with_record`]) is not part of the text and is not kept.
     ///

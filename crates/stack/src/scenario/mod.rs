@@ -1,7 +1,7 @@
 //! Scenarios: bodies, ground motion and run settings.
 //!
 //! A scenario is a TOML text in which every quantity carries its unit. Reading it gives either plain data in SI units,
-//! fully checked, or one error with its place.
+//! fully checked, or one error with its place in the text.
 //!
 //! ```
 //! use barrelstack_stack::scenario::{Scenario, View};
@@ -120,7 +120,7 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Sources of the values of a scenario, by which errors find their place; ignored in comparisons.
+/// Sources of the values of a scenario, from which errors determine their place in a file. Ignored in comparisons.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>);
 
@@ -146,7 +146,7 @@ pub enum Scene {
         stack: StackSpec,
         /// Thresholds of a collapse.
         outcome: OutcomeSpec,
-        /// Differences between its variants.
+        /// Random differences between the variants of the stack.
         imperfections: Imperfections,
     },
     /// Arbitrary planar bodies.
@@ -156,7 +156,7 @@ pub enum Scene {
 }
 
 impl Scenario {
-    /// Replaces an outdated title by one that is generated from bodies and motion.
+    /// Replaces an outdated title by a title that is generated from the bodies and the motion.
     pub(crate) fn retitle(&mut self) {
         self.title = title::of(self);
     }
@@ -178,7 +178,7 @@ impl Scenario {
         }
     }
 
-    /// Returns the place at which one of these fields was written; `None` if none was.
+    /// Returns the place at which one of the given fields was written; `None` if none of them was written.
     ///
     /// Overrides take precedence over the file itself, and the file over the files that it extends; otherwise, earlier
     /// fields take precedence.
@@ -204,8 +204,8 @@ impl Scenario {
         }
     }
 
-    /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` if it was not written
-    /// as text.
+    /// Returns a quantity with its unit as the user wrote it, for the setting at `path`; `None` if the quantity was not
+    /// written as text.
     pub fn as_written(&self, path: &str) -> Option<&str> {
         if let tree::Value::Text(text) = &self.node(path)?.value { Some(text) } else { None }
     }
@@ -219,7 +219,8 @@ impl Scenario {
 
     /// Returns the scenario without title and motion as a table under a key, for another file such as a study.
     ///
-    /// Runs end by the criterion `until`, because the end in the scenario was chosen for its own motion.
+    /// Runs end by the criterion `until`, because the criterion in the scenario was chosen for the motion of that
+    /// scenario.
     pub fn to_toml_table(&self, key: &str, until: Until) -> String {
         let plain = |key: &str, value| tree::Entry {
             key: key.to_owned(),
@@ -244,9 +245,9 @@ impl Scenario {
 
     /// Returns the fingerprint of the scenario without its title: the 64-bit FNV-1a hash of the resolved text.
     ///
-    /// Two scenarios with the same fingerprint describe the same run, however they were written. Records
-    /// enter with their bytes if these are in memory ([`Scenario::with_records`]), as in every run, and otherwise with
-    /// their path as written.
+    /// Two scenarios with the same fingerprint describe the same run, however they were written. A record enters the
+    /// hash with its bytes if they are in memory ([`Scenario::with_records`]), as in every run, and otherwise with its
+    /// path as written.
     pub fn fingerprint(&self) -> u64 {
         let motion = self.motion.by_content();
         let untitled = Self { title: "-".to_owned(), motion, ..self.clone() };
@@ -255,7 +256,8 @@ impl Scenario {
 
     /// Returns all values except the title, defaults included, in the order of the resolved text.
     ///
-    /// List items are identified as in overrides: by name or by the pair they join, otherwise by number from 1.
+    /// List items are identified as in overrides: by name or by the pair of kinds that they join, otherwise by number
+    /// from 1.
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = barrelstack_input::listing::settings(&root::write(self), &ROOT);
         settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));

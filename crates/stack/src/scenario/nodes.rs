@@ -16,11 +16,11 @@ use super::writer::Writer;
 pub enum Nodes {
     /// A node at each corner.
     Corners,
-    /// Nodes along the boundary, corners included, at most this far apart (m).
+    /// Nodes along the boundary, including the corners, with at most this spacing (m).
     Spacing(f64),
-    /// This number of nodes on each side, or around a curved shape.
+    /// The given number of nodes on each side, or around a curved shape.
     Count(u32),
-    /// One node at the deepest point of a circle in the target.
+    /// One node, at the point of a circle that is deepest in the target.
     Rolling,
     /// No nodes: convex outlines touch each other at their deepest points, wherever these lie.
     Exact,
@@ -53,10 +53,10 @@ named! {
 const MOST_NODES: f64 = 20_000.0;
 
 table! {
-    /// Contact nodes of a boundary, stated by one of the fields.
+    /// Contact nodes of a boundary, given by one of the fields.
     pub static NODES = "nodes";
-    /// Nodes at the corners; one node at the deepest point of a circle; or exact contact, where convex outlines touch
-    /// each other at their deepest points if both bodies state so.
+    /// Nodes at the corners; one node at the deepest point of a circle; or exact contact, in which convex outlines
+    /// touch each other at their deepest points, if both bodies have this rule.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
     /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),
@@ -109,7 +109,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     let cradle = parts.iter().any(|part| matches!(part.shape, Shape::Cradle { .. }));
     match rule {
         Nodes::Exact if cradle => {
-            let message = "a cradle is not convex; give it nodes a stated distance apart";
+            let message = "a cradle is not convex; set a spacing for its nodes";
             return Err(nodes.inconsistent("rule", message.to_owned()));
         }
         Nodes::Rolling if !circle => {

@@ -1,4 +1,4 @@
-//! Pairs of kinds of bodies that touch in a stack, each declared once with its contact law.
+//! Pairs of kinds of bodies that can touch in a stack. Each pair is declared once, with its contact law.
 
 use super::catalog::{Seat, Seats};
 use super::error::ScenarioError;
@@ -10,14 +10,14 @@ use super::writer::Writer;
 
 /// Impact stiffness (N/m^1.5) of pairs with barrels, and of seats at the end of their stroke.
 ///
-/// It stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within 15 mm. This is an
-/// assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
+/// With this stiffness, a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) is stopped within 15
+/// mm. This is an assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
 /// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.
 ///
-/// It stops a rack without barrels that falls from the top of six levels within 10 mm; several contacts of the rack
-/// share the load of a barrel that lands on it.
+/// With this stiffness, a rack without barrels that falls from the top of six levels is stopped within 10 mm; several
+/// contacts of the rack share the load of a barrel that lands on it.
 const LIGHT: f64 = 5e8;
 
 /// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient,
@@ -108,24 +108,24 @@ macro_rules! pairs {
 pairs! {
     /// Bottom rack on the ground.
     RackGround rack_ground "rack-ground" = INTERFACE, HEAVY, 0.5,
-        "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 of design and the 0.57 to 0.65 of tests \
-         of steel on concrete";
+        "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 used in design and the 0.57 to 0.65 \
+         found in tests of steel on concrete";
     /// Barrel in its cradle, and barrel under the rack above.
     BarrelRack barrel_rack "barrel-rack" = INTERFACE, HEAVY, 0.3,
-        "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 of \
-         wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
+        "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 \
+         found for wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
     /// Rack that stands on the rack below.
     RackRack rack_rack "rack-rack" = INTERFACE, HEAVY, 0.3, "steel on steel, assumption";
     /// Barrel against barrel.
     BarrelBarrel barrel_barrel "barrel-barrel" = IMPACT, HEAVY, 0.4, "wood on wood, assumption";
     /// Barrel on the ground.
     BarrelGround barrel_ground "barrel-ground" = IMPACT, HEAVY, 0.4, "wood on concrete, assumption";
-    /// Barrel against a rack on which it has no seat, or off its seat.
+    /// Barrel against a rack on which it has no seat, or against its own rack after leaving its seat.
     FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.3,
-        "as barrel on rack";
-    /// Rack on the ground, whose seat is elsewhere.
+        "the same as for a barrel on a rack";
+    /// Fallen rack on the ground, whose seat is on a higher level.
     FallenRackGround fallen_rack_ground "fallen-rack-ground" = IMPACT, LIGHT, 0.5,
-        "as rack on ground";
+        "the same as for a rack on the ground";
     /// Rack against a rack on which it does not stand.
     FallenRackRack fallen_rack_rack "fallen-rack-rack" = IMPACT, LIGHT, 0.3,
         "steel on steel, assumption";

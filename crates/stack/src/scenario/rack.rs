@@ -1,4 +1,4 @@
-//! Racks: the frames that carry the barrels of one level, as seen in either plane.
+//! Racks: the frames that carry the barrels of one level, as modeled in either plane.
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
@@ -13,7 +13,7 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// Support of a rack by the level below.
+/// Support on which a rack of an upper level stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RackKind {
     /// Rack-on-barrel: the rack lies on the barrels of the level below.
@@ -47,9 +47,9 @@ choices! {
 named! {
     /// Division of a seat into contact elements.
     ///
-    /// With constants per node, the division affects the physics; with constants per seat, the elements share them.
+    /// With constants per node, the division affects the physics. Constants per seat are divided among the elements.
     pub enum SeatContact {
-        /// Nodes along flat undersides, and one at each support of a cradle, as in the paper.
+        /// Nodes along flat undersides, and one node at each support of a cradle, as in the paper.
         Nodes = "nodes",
         /// One element at each place where two bodies touch.
         Element = "element",
@@ -59,8 +59,8 @@ named! {
 }
 
 impl SeatContact {
-    /// Returns the number of elements with the constants of a node that one element in the plane across the barrels
-    /// represents, because they stand one behind the other.
+    /// Returns the number of elements, each with the constants of a node, that one element in the plane across the
+    /// barrels represents, because these elements stand one behind the other.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,
@@ -95,7 +95,7 @@ known! {
     pub struct Rack {
         /// Name of the catalog rack on which the rack is based.
         pub base: &'static str,
-        /// Support of the rack on the level below.
+        /// Support on which the rack stands.
         pub kind: RackKind,
         /// Posts; present exactly when `kind` is [`RackKind::OnRacks`].
         pub posts: Option<Posts>,
@@ -127,20 +127,21 @@ known! {
     beam_height: f64 = size(1e-3, 10.0), CATALOG;
     /// Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet.
     foot_height: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), CATALOG;
-    /// Support of a barrel by the rack.
+    /// Cradle in which the rack carries a barrel.
     cradle: Cradle = Kind::ChoiceOrTable(Cradle::names, "type", &CRADLE), CATALOG;
     /// Half the length of a foot.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
     /// Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each of
-    /// two rails. Every element has the constants stated per node; constants stated per seat are divided among them.
+    /// two rails. Every element has the constants stated per node; constants stated per seat are divided among the
+    /// elements.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
-    /// Penetration of a seat beyond which the impact law of the two bodies acts as well.
+    /// Penetration of a seat beyond which the impact law of the two bodies also acts.
     seat_stroke: f64 = size(1e-4, 1.0), CATALOG;
     /// Distance between contact nodes on flat undersides.
     node_spacing: f64 = size(1e-3, 0.5), CATALOG;
 }
 
-const CATALOG: Default = Default::Derived("that of the catalog");
+const CATALOG: Default = Default::Derived("the value of the catalog");
 
 const fn size(least: f64, greatest: f64) -> Kind {
     Kind::Quantity(&[Dimension::LENGTH], Range { least, above: false, greatest })
@@ -178,7 +179,7 @@ static BASES: [Variant; catalog::RACKS.len()] = {
     bases
 };
 
-/// Returns the seat constants of the catalog rack that a table names.
+/// Returns the seat constants of the catalog rack on which the rack of a table is based.
 pub(super) fn seats(reader: &Reader<'_>) -> Result<catalog::Seats, ScenarioError> {
     let known = catalog::rack(reader.chosen()?).ok_or_else(|| reader.missing("base"))?;
     Ok(known.seats)

@@ -11,7 +11,7 @@ use super::root::ROOT;
 
 /// Returns the reference of all tables and fields of a scenario file, followed by the units and the catalog.
 ///
-/// Each field is listed with kind, range, default and meaning.
+/// Each field is listed with its kind, range, default and meaning.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
     text.push_str(&of::of_tables(&ROOT, &[], ""));

@@ -51,7 +51,7 @@ table! {
             interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
             /// Thresholds that define a collapse.
             outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
-            /// Random differences of the variants of the stack from the stated values.
+            /// Random differences between the variants of the stack and the stated values.
             imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
 
         }
@@ -80,7 +80,7 @@ table! {
     }
 }
 
-/// Reads the whole scenario; `fallback_title` is used when the file has none.
+/// Reads the whole scenario; `fallback_title` is used if the file states no title.
 pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario, ScenarioError> {
     reader.integer("schema")?;
     let title = reader.optional_text("title")?.unwrap_or_else(|| fallback_title.to_owned());

@@ -10,7 +10,7 @@ use super::field::{Default, Kind, Range, names};
 use super::reader::Reader;
 use super::tree::Table;
 
-/// Fields of `[run]` that end a run early.
+/// Fields of `[run]` that determine the end of a run.
 pub const ENDS: [&str; 3] = ["until", "duration", "stop_after_collapse"];
 
 choices! {
@@ -50,7 +50,8 @@ named! {
     pub enum Accuracy {
         /// For statistics of many cases.
         Screening = "screening",
-        /// Falls are within 10 ms and drifts within 1 % of those with time steps ten times shorter.
+        /// The times of falls are within 10 ms, and the drifts within 1 %, of the results with time steps ten times
+        /// shorter.
         Standard = "standard",
         /// For single cases in which every number matters.
         Fine = "fine",
@@ -58,7 +59,7 @@ named! {
 }
 
 impl Accuracy {
-    /// Returns the time step relative to that of the standard accuracy.
+    /// Returns the time step divided by the time step of the standard accuracy.
     pub fn step(self) -> f64 {
         match self {
             Self::Screening => 1.25,
@@ -82,17 +83,22 @@ section! {
     pub struct RunSpec;
     /// Settings of the run.
     pub static RUN = "run", by method of METHODS;
-    /// Criterion that ends the run: "rest" when the ground is still, or below 0.02 g after a collapse, and all bodies have come to rest; "verdict" 2 s after the first loss of a seat, or when a standing stack has come to rest on ground that stays below 0.02 g; "duration" when `duration` is over. Variants of a run that ends by "rest" end by `imperfections.until`.
+    /// Criterion that ends the run. "rest" ends it when the ground is still, or below 0.02 g after a collapse, and all
+    /// bodies have come to rest. "verdict" ends it 2 s after the first loss of a seat, or when a standing stack has
+    /// come to rest on ground that stays below 0.02 g. "duration" ends it when `duration` is over. Variants of a run
+    /// that ends by "rest" end by `imperfections.until`.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
-    /// Longest time after the motion that a run continues if it ends by rest.
+    /// Maximum time for which a run that ends by "rest" continues after the end of the motion.
     patience: f64 = Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Value("\"30 s\"");
-    /// Simulated time; for a run that ends by rest, the longest.
+    /// Simulated time; for a run that ends by "rest", the maximum simulated time.
     duration: Option<f64> = Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
-        Default::Derived("that of the motion plus `patience`, or plus 5 s if the run ends by duration");
+        Default::Derived("the duration of the motion plus `patience`, or plus 5 s if the run ends by duration");
     /// Time integration method.
     method: Method = Kind::Choice(Method::names), Default::Value("\"velocity-verlet\"");
-    /// Accuracy of the motion if no step is given: with "standard", falls are within 10 ms and drifts within 1 % of those with steps ten times shorter; "screening" takes steps 1.25 times as long, "fine" a quarter as long.
+    /// Accuracy of the motion if no step is given: with "standard", the times of falls are within 10 ms, and the drifts
+    /// within 1 %, of the results with steps ten times shorter. The steps of "screening" are 1.25 times as long, the
+    /// steps of "fine" a quarter as long.
     accuracy: Accuracy = Kind::Choice(names::<Accuracy>), Default::Value("\"standard\"");
     /// Time step, or first step of an adaptive method; "auto" derives it from the contacts and the accuracy. The step is divided during impacts.
     step: Option<f64> =
@@ -135,7 +141,9 @@ section! {
     /// Distance of the center of a body below its position at rest beyond which the body has fallen.
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
-    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which it has left them; the reach ends across the barrels where friction cannot hold the rack on their round, along them where its rail passes their ends.
+    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
+    /// barrels. Across the barrels, the reach ends where friction cannot hold the rack on the round of the barrels;
+    /// along the barrels, where the rail of the rack passes the ends of the barrels.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
     /// Inclination of a rack above which its level has rocked over.
     rocking_angle: f64 =
@@ -145,7 +153,7 @@ section! {
         Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"30 deg\"");
 }
 
-/// Reads the run settings; `until` is the default for the end of the run.
+/// Reads the run settings; `until` is the default of the field `until`.
 pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, ScenarioError> {
     let mut run = RunSpec::read_fields(&reader)?;
     if reader.leaves_out("until") {

@@ -41,7 +41,7 @@ choices! {
         /// Corners in order around the polygon; sides must not cross.
         vertices: Vec<[f64; 2]> = Kind::Points(Dimension::LENGTH), Default::Required;
     }
-    /// A circular trough open upward; the reference point is the center of the circle.
+    /// A circular trough that is open at the top; the reference point is the center of the circle.
     Cradle = "cradle" {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
@@ -60,7 +60,7 @@ choices! {
     }
     /// Several outlines joined into one rigid body; the reference point is the local origin.
     Compound = "compound" {
-        /// The outlines; where they overlap, the mass counts twice.
+        /// The outlines; where two of them overlap, the mass of the overlap counts twice.
         parts: Vec<PartShape> = Kind::Tables(&PART), Default::Required;
     }
 }

@@ -39,7 +39,7 @@ pub struct SpatialScene {
     pub interfaces: Vec<FreeInterface>,
 }
 
-/// Maximum number of bodies of a free scene in space, because all pairs of bodies are listed.
+/// Maximum number of bodies of a free scene in space. The number is limited because all pairs of bodies are listed.
 const MOST_BODIES: usize = 500;
 
 /// Maximum number of pairs of solids of a free scene in space, whether an interface names them or not.

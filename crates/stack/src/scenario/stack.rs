@@ -20,9 +20,9 @@ use super::writer::Writer;
 /// The plane of a planar model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum View {
-    /// The plane across the barrels, which are circles.
+    /// The plane across the barrels, in which barrels are circles.
     Transverse,
-    /// The plane along the barrels, which show their profile.
+    /// The plane along the barrels, in which barrels show their profile.
     Longitudinal,
 }
 
@@ -37,9 +37,9 @@ pub struct StackSpec {
     pub columns: u32,
     /// Number of barrels per level along the barrels, if both planes are requested; `None` for a single plane.
     ///
-    /// With both planes, `view` is the transverse one.
+    /// If both planes are requested, `view` is the transverse plane.
     pub columns_along: Option<u32>,
-    /// Properties of the stack in space, if it is modeled there; `None` for a plane.
+    /// Properties of the stack in space; `None` if the stack is modeled in a plane.
     ///
     /// In space, `view` is the transverse plane.
     pub space: Option<InSpace>,
@@ -68,7 +68,7 @@ impl StackSpec {
         }
     }
 
-    /// Returns the overrides of a kind of body at a level and column, later entries last.
+    /// Returns the overrides of a kind of body at a level and column, in the order of the file.
     pub fn changes_of(
         &self,
         body: StackBody,
@@ -80,9 +80,10 @@ impl StackSpec {
         })
     }
 
-    /// Returns the stack as a planar model of a stack in space.
+    /// Returns the planar model of a stack that is modeled in space.
     ///
-    /// Overrides of single rows are dropped, and in the plane along the barrels those of single columns as well.
+    /// Overrides of single rows are dropped. In the plane along the barrels, overrides of single columns are dropped as
+    /// well.
     #[must_use]
     pub fn in_plane(&self, view: View) -> Self {
         let mut plane = Self { view, space: None, ..self.clone() };
@@ -172,8 +173,9 @@ const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// Fields of the stack other than devices and overrides.
 const OWN: [Field; 9] = fields! {
-    /// Model of the stack: in the plane across the barrels, in the plane along them, in both planes one after the
-    /// other, each under a horizontal component of the record, or in space ("spatial") under all components at once.
+    /// Model of the stack: in the plane across the barrels, in the plane along the barrels, in both planes one after
+    /// the other, each under one horizontal component of the record, or in space ("spatial") under all components at
+    /// once.
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
@@ -183,8 +185,8 @@ const OWN: [Field; 9] = fields! {
     /// Number of barrels per level along the barrels, if the model is in both planes or in space.
     columns_along = COLUMNS,
         Default::Derived("in both planes and in space, the number that one rack carries; must not be given otherwise");
-    /// Angle by which the stack is turned, counterclockwise as seen from above; at zero, `motion.component` shakes it
-    /// across its barrels and the other horizontal component along them.
+    /// Angle by which the stack is turned, counterclockwise as seen from above; at zero, `motion.component` shakes the
+    /// stack across the barrels, and the other horizontal component shakes it along the barrels.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
         Default::Derived("in space, 0 deg; must not be given otherwise");
     /// The barrel.
@@ -245,7 +247,7 @@ pub(super) fn read(
     let azimuth = reader.optional_quantity("azimuth")?;
     if planes != Planes::Spatial && azimuth.is_some() {
         let message = "`stack.azimuth` is for `stack.view = \"spatial\"`; in a plane, `motion.component` states what \
-                       shakes the stack, and \"az:30\" is the component in a direction"
+                       shakes the stack, and \"az:30\" is the component at an azimuth of 30 degrees"
             .to_owned();
         return Err(reader.inconsistent("azimuth", message));
     }
@@ -313,7 +315,8 @@ fn check_geometry(
     }
     if rack.barrels > 1 && barrel.section_diameter > rack.pitch {
         let message = format!(
-            "barrels of {} m overlap on a rack pitch of {} m; set `stack.rack.pitch` and `stack.rack.width`",
+            "barrels with a diameter of {} m overlap at a rack pitch of {} m; set `stack.rack.pitch` and \
+             `stack.rack.width`",
             rounded(barrel.section_diameter),
             rack.pitch
         );
@@ -321,7 +324,7 @@ fn check_geometry(
     }
     if 2.0 * rack.rail_half_spacing + rack.rail_width > barrel.length {
         let message = format!(
-            "rails at {} m from the middle lie beyond the end of a barrel of {} m; set \
+            "rails at {} m from the middle lie beyond the end of a barrel {} m long; set \
              `stack.rack.rail_half_spacing`",
             rack.rail_half_spacing, barrel.length
         );

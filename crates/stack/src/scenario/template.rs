@@ -11,7 +11,7 @@ use super::{MotionSpec, Scenario, merge, root};
 
 /// A scenario that is read repeatedly with different values.
 ///
-/// Values carry the place where they were written, so that an error can name it.
+/// Values carry the place where they were written, so that an error can name this place.
 #[derive(Debug)]
 pub struct Template {
     sources: Sources,
@@ -21,7 +21,7 @@ pub struct Template {
 
 /// A parsed file that contains a scenario among other tables, such as a study.
 pub struct Opened {
-    /// The file and those that it extends.
+    /// The file and the files that it extends.
     pub sources: Sources,
     /// The whole content of the file.
     pub table: Table,
@@ -67,7 +67,7 @@ impl Opened {
 
     /// Returns the scenario in the table with the given key, overlaid on the scenario that it extends.
     ///
-    /// `motion` is `true` if the scenario states its motion; otherwise, it gets none.
+    /// If `motion` is `true`, the scenario keeps its motion; otherwise, its ground stays at rest.
     ///
     /// # Errors
     /// If an extended scenario cannot be read.
@@ -138,7 +138,7 @@ impl Template {
         Some(keys.join("."))
     }
 
-    /// Returns the scenario with values set at paths.
+    /// Returns the scenario with the given values set at the given paths.
     ///
     /// # Errors
     /// Returns the first problem found, with the place where the value was written.
@@ -164,7 +164,7 @@ impl Template {
         root::read(reader, &self.title)
     }
 
-    /// Returns the value at a path of a scenario, defaults included; `None` if there is none.
+    /// Returns the value at a path of a scenario, including defaults; `None` if there is no value at this path.
     pub fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
         let mut table = root::write(scenario);
         let mut keys = path.split('.').map(str::trim).peekable();

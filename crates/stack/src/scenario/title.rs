@@ -22,8 +22,8 @@ pub(super) fn of(scenario: &Scenario) -> String {
 }
 
 impl Scenario {
-    /// Returns the scenario with the event of its record in the title, if the title is generated; reads the record
-    /// file.
+    /// Returns the scenario with the event of its record in the title, if the title is generated. Reads the file of the
+    /// record.
     ///
     /// # Errors
     /// If the record cannot be read.
@@ -62,7 +62,7 @@ fn stands(stack: &StackSpec) -> String {
     format!("{barrels} on {levels}{straps}{others}{view}")
 }
 
-/// Returns a description of the motion and its scale; a record is named by its event, if known.
+/// Returns a description of the motion and its scale; a record is named by its event if the event is known.
 pub fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
     let motion = &scenario.motion.source;
     let scaled = match scenario.motion.scale {

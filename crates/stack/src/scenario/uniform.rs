@@ -69,7 +69,7 @@ impl Shape {
         }
     }
 
-    /// Returns the length of the boundary (m); for a barrel profile, that of the enclosing box.
+    /// Returns the length of the boundary (m); for a barrel profile, the perimeter of the enclosing box.
     pub fn perimeter(&self) -> f64 {
         match self {
             Self::Rectangle { width, height, corner_radius } => {
@@ -108,7 +108,7 @@ fn compound(parts: &[PartShape]) -> Uniform {
     Uniform { centroid, square_radius: placed().map(about).sum() }
 }
 
-/// Returns the polar moment of a rectangle with rounded corners divided by its area (m²).
+/// Returns the polar moment of area of a rectangle with rounded corners, divided by the area of the rectangle (m²).
 fn rounded_rectangle(w: f64, h: f64, r: f64) -> f64 {
     let (square, quarter) = (r * r, 0.25 * PI * r * r);
     // Each square corner is replaced by a quarter of a disk; the moments of both are shifted from their own centroids.
@@ -150,7 +150,8 @@ fn polygon(vertices: &[[f64; 2]]) -> Uniform {
     Uniform { centroid, square_radius: second / area - shift }
 }
 
-/// Returns the area (m²) and the polar moment of area (m⁴) between `±r(x)`, where `r` is the parabola of the barrel.
+/// Returns the area (m²) and the polar moment of area (m⁴) of the region between `-r(x)` and `r(x)`, where `r` is the
+/// parabola of the barrel.
 fn barrel_profile(length: f64, bilge: f64, head: f64) -> (f64, f64) {
     // With r = b - s u² and x = L u / 2, integrated over u from 0 to 1 and doubled.
     let (b, s, half) = (0.5 * bilge, 0.5 * (bilge - head), 0.5 * length);

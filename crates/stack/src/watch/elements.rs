@@ -18,7 +18,7 @@ pub struct ElementFate {
 pub struct ElementFates(pub Vec<ElementFate>);
 
 impl ElementFates {
-    /// Records an accepted step; `standing` is `true` if no seat had been lost before it.
+    /// Records an accepted step; `standing` is `true` if no seat had been lost before the step.
     pub fn observe<S: Space<Real = f64>>(
         &mut self,
         state: &State<S>,

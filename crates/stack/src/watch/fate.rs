@@ -7,16 +7,18 @@ use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2, lanewis
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::scenario::OutcomeSpec;
 
-/// Thresholds beyond which a body counts as off its seat, or as fallen.
+/// Thresholds beyond which a body counts as having left its seat, or as fallen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
-    /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which it has left its seat.
+    /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which the barrel has left its
+    /// seat.
     pub seat_loss_ratio: f64,
     /// Drop (m) below its position at rest beyond which a body has fallen.
     pub fall_drop: f64,
-    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which it has left its seat.
+    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left its
+    /// seat.
     pub rack_slide_ratio: f64,
-    /// Tilt (rad) of a rack relative to the rack below beyond which it has left its seat by rocking.
+    /// Tilt (rad) of a rack relative to the rack below beyond which the rack has left its seat by rocking.
     pub rocking_angle: f64,
     /// Tilt (rad) of the bottom rack beyond which the stack has overturned.
     pub overturning_angle: f64,
@@ -44,7 +46,7 @@ pub enum Loss {
     Slid,
     /// A rack tilted too far.
     Tilted,
-    /// A body dropped without being displaced, sliding or tilting too far.
+    /// A body dropped, although it had neither moved nor tilted too far.
     Dropped,
 }
 
@@ -53,10 +55,10 @@ pub enum Loss {
 pub struct Fate {
     /// Time (s) and kind of the loss of seat; `None` if the body kept its seat.
     pub left_seat: Option<(f64, Loss)>,
-    /// Time (s) at which its drop exceeded the threshold of a fall; `None` if it did not fall.
+    /// Time (s) at which the drop of the body exceeded the threshold of a fall; `None` if the body did not fall.
     pub fell_at: Option<f64>,
-    /// Time (s) at which it landed: the first time after the fall at which it moved down at less than half of its
-    /// largest speed.
+    /// Time (s) at which the body landed: the first time after [`Fate::fell_at`] at which the body moved down at less
+    /// than half of its largest downward speed.
     pub landed_at: Option<f64>,
     /// Largest downward speed (m/s) between fall and landing.
     pub landing_speed: Option<f64>,
@@ -66,14 +68,15 @@ pub struct Fate {
     pub drop: f64,
     /// Largest displacement (m) along `x` relative to the ground, before the collapse.
     pub peak_displacement: f64,
-    /// Displacement (m) along `x` relative to the ground, at the end.
+    /// Displacement (m) along `x` relative to the ground, at the end of the run.
     pub residual_displacement: f64,
-    /// Displacement (m) along `x` relative to the ground at the collapse; at the end if there was none.
+    /// Displacement (m) along `x` relative to the ground at the collapse, or at the end of the run if there was no
+    /// collapse.
     pub displacement_at_collapse: f64,
     /// Largest displacement (m) relative to the support, before the collapse: of a rack on the barrels below, or of a
     /// barrel in its cradle.
     pub peak_slip: f64,
-    /// Displacement (m) relative to the support, at the end.
+    /// Displacement (m) relative to the support, at the end of the run.
     pub residual_slip: f64,
     /// Largest tilt (rad) of a rack, before the collapse.
     pub peak_tilt: f64,
@@ -83,7 +86,7 @@ pub struct Fate {
     pub whole_run: PeakMotion,
 }
 
-/// Largest motions of a body in any step of a run, collapsed or not.
+/// Largest motions of a body over all steps of a run, or over the steps until the first loss of seat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion<R: Real = f64> {
     /// Largest displacement (m) along `x` relative to the ground.
@@ -104,17 +107,17 @@ impl Fate {
     }
 }
 
-/// Observer of the fates of all bodies, of one run or of one run per lane; it must observe every accepted step.
+/// Observer of the fates of all bodies in one run, or in one run per lane. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<R: Real = f64> {
     /// Drop (m) beyond which a body has fallen.
     fall_drop: R,
     bodies: Vec<Followed<R>>,
-    /// Time (s) at which the first body left its seat; infinite before.
+    /// Time (s) at which the first body left its seat; infinite until then.
     collapse: R,
     /// The first body that left its seat.
     first: PerLane<Option<BodyId>>,
-    /// Time (s) at which the first barrel had fallen; infinite before.
+    /// Time (s) at which the first barrel had fallen; infinite until then.
     first_fall: R,
 }
 
@@ -144,17 +147,17 @@ struct Followed<R: Real> {
     place: Place,
     /// Position at rest (m), relative to the ground.
     rest: Vec2<R>,
-    /// Limit (m) of its displacement on its support.
+    /// Limit (m) of the displacement of the body on its support.
     most_slip: R,
     /// Limit (rad) of the tilt of a rack.
     most_tilt: R,
-    /// Time (s) of its loss of seat; infinite before.
+    /// Time (s) at which the body left its seat; infinite until then.
     left_seat: R,
     /// Kind of the loss of seat.
     loss: PerLane<Loss>,
-    /// Time (s) of its fall; infinite before.
+    /// Time (s) at which the body fell; infinite until then.
     fell_at: R,
-    /// Time (s) of its landing; infinite before.
+    /// Time (s) at which the body landed; infinite until then.
     landed_at: R,
     /// Largest downward speed (m/s) between fall and landing.
     landing_speed: R,
@@ -275,21 +278,22 @@ fn known(time: f64) -> Option<f64> {
 }
 
 impl<R: Real> Fates<R> {
-    /// Returns the time (s) at which the first body left its seat; infinite in lanes where none has.
+    /// Returns the time (s) at which the first body left its seat; infinite in lanes in which no body has left its
+    /// seat.
     pub fn collapse(&self) -> R {
         self.collapse
     }
 
     /// Returns the lanes in which no body has left its seat.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
     }
 
     /// Records an accepted state.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.stands();
@@ -345,7 +349,7 @@ impl<R: Real> Fates<R> {
 
     /// Records whether a body has left its seat, and the kind of the loss.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
@@ -386,10 +390,11 @@ impl<R: Real> Fates<R> {
 
     /// Returns the displacement (m) of a body relative to its support.
     ///
-    /// It is measured for a barrel in the frame of its rack, for the foot of a rack on posts in the frame of the rack
-    /// below, for a rack on barrels relative to the mean of these barrels, and for other bodies relative to the ground.
+    /// The displacement of a barrel is measured in the frame of its rack; that of the foot of a rack on posts, in the
+    /// frame of the rack below; that of a rack on barrels, relative to the mean position of these barrels; and that of
+    /// any other body, relative to the ground.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
@@ -420,14 +425,14 @@ impl<R: Real> Fates<R> {
 
 /// Raises a peak to a value if the value is larger.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+#[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
-/// Returns a value in the lanes of a mask, and zero in others.
+/// Returns a value in the lanes of a mask, and zero in all other lanes.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+#[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn masked<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
 }

@@ -10,9 +10,9 @@ use crate::demand::Span;
 /// Two bodies of a stack in contact, and the force between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint<R: Real = f64> {
-    /// The upper body; without support by design, the one that is named first.
+    /// The upper body; if neither body supports the other by design, the body that is named first.
     pub upper: BodyId,
-    /// The lower body; without support by design, the one that is named second.
+    /// The lower body; if neither body supports the other by design, the body that is named second.
     pub lower: BodyId,
     /// `true` if one body supports the other by design; `false` if they touched during the shaking.
     pub by_design: bool,
@@ -35,7 +35,7 @@ pub struct PeakForces<R: Real = f64> {
     pub horizontal: (R, R),
 }
 
-/// Observer of the forces between bodies, of one run or of one run per lane; it must observe every accepted step.
+/// Observer of the forces between bodies in one run, or in one run per lane. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Joints<R: Real = f64> {
     /// Every barrel on its rack and every rack on its supports, followed by other pairs of bodies in the order of their
@@ -43,7 +43,7 @@ pub struct Joints<R: Real = f64> {
     pub joints: Vec<Joint<R>>,
     /// For every body, the lower bodies of its joints, each with the index of the joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
-    /// `true` to also observe bodies that touch without support by design.
+    /// `true` if bodies that touch, but do not support each other by design, are also observed.
     follows_all: bool,
 }
 
@@ -84,7 +84,8 @@ impl<R: Real> Lanewise for Joints<R> {
 }
 
 impl Joint {
-    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" without support by design.
+    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" for bodies that do not support
+    /// each other by design.
     pub fn name(&self, assembly: &Assembly) -> String {
         self.named(|body| &assembly.parts[body].name)
     }
@@ -131,7 +132,7 @@ impl Joints {
 
     /// Creates the joints of every body with each of its supports, without forces.
     ///
-    /// `follows_all` is `true` to also observe other bodies that touch.
+    /// If `follows_all` is `true`, other bodies that touch are also observed.
     pub fn between(below: impl Iterator<Item = Vec<BodyId>>, follows_all: bool) -> Self {
         let mut joints = Vec::new();
         let mut of_upper = Vec::new();
@@ -150,8 +151,8 @@ impl Joints {
         }
     }
 
-    /// Returns the joints by design, followed by those of other bodies that have touched, each in the order of the
-    /// bodies.
+    /// Returns the joints of bodies that support each other by design, followed by the joints of other bodies that have
+    /// touched. Both groups are in the order of the bodies.
     pub fn listed(&self) -> Vec<&Joint> {
         let mut listed: Vec<&Joint> =
             self.joints.iter().filter(|joint| joint.by_design || joint.has_met()).collect();
@@ -195,7 +196,7 @@ impl<R: Real> Joint<R> {
     /// Raises the peaks to the current force, at a time (s); the peaks until the first loss of seat are raised in
     /// `standing` lanes only.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
         let Vec2 { x, z } = self.force;
         let Self { until_loss, whole_run, .. } = self;
@@ -204,9 +205,10 @@ impl<R: Real> Joint<R> {
     }
 }
 
-/// Raises two peaks to a force (N) at a time (s) if it is larger; the first peak in standing lanes only.
+/// Raises two peaks to a force (N) at a time (s) if the force is larger; the first peak is raised in standing lanes
+/// only.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+#[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
 fn raise<R: Real>(
     until_loss: &mut (R, R),
     whole_run: &mut (R, R),
@@ -225,7 +227,7 @@ fn raise<R: Real>(
 impl<R: Real> Joints<R> {
     /// Returns the index of the joint of two bodies, and `true` if the first body is the upper one.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let joint = |upper: BodyId, lower: BodyId| {
             self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
@@ -238,7 +240,7 @@ impl<R: Real> Joints<R> {
     ///
     /// A missing joint is added; `None` if joints without support by design are not observed.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let known = self.number(one, other);
         if known.is_some() || !self.follows_all {
@@ -251,7 +253,7 @@ impl<R: Real> Joints<R> {
         Some((self.add(first, second), first == one))
     }
 
-    /// Adds a joint of two bodies without support by design.
+    /// Adds a joint of two bodies that do not support each other by design.
     fn add(&mut self, upper: BodyId, lower: BodyId) -> usize {
         let at = self.joints.len();
         self.of_upper[upper].push((lower, at));
@@ -260,9 +262,9 @@ impl<R: Real> Joints<R> {
     }
 
     /// Records the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
-    /// before it.
+    /// before the step.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(&mut self, time: R, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
         for joint in &mut self.joints {
             joint.force = Vec2::default();

@@ -73,7 +73,7 @@ pub struct Recording {
     pub times: Vec<f64>,
     /// Histories of the ground motion, the displacements and the energies.
     pub channels: Vec<Channel>,
-    /// Forces between bodies, beginning with those of support by design.
+    /// Forces between bodies, beginning with bodies that support each other by design.
     pub joints: Vec<JointForces>,
     frame_rate: f64,
     history_rate: f64,
@@ -89,7 +89,7 @@ impl Recording {
         &self.forces
     }
 
-    /// Creates a recording from the state at rest; the rates (Hz) are those of frames and of histories.
+    /// Creates a recording from the state at rest; the rates (Hz) are the sampling rates of frames and of histories.
     pub(super) fn new(
         assembly: &Assembly,
         state: &State<Planar>,

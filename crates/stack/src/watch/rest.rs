@@ -11,19 +11,21 @@ use crate::scenario::{Scenario, Until};
 
 /// Largest height (m), at full scale, by which the kinetic energy of a body at rest could lift the body.
 ///
-/// It corresponds to 0.31 m/s, and is a tenth of the height that lifts a barrel out of the shallowest cradle of the
-/// catalog. With less energy, stacks sway on their round barrels for minutes, since seats do not resist rolling.
+/// This height corresponds to a speed of 0.31 m/s, and is a tenth of the height that lifts a barrel out of the
+/// shallowest cradle of the catalog. With less kinetic energy, stacks can sway on their round barrels for minutes,
+/// since seats do not resist rolling.
 pub const CLIMB: f64 = 0.005;
 
 /// Duration (s), at full scale, for which every body must be at rest.
 ///
-/// It is longer than half a period of the tallest stack, so that a turning point is not mistaken for rest.
+/// This duration is longer than half a period of the tallest stack, so that a turning point is not mistaken for rest.
 pub const HOLD: f64 = 3.0;
 
 /// Largest acceleration of calm ground, as a fraction of gravity.
 ///
-/// It neither slides nor tips bodies, and the last third of many records is weaker. A standing stack is nevertheless
-/// simulated to the end of the motion, since its displacements are results, unless only the verdict is requested.
+/// Such an acceleration neither slides nor tips bodies, and the last third of many records is weaker. A standing stack
+/// is nevertheless simulated to the end of the motion, since its displacements are results, unless only the verdict is
+/// requested.
 const CALM: f64 = 0.02;
 /// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
@@ -34,14 +36,14 @@ pub const ON_FLOOR: f64 = 1.05;
 /// Reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// All bodies had come to rest, on ground that was still, or calm after a collapse or if only the verdict is
-    /// requested.
+    /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
+    /// calm ground is sufficient.
     Rest,
     /// The time that the scenario allows after a collapse was over.
     AfterCollapse,
     /// The duration that the scenario sets was reached.
     Duration,
-    /// The longest time after the motion was over, while bodies still moved.
+    /// The maximum time after the motion had passed, while bodies still moved.
     Patience,
     /// The caller stopped the run.
     Interrupted,
@@ -74,10 +76,10 @@ impl Ending {
     }
 }
 
-/// Detects the rest of all bodies, in one run or in one run per lane.
+/// Detects when all bodies are at rest, in one run or in one run per lane.
 ///
 /// A body rests when its kinetic energy could not lift it by half a centimeter. A barrel that rolls away on the floor
-/// counts as at rest, too, if it approaches no other body: it slows by some 0.2 m/s² and can reach none.
+/// also counts as at rest if it approaches no other body: it slows down by some 0.2 m/s² and cannot reach any body.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
     /// Time (s) from which the ground is still; infinite if the run does not end by rest.
@@ -99,7 +101,7 @@ struct Mover<R: Real> {
     body: BodyId,
     /// Moment of inertia divided by the mass (m²).
     inertia: R,
-    /// Height (m) of its center above the ground up to which it is a barrel on the floor.
+    /// Height (m) of the center above the ground up to which the body counts as a barrel on the floor.
     floor: R,
 }
 
@@ -107,7 +109,8 @@ lanewise!(struct Mover<R> { body, inertia, floor });
 lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
 
 impl Rest {
-    /// Creates the criterion of a scenario under its ground motion; no body is at rest before it has been observed.
+    /// Creates the rest criterion for a scenario and its ground motion. No body counts as at rest before it has been
+    /// observed.
     pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         let scale = scenario.run.similitude;
         let mover = |(body, part): (BodyId, &crate::assemble::Part)| {
@@ -166,7 +169,7 @@ pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
 impl<R: Real> Rest<R> {
     /// Observes an accepted state, given the lanes that have collapsed, and returns the lanes at rest.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
@@ -190,7 +193,7 @@ impl<R: Real> Rest<R> {
 
     /// Returns the lanes in which a body is a barrel on the floor that approaches no other body.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn rolls_away(&self, state: &State<Planar<R>>, at: usize) -> R::Mask {
         let ground = state.poses[Assembly::GROUND].position;
         let own = &self.bodies[at];

@@ -2,17 +2,16 @@
 //! loss of seat and over the whole run.
 //!
 //! In a planar model, stress is force per length of boundary (N/m). Every contact loads both of its bodies over the
-//! tributary length of its contact element. For a node, this is half the distance to each neighbor. For a contact
-//! without nodes, it is 1 cm, the spacing of the nodes of the paper's racks, so that both kinds of contact are
-//! comparable.
-//! (Hertz's half-width between an oak stave and a steel bar is about 1 mm, less than a stave deforms in bending, and
-//! would change with the force; a bearing of fixed length keeps stress proportional to force, as EN 1995-1-1, 6.1.5,
-//! does for timber under compression across the grain.)
-//! On a rack, each node and each place of a contact without nodes has a value. The boundary of a barrel is divided into
-//! cells, and a contact loads all cells within its tributary length.
+//! tributary length of its contact element. For a node, this length is half the distance to each neighbor. For a
+//! contact without nodes, the tributary length is 1 cm, the spacing of the nodes of the paper's racks, so that both
+//! kinds of contact are comparable. (Hertz's half-width between an oak stave and a steel bar is about 1 mm, less than a
+//! stave deforms in bending, and would change with the force; a bearing of fixed length keeps stress proportional to
+//! force, as EN 1995-1-1, 6.1.5, does for timber under compression across the grain.) On a rack, there is one value for
+//! each node and for each place of a contact without nodes. The boundary of a barrel is divided into cells, and a
+//! contact loads all cells within its tributary length.
 //!
-//! At rest, the stress of every point times its [length](StressEnvelope::lengths) is the contact force on it, so the
-//! sum over the boundary is the sum of the contact forces on the body.
+//! At rest, the stress of every point times its [length](StressEnvelope::lengths) is the contact force on this point,
+//! so the sum over the boundary is the sum of the contact forces on the body.
 
 mod follow;
 mod places;
@@ -40,14 +39,14 @@ pub struct BoundaryPoint {
 pub struct StressEnvelope {
     /// The body.
     pub body: BodyId,
-    /// Points to which the values belong.
+    /// Points to which the stress values belong.
     pub points: Vec<BoundaryPoint>,
-    /// Length of boundary (m) of each value.
+    /// Length (m) of the boundary that each value represents.
     ///
-    /// Where the boundary is loaded at rest, it is the loaded length, so that stress at rest times length is the
-    /// contact force.
+    /// Where the boundary is loaded at rest, this is the loaded length, so that the stress at rest multiplied by the
+    /// length is the contact force.
     pub lengths: Vec<f64>,
-    /// `true` if the boundary is closed, so that the last point is next to the first.
+    /// `true` if the boundary is closed, so that the last point is adjacent to the first point.
     pub closed: bool,
     /// Stress at rest (N/m).
     pub at_rest: Vec<f64>,
@@ -89,14 +88,14 @@ impl StressEnvelope {
         matches!(self.cells, Cells::Nodes)
     }
 
-    /// Returns the sum of stress at rest times length over the boundary (N), which is the sum of the normal contact
-    /// forces on the body at rest.
+    /// Returns the sum of the normal contact forces (N) on the body at rest, which is the integral of the stress at
+    /// rest along the boundary.
     pub fn force_at_rest(&self) -> f64 {
         self.at_rest.iter().zip(&self.lengths).map(|(stress, length)| stress * length).sum()
     }
 
-    /// Returns the largest stress until the first loss of seat divided by the largest at rest, wherever on the boundary
-    /// each occurs; `None` without load at rest.
+    /// Returns the largest stress until the first loss of seat divided by the largest stress at rest, which may occur
+    /// at a different point; `None` without load at rest.
     pub fn amplification(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak)
     }
@@ -112,8 +111,8 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| most(peak) / at_rest)
     }
 
-    /// Returns the average of the largest stresses until the first loss of seat, over the part of the boundary that is
-    /// loaded at rest, divided by the average at rest; `None` without load at rest.
+    /// Returns the largest stress at each point until the first loss of seat, averaged over the part of the boundary
+    /// that is loaded at rest and divided by the average stress at rest; `None` without load at rest.
     pub fn mean_amplification(&self) -> Option<f64> {
         self.mean_over_rest(&self.peak)
     }
@@ -129,7 +128,7 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| loaded.sum::<f64>() / at_rest)
     }
 
-    /// Returns the average ratio of the largest stress until the first loss of seat to the stress at rest, over the
+    /// Returns the ratio of the largest stress until the first loss of seat to the stress at rest, averaged over the
     /// part of the boundary that is loaded at rest; `None` without load at rest.
     pub fn mean_ratio(&self) -> Option<f64> {
         let length: f64 = self.loaded().map(|at| self.lengths[at]).sum();
@@ -137,9 +136,9 @@ impl StressEnvelope {
         (length > 0.0).then(|| self.loaded().map(ratio).sum::<f64>() / length)
     }
 
-    /// Returns the average of the largest stresses until the first loss of seat, over the boundary that has been loaded
-    /// up to then, divided by the average at rest over the boundary that is loaded at rest; `None` without load at
-    /// rest.
+    /// Returns the ratio of two averages: the largest stress at each point until the first loss of seat, averaged over
+    /// the boundary that is loaded at any time until then; and the stress at rest, averaged over the boundary that is
+    /// loaded at rest; `None` without load at rest.
     pub fn mean_of_envelope(&self) -> Option<f64> {
         let mean = |stress: &[f64]| {
             let covered = || stress.iter().zip(&self.lengths).filter(|(stress, _)| **stress > 0.0);

@@ -66,9 +66,9 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack, that of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a linear law per \
-         node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to \
-         the ground; must be given otherwise",
+        "in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a \
+         linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
+         racks and from a fallen rack to the ground; must be given otherwise",
     ),
     "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
 );
@@ -86,7 +86,7 @@ const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack, that of the rack's seats in the catalog for constants per seat without `damping`",
+        "in a stack, the restitution of the rack's seats in the catalog for constants per seat without `damping`",
     ),
     "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
@@ -96,8 +96,8 @@ const LINEAR: &[Field] = &[
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
         Default::Derived(
-            "in a stack, from the restitution of the rack's seats in the catalog for constants per seat, and 22 N s/cm per \
-             node if the stiffness is not given either",
+            "in a stack, derived from the restitution of the rack's seats in the catalog for constants per seat, and \
+             22 N s/cm per node if the stiffness is not given either",
         ),
         "Damping c: N s/m per seat or node or N s/m^2 per length.",
     ),
@@ -106,7 +106,8 @@ const LINEAR: &[Field] = &[
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
         Default::Derived(
-            "that of the rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise",
+            "the mass of the rack's seats in the catalog for constants per seat; must be given with `restitution` \
+             otherwise",
         ),
         "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
@@ -138,7 +139,9 @@ const LAWS: Variants = Variants {
                 Field::new(
                     "damping",
                     Kind::Quantity(&[Dimension::HUNT_CROSSLEY_DAMPING], Range::NOT_NEGATIVE),
-                    Default::Derived("must be given, or `restitution` with `reference_speed`"),
+                    Default::Derived(
+                        "must be given, unless `restitution` and `reference_speed` are given",
+                    ),
                     "Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.",
                 ),
                 RESTITUTION,
@@ -152,24 +155,24 @@ const LAWS: Variants = Variants {
         },
         Variant {
             name: "rebound",
-            help: "Spring with the power 1.5 of the penetration that returns a stated fraction of the impact \
-                   speed, whatever the mass.",
+            help: "Spring whose force is proportional to the penetration to the power 1.5; it returns a stated \
+                fraction of the impact speed, whatever the mass.",
             fields: &fields! {
                 /// Ratio of normal speeds after and before an impact.
                 restitution = Kind::Number(Range::up_to(1.0)), Default::Value("0.3");
-                /// Speed below which the contact damps as well, so that bodies on it come to rest.
+                /// Impact speed below which the contact also damps, so that bodies come to rest.
                 speed = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Value("\"0.1 m/s\"");
             },
         },
         Variant {
             name: "hertz",
-            help: "Elastic spring with the power 1.5 of the penetration.",
+            help: "Elastic spring whose force is proportional to the penetration to the power 1.5.",
             fields: &[],
         },
     ],
 };
 
-/// Fields that exclude each other: damping is stated directly or by a restitution.
+/// Fields that exclude each other, because the damping is stated either directly or by a restitution.
 const EXCLUSIVE: &[&[&str]] =
     &[&["damping", "restitution"], &["damping", "reference_mass"], &["damping", "reference_speed"]];
 
@@ -223,7 +226,7 @@ const COEFFICIENT: Range = Range::between(0.0, 5.0);
 const COEFFICIENT_FIELD: Field = Field::new(
     "coefficient",
     Kind::Number(COEFFICIENT),
-    Default::Derived("that of the pair in a stack; must be given otherwise"),
+    Default::Derived("the coefficient of the pair in a stack; must be given otherwise"),
     "Kinetic coefficient of friction.",
 );
 
@@ -233,18 +236,20 @@ table! {
     /// Tangential force as a function of slip.
     law = Kind::Choice(names::<FrictionKind>), Default::Value("\"coulomb\"");
     by law {
-        /// Elastic, damped stick up to the static limit, then sliding.
+        /// Elastic and damped tangential spring (stick) up to the static limit, then sliding.
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
             /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
             /// friction sooner, but needs a smaller time step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("that of the rack's seats in the catalog for constants per seat: 2 on barrels, whose staves are softer across than along their surface, and on posts, and 4 on the ground, where tubes bend that do not lie flat; 1 otherwise");
+                Default::Derived("the ratio of the rack's seats in the catalog for constants per seat: 2 on barrels, \
+                    whose staves are softer across than along their surface; 2 on posts; 4 on the ground, where tubes \
+                    that do not lie flat bend; 1 otherwise");
             /// Ratio of the tangential damping of the stick to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
-        /// Sliding friction smoothed around zero slip rate; it creeps and never sticks.
+        /// Sliding friction smoothed around zero slip rate; contacts creep and never stick.
         "regularized" with [COEFFICIENT_FIELD] {
             /// Slip rate at which the friction is fully developed.
             velocity = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Required;

@@ -12,18 +12,17 @@ use barrelstack_input::named;
 named! {
     /// Unit for which contact constants are stated.
     pub enum Basis {
-        /// Constants hold for one contact node, whatever the spacing of the nodes.
+        /// Constants apply to one contact node, whatever the spacing of the nodes.
         Node = "node",
-        /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
-        /// node.
+        /// Constants apply to one meter of boundary and are multiplied by the tributary length of the node.
         Length = "length",
-        /// Constants hold for one seat, however many nodes it is divided into: one rail on the crown of a barrel,
-        /// one support of a cradle, one end of a rail or one foot on the ground, one post.
+        /// Constants apply to one seat, however many nodes it is divided into: one rail on the crown of a barrel, one
+        /// support of a cradle, one end of a rail or one foot on the ground, or one post.
         Seat = "seat",
     }
 }
 
-/// Dissipation of a normal law whose restitution depends on the mass or speed of the impact.
+/// Dissipation of a normal law with which the restitution depends on the mass or speed of the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m) of a Hunt-Crossley
@@ -39,54 +38,54 @@ pub enum Damping {
     },
 }
 
-/// Normal law: compressive force from penetration and its rate.
+/// Normal law: compressive force as a function of the penetration and its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NormalLaw {
     /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
     SpeedGap {
-        /// `k` (N/m per node or seat, or N/m² on the basis of length).
+        /// `k` (N/m per node or seat, or N/m² per length of boundary).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `max(0, k δ + c δ̇)`.
     KelvinVoigt {
-        /// `k` (N/m per node or seat, or N/m² on the basis of length).
+        /// `k` (N/m per node or seat, or N/m² per length of boundary).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `k δⁿ (1 + d δ̇)`.
     HuntCrossley {
-        /// `k` (N/mⁿ per node or seat, or N/mⁿ⁺¹ on the basis of length).
+        /// `k` (N/mⁿ per node or seat, or N/mⁿ⁺¹ per length of boundary).
         stiffness: f64,
         /// `n`, either 1 or 1.5.
         exponent: f64,
         /// Dissipation.
         damping: Damping,
     },
-    /// `k δ^1.5` on approach and `e²` times that on separation, with a gradual transition over speeds of about `v`.
+    /// `k δ^1.5` on approach and `e² k δ^1.5` on separation, with a gradual transition over speeds of about `v`.
     Rebound {
-        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
+        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
         stiffness: f64,
         /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
-        /// `v` (m/s); bodies with slower impacts come to rest.
+        /// `v` (m/s), the impact speed below which bodies come to rest.
         speed: f64,
     },
     /// `k δ^1.5`, without dissipation.
     Hertz {
-        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
+        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 per length of boundary).
         stiffness: f64,
     },
 }
 
-/// Friction law: tangential force from slip.
+/// Friction law: tangential force as a function of the slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
     /// No friction.
     None,
-    /// Coulomb friction with an elastic, damped stick.
+    /// Coulomb friction with an elastic and damped tangential spring (stick).
     Coulomb {
         /// Kinetic coefficient.
         coefficient: f64,
@@ -97,7 +96,7 @@ pub enum Friction {
         /// Ratio of the tangential to the normal damping.
         tangential_damping_ratio: f64,
     },
-    /// Coulomb friction smoothed near zero slip rate: it creeps and never sticks.
+    /// Coulomb friction smoothed near zero slip rate; contacts creep and never stick.
     Regularized {
         /// Kinetic coefficient.
         coefficient: f64,
@@ -109,7 +108,7 @@ pub enum Friction {
 /// Contact law between two kinds of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interface {
-    /// Basis of stiffness and damping.
+    /// Unit for which the stiffness and damping are stated.
     pub basis: Basis,
     /// Normal force.
     pub normal: NormalLaw,
@@ -117,7 +116,8 @@ pub struct Interface {
     pub friction: Friction,
 }
 
-/// Function from the restitution of a law to its damping ratio; `None` if no damping gives that restitution.
+/// Function from the restitution of a law to its damping ratio; `None` if no value of the damping gives the
+/// restitution.
 type DampingRatio = fn(f64) -> Option<f64>;
 
 /// Function from the damping ratio of a law to its restitution.

@@ -17,7 +17,7 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
-/// Default constants of a pair of a stack, for those that the scenario leaves out.
+/// Default constants of a pair of a stack, used for constants that the scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
     /// Constants of the seat, if the pair is a seat of a rack.
@@ -109,7 +109,8 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
-/// Dimension of the damping of a law, then field name and dimension of the reference of its restitution.
+/// Dimension of the damping of a law; then the field name and the dimension of the reference mass or speed for which
+/// its restitution is stated.
 type DampingUnits = (Dimension, &'static str, Dimension);
 
 const HUNT_CROSSLEY: DampingUnits =

@@ -1,4 +1,4 @@
-//! Observer of contact stresses in every step, of one run or of one run per lane.
+//! Observer of contact stresses in every step of one run, or of one run per lane.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,13 +14,14 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// Bounds of the current place of a contact element on one of its bodies, with its largest force there.
+/// Bounds of the current place of a contact element on one of its bodies, with the largest force of the element at this
+/// place.
 ///
 /// As long as the contact stays between the same bounds, it loads the same cells, and only its largest force matters.
 /// Most contacts in most steps therefore need only a few comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds<R: Real = f64> {
-    /// The first point or direction of the range, and the first one past it.
+    /// The first point or direction of the range, and the first point or direction past the range.
     pub(super) from: Vec2<R>,
     pub(super) to: Vec2<R>,
     /// `true` if the place is above the axis of a barrel; on a rack, `true` if the place is known.
@@ -32,7 +33,7 @@ pub(super) struct Bounds<R: Real = f64> {
 /// Kind of the range of points over which a contact loads the same cells.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// All points, on a rack: the place of a contact element is that of its first contact.
+    /// All points of a rack: a contact element keeps the place of its first contact.
     Everywhere,
     /// Points between two directions, counterclockwise.
     Wedge,
@@ -68,9 +69,9 @@ struct Pair<R: Real> {
 }
 
 impl<R: Real> Pair<R> {
-    /// Transforms a contact point (m) from the frame of the target's surface to that of the body of a side.
+    /// Transforms a contact point (m) from the frame of the target's surface to the frame of the body of a side.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn in_body(
         &self,
         side: Side,
@@ -98,7 +99,7 @@ impl Bounds {
 
 impl<R: Real> Bounds<R> {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
         match place {
@@ -139,20 +140,21 @@ struct Lane {
 /// Mark of a pair that has not touched yet.
 const NEVER: usize = usize::MAX;
 
-/// Observer of the stresses of one run or of one run per lane; it must observe every accepted step.
+/// Observer of the stresses in one run, or in one run per lane. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub(crate) struct StressWatch<R: Real = f64> {
     lanes: Vec<Lane>,
     /// The lanes that have a run.
     watched: R::Mask,
-    /// The lanes with a run in which a seat has been lost.
+    /// The lanes with a run in which a body has left its seat.
     lost: R::Mask,
     pairs: Vec<Pair<R>>,
     /// Index of the first entry of every pair in `bounds`.
     first: Vec<usize>,
     /// One entry for every contact element and body of every pair that has touched.
     bounds: Vec<Bounds<R>>,
-    /// Sum of the normal contact forces (N) on every body, in the current step and its maximum so far.
+    /// Sum of the normal contact forces (N) on every body: the sum in the current step, and the maximum of the sum so
+    /// far.
     totals: Vec<[R; 2]>,
 }
 
@@ -203,7 +205,7 @@ impl StressWatch {
         watch
     }
 
-    /// Stores the current forces as those at rest.
+    /// Stores the current forces as the forces at rest.
     fn rest(&mut self, scratch: &Scratch<Planar>) {
         let Some(Lane { stresses, pressed, .. }) = self.lanes.first_mut() else { return };
         let envelopes = &mut stresses.envelopes;
@@ -336,7 +338,7 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Stores the envelopes of a lane as those until the first loss of seat.
+    /// Stores the envelopes of a lane as the envelopes until the first loss of seat.
     fn keep(&mut self, lane: usize) {
         for envelope in &mut self.lanes[lane].stresses.envelopes {
             envelope.peak.clone_from(&envelope.peak_whole_run);
@@ -349,7 +351,7 @@ impl<R: Real> StressWatch<R> {
     /// `standing` are the lanes in which no seat had been lost before this state, and `model` returns the model of a
     /// lane.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
+    #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe<'a>(
         &mut self,
         standing: R::Mask,

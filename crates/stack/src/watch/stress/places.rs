@@ -125,8 +125,8 @@ impl StressEnvelope {
     }
 }
 
-/// Returns the first and last cell whose middle lies within `length` around a coordinate, and the range of coordinates
-/// for which these cells stay the same.
+/// Returns the first and the last cell whose middle lies in an interval of `length` around a coordinate, and the range
+/// of coordinates for which these cells stay the same.
 ///
 /// Cells have the given width; at least one cell is returned.
 fn span(coordinate: f64, length: f64, width: f64) -> (f64, f64, f64, f64) {
