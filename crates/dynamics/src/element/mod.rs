@@ -1,8 +1,8 @@
 //! Force elements: forces between points of two bodies, without contact.
 //!
 //! Each kind of element has a file of its own, which defines its forces and its failure at a state ([`Load`]). This
-//! module has what all kinds share: the memory of plastic elongation and failure, the contributions to forces and
-//! energy balance, and the support of lanes.
+//! module contains the parts common to all kinds: the memory of plastic elongation and failure, the contributions to
+//! the forces and to the energy balance, and the support for lanes.
 
 mod guide;
 mod link;
@@ -20,7 +20,7 @@ pub use link::Link;
 pub use rod::Rod;
 pub use strap::Strap;
 
-/// Memory of an element, which only accepted steps change.
+/// Memory of an element; changed only when a step is accepted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<S: Space> {
     /// Plastic elongation (m).
@@ -40,7 +40,7 @@ pub struct Load<R: Real> {
     pub energy: R,
     /// Part of the force (N) that is due to the spring and stores the energy.
     pub elastic: R,
-    /// Plastic elongation (m) once the state is accepted.
+    /// Plastic elongation (m) of the element if the state is accepted.
     pub plastic: R,
     /// `true` if the element fails at this state.
     pub breaks: R::Mask,
@@ -49,7 +49,7 @@ pub struct Load<R: Real> {
 /// Load and wrenches of an element at a state.
 pub(crate) struct Action<S: Space> {
     pub(crate) load: Load<S::Real>,
-    /// For each body, the total wrench about its center of mass, and the part of it that is due to dampers.
+    /// For each body, the total wrench about its center of mass, and the part of this wrench that is due to dampers.
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
@@ -86,12 +86,12 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
 
-            /// Sets the natural length to the distance of the points at a state, plus an excess (m).
+            /// Sets the unloaded length to the distance between the points at a state, plus an excess (m).
             pub fn fit(&mut self, state: &State<S>, give: S::Real) {
                 match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }
 
-            /// Returns what is wrong with the constants, if anything.
+            /// Returns the error in the constants, if there is one.
             fn flaw(&self) -> Option<&'static str> {
                 match self { $(Self::$kind(element) => element.flaw()),* }
             }
@@ -113,14 +113,14 @@ macro_rules! kinds {
 kinds!(
     /// A strap, which acts in tension only and may yield.
     Strap,
-    /// A rod, which keeps two points at a distance.
+    /// A rod, which holds two points at a given distance.
     Rod,
     /// A guide: a spring, a damper and stops along an axis of a body.
     Guide
 );
 
 impl<S: Space> Element<S> {
-    /// Returns what is wrong with the element in a model with a number of bodies, if anything.
+    /// Returns the error in the element, if there is one; `bodies` is the number of bodies of the model.
     pub(crate) fn problem(&self, bodies: usize) -> Option<&'static str> {
         self.link().flaw(bodies).or_else(|| self.flaw())
     }
@@ -146,7 +146,7 @@ impl<S: Space> Element<S> {
     }
 }
 
-/// Returns `true` if a number is valid in every lane.
+/// Returns `true` if a number is `sound` in every lane.
 fn all<R: Real>(number: R, sound: fn(f64) -> bool) -> bool {
     (0..R::LANES).all(|lane| sound(number.lane(lane)))
 }

@@ -23,8 +23,8 @@ use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// In lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact; single
-/// numbers would gain nothing.
+/// For bundles of lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact.
+/// For single numbers, such a loop would not be faster.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -86,7 +86,7 @@ struct Laws<R> {
     friction: FrictionLaw<R>,
 }
 
-/// Adds the contacts of one pair for its laws.
+/// Adds the contacts of one pair, evaluated with the given laws.
 #[inline(always)]
 fn touch_by<S: Space>(
     pair: &ContactPair,
@@ -199,15 +199,17 @@ struct Press<'a, S: Space, L> {
     stop: Option<Stop<S::Real>>,
     /// Contact filter of the pair; `None` if all contacts count.
     counted: Option<AtFace<S>>,
-    /// Called once per contact, so that the compiler can specialize the loop for the laws where they are known.
+    /// Returns the laws of the pair. It is called once per contact, so that the compiler can specialize the loop for
+    /// laws that are known at compile time.
     laws: L,
-    /// Step (s) of the effective forces.
+    /// Time step (s) over which the effective forces are taken.
     step: S::Real,
     frame: &'a PairFrame<S>,
-    /// Kinematics of the pair: computed before the first node, to avoid a test at every node.
+    /// Relative kinematics of the pair, computed before the first node; computing them on demand would need a test at
+    /// every node.
     meeting: Meeting<'a, S>,
-    /// Lanes in which this pair, and not the pair with exchanged bodies, counts a contact of two round pieces: the
-    /// contactor is the heavier body or, of two equal ones, the first.
+    /// Lanes in which this pair, and not the pair with exchanged bodies, counts a contact of two round pieces. In these
+    /// lanes the contactor is the heavier body or, if both are equally heavy, the first body.
     leads: <S::Real as Real>::Mask,
     pair: usize,
     elements: &'a ContactElements<S>,
@@ -322,7 +324,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.needs_substeps = self.needs_substeps | (near & deep);
     }
 
-    /// Adds the moment of rolling resistance under a normal force (N).
+    /// Adds the moment of the rolling resistance that is due to a normal force (N).
     #[inline(always)]
     fn resist_rolling(&mut self, normal_force: S::Real) {
         let Some(rolling) = &self.rolling else { return };
@@ -334,7 +336,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the forces of a node at `node` (m, in the frame of the target's surface), which penetrates in at least one
     /// lane.
     ///
-    /// Returns the energy (J) that the spring of the node would store at a share of 1.
+    /// Returns the energy (J) that the spring of the node would store if its share were 1.
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
@@ -394,10 +396,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Returns the friction force (N) and the tangent plane of an element under a normal force (N) with a weight; adds
-    /// the energy and the rate of its stick.
+    /// Returns the friction force (N) and the tangent plane of an element, given its normal force (N) and weight. Also
+    /// stores the energy and the rate of its stick.
     ///
-    /// Sticks are kept in the inertial frame, which favors neither body.
+    /// Sticks are stored in the inertial frame, so both bodies are treated alike.
     #[inline(always)]
     fn friction(
         &mut self,
@@ -448,7 +450,7 @@ impl<R: Real> RollingPair<R> {
 #[derive(Clone, Copy, Default)]
 struct PairWrench<S: Space> {
     normal: Wrench<S>,
-    /// The part of the normal forces due to dampers.
+    /// The part of the normal forces that is due to dampers.
     damped: Wrench<S>,
     friction: Wrench<S>,
 }

@@ -105,10 +105,12 @@ impl<'a, S: Space> Meeting<'a, S> {
         self.motion.linear + S::velocity_at(self.motion.spin, point - self.frame.contactor)
     }
 
-    /// Returns the contact of a node at `node` (m, in the surface's frame), with kinematics but without forces.
+    /// Returns the contact of a node at `node` (m, in the surface's frame), with its kinematics; its forces are still
+    /// zero.
     ///
-    /// The force acts on both bodies at the companion point of `node`, and both velocities are taken there. So the pair
-    /// conserves momentum, and the power that it loses is the force times the relative velocity.
+    /// The force acts on both bodies at the companion point of `node`, and the velocities of both bodies are taken at
+    /// this point. So the pair conserves momentum, and the power that it loses is the force times the relative
+    /// velocity.
     #[inline(always)]
     pub(super) fn contact(
         &self,

@@ -2,7 +2,7 @@
 //!
 //! The depth of the seat is that of its deepest node. The laws are evaluated at this depth, and their forces are
 //! divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
-//! location of the pressure, but not stiffness, damping or friction.
+//! location of the resultant force, but not the stiffness, the damping or the friction.
 
 use crate::pair_frame::AtFace;
 use crate::real::Real;
@@ -30,7 +30,7 @@ pub(super) struct Row<R> {
 }
 
 impl<R: Real> Row<R> {
-    /// Adds a node by its gap after [`counting`].
+    /// Adds a node, given its gap as returned by [`counting`].
     #[inline(always)]
     pub(super) fn add<S: Space<Real = R>>(&mut self, gap: Gap<S>) {
         let depth = (-gap.distance).max(R::zero());
