@@ -18,15 +18,15 @@ pub type InterfaceId = usize;
 pub struct ContactPair {
     /// The body that carries the nodes.
     pub contactor: BodyId,
-    /// Index of its node set.
+    /// Index of the node set of the contactor.
     pub nodes: usize,
     /// The body that carries the surface.
     pub target: BodyId,
-    /// Index of its surface.
+    /// Index of the surface of the target.
     pub surface: usize,
-    /// The law between them.
+    /// Interface that states the contact laws of the pair.
     pub interface: InterfaceId,
-    /// Filter of the contacts by their position relative to a face.
+    /// Filter that selects contacts by their position relative to a face.
     pub counts: Counts,
 }
 
@@ -63,7 +63,7 @@ pub struct Substepping<R> {
     /// For every interface, the largest penetration (m) that whole time steps resolve; infinite for no limit.
     pub whole_step_depth: Vec<R>,
     /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
-    /// contact at rest: stability allows a larger depth than the accuracy of an impact does.
+    /// contact at rest: for such a contact, only stability limits the penetration, while impacts must also be accurate.
     pub resting_allowance: R,
     /// Gap (m) below which impacts are predicted; an impact that closes a larger gap within the lookahead is detected
     /// late. [`FORESEEN`] suits stacks.
@@ -75,10 +75,11 @@ pub struct Substepping<R> {
 /// Additional substepping rules for fast contacts of whole bodies ([`Nodes::Whole`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since spring and damper
-    /// would engage or release too abruptly.
+    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since the spring and the
+    /// damper of the contact would otherwise engage or release too abruptly.
     pub whole_step_way: R,
-    /// Approach speed (m/s) above which an impact counts as hard; substeps are then halved until no impact remains.
+    /// Approach speed (m/s) above which an impact counts as hard; the substeps are then half as long until no impact
+    /// remains.
     pub hard: R,
 }
 
@@ -116,7 +117,7 @@ pub enum ModelError {
     Mass {
         /// The body.
         name: String,
-        /// Its mass (kg).
+        /// Mass (kg) of the body.
         mass: f64,
     },
     /// A free body has no moment of inertia.
@@ -127,7 +128,7 @@ pub enum ModelError {
     Inertia {
         /// The body.
         name: String,
-        /// Its least moment of inertia (kg·m²).
+        /// Smallest principal moment of inertia (kg·m²) of the body.
         inertia: f64,
     },
     /// A free body has an unbounded surface.
@@ -147,13 +148,13 @@ pub enum ModelError {
     /// A pair refers to a missing item.
     #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
     Dangling {
-        /// The pair, counted from 0.
+        /// Index of the pair, counted from 0.
         pair: usize,
         /// Kind of the item.
         what: &'static str,
-        /// Its index.
+        /// Index of the item.
         index: usize,
-        /// Number of such items.
+        /// Number of existing items of this kind.
         count: usize,
     },
 }
@@ -316,13 +317,13 @@ impl<S: Space> Model<S> {
         &self.interfaces
     }
 
-    /// Returns the contact pairs, in the order in which their forces are summed; in a model of kinds their number is
-    /// quadratic in that of bodies.
+    /// Returns the contact pairs, in the order in which their forces are summed; in a model created by
+    /// [`Model::of_kinds`], the number of pairs is quadratic in the number of bodies.
     pub fn pairs(&self) -> impl Iterator<Item = ContactPair> + '_ {
         self.pairs.numbers().map(|number| self.pairs.get(number))
     }
 
-    /// Returns the contact pair with a number, such as that of a [`Contact`](crate::forces::Contact).
+    /// Returns the contact pair with the given number, such as [`Contact::pair`](crate::forces::Contact::pair).
     #[inline(always)]
     pub fn pair(&self, number: usize) -> ContactPair {
         self.pairs.get(number)

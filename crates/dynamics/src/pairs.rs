@@ -12,11 +12,11 @@ pub(crate) enum Pairs {
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// The range of pairs of every two bodies that touch, in order.
+        /// For every two bodies that can touch, the range of their pairs, in order.
         couples: Vec<Couple>,
     },
-    /// The pairs of two bodies depend only on their kinds, so no list of all pairs is stored, whose length would be
-    /// quadratic in the number of bodies.
+    /// The pairs of two bodies depend only on the kinds of the bodies. So no list of all pairs is stored; its length
+    /// would be quadratic in the number of bodies.
     OfKinds {
         /// The kind of every body.
         kinds: Vec<usize>,
@@ -36,7 +36,7 @@ pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 pub(crate) struct Couple {
     /// The two bodies, the lower ID first.
     bodies: [BodyId; 2],
-    /// Their pairs.
+    /// Range of the pairs of the two bodies.
     pairs: Range<usize>,
 }
 

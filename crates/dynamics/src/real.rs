@@ -44,7 +44,7 @@ pub trait Real:
     fn le(self, other: Self) -> Self::Mask;
     /// Returns `yes` in lanes of the mask, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Returns the number in one lane; lane 0 of an `f64` is itself.
+    /// Returns the number in one lane; an `f64` has only lane 0, which contains the number itself.
     fn lane(self, lane: usize) -> f64;
     /// Creates a number from the `value` of each lane.
     #[must_use]

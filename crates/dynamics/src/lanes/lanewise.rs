@@ -102,7 +102,7 @@ impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
     }
 }
 
-/// One value per lane that takes no part in arithmetic; a single run has one lane.
+/// One value for each lane, not used in arithmetic; a single run has one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerLane<T>(Vec<T>);
 

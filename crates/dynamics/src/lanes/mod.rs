@@ -26,7 +26,8 @@ pub use topology::Topology;
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
-/// Vector unit that computes bundles of numbers, or single numbers without one.
+/// Kind of vector unit used for the computation: single numbers are computed without a vector unit, bundles of numbers
+/// with one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
     /// No vector unit: single numbers.
@@ -37,7 +38,7 @@ pub enum Width {
     Avx512,
 }
 
-/// Work that is generic over the scalar, and can run with the bundles of any width.
+/// Work that is generic over the scalar, so that it can run with bundles of any width.
 pub trait Task {
     /// Result of the work.
     type Output;
@@ -89,10 +90,11 @@ impl Width {
     }
 }
 
-/// Vector units of this processor architecture.
+/// The vector units supported on this processor architecture.
 ///
-/// A token proves that the machine has a vector unit. Bundles need the token in every operation, so it is a constant.
-/// Code that uses it is accessible only through the functions of this module, which check the machine first.
+/// A token proves that the machine has a vector unit. Bundles need the token in every operation, so the token is a
+/// constant. Code that uses the token is accessible only through the functions of this module, which first check that
+/// the machine has the unit.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "tokens as constants; every path to them checks the machine first")]
 pub(crate) mod units {
@@ -120,9 +122,9 @@ pub(crate) mod units {
         Level::new().as_avx512().is_some()
     }
 
-    /// Runs scalar work with the instructions of a vector unit, if the machine has one. These instructions preserve
-    /// their operands, which saves a tenth of all instructions. None of them fuses a product and a sum, so the bits are
-    /// the same.
+    /// Runs scalar work with the instructions of a vector unit, if the machine has one. The vector instructions do not
+    /// overwrite their operands, which saves a tenth of all instructions. None of these instructions fuses a product
+    /// and a sum, so the results are bit-identical.
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());

@@ -38,7 +38,7 @@ pub struct Locked {
     pub holding: usize,
     /// Number of contacts at the friction limit.
     pub slipping: usize,
-    /// Sum of the friction forces of all contacts over the sum of their normal forces.
+    /// Sum of the friction forces of all contacts, divided by the sum of their normal forces.
     pub friction: f64,
 }
 
@@ -49,28 +49,28 @@ const MOST_STEPS: u64 = 40_000;
 /// slowly, with less overshoot.
 const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
-/// Number of steps between two checks for bodies that have left their place.
+/// Number of steps between two checks for bodies that have moved out of place.
 const LOOK: u64 = 20;
 
 /// Relative error of a body's position at which its contact forces count as balanced: a few units in the last place.
-/// Where springs are stiff for their load, no representable position balances the forces better.
+/// Where springs are very stiff in comparison with their load, no representable position balances the forces better.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Lets the bodies sink into their contacts until all forces balance.
 ///
-/// Gravity acts on all bodies at once, and friction acts throughout. So friction forces that are locked in as the stack
-/// sinks remain, as they would after stacking; [`Settled::locked`] reports them.
+/// Gravity acts on all bodies at once, and friction acts throughout. So friction forces that build up as the stack
+/// sinks stay locked in, as they would after real stacking; [`Settled::locked`] reports them.
 ///
-/// The method is relaxation with momentum: every step repeats a growing share of the displacement of the step before,
-/// and all bodies are stopped whenever the power of the forces becomes negative. If relaxation fails, it is retried
-/// with heavier masses before an error is returned. The mass of a body is the stiffness of its contacts times a factor,
-/// and velocities are too small for dampers to act, so neither damping constants nor the time step affect the
+/// The method is relaxation with momentum: every step repeats a growing share of the displacement of the preceding
+/// step, and all bodies are stopped whenever the power of the forces becomes negative. If relaxation fails, it is
+/// retried with heavier masses before an error is returned. The mass of a body is the stiffness of its contacts times a
+/// factor, and velocities are too small for dampers to act, so neither damping constants nor the time step affect the
 /// equilibrium or the number of steps.
 ///
 /// On return, `state` is at rest at its original time; prescribed bodies do not move.
 ///
 /// # Errors
-/// If a body leaves its place, or the forces do not balance to `tolerance` (a fraction of gravity).
+/// If a body moves out of place, or the remaining accelerations exceed `tolerance` (a fraction of gravity).
 pub fn settle<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

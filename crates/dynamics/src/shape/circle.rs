@@ -31,7 +31,7 @@ impl<R: Real> Circle<R> {
         Gap { distance: length - self.radius, normal: Vec2::select(at_center, up, point * inverse) }
     }
 
-    /// Returns the squared distance (m²) from the center below which a point may penetrate.
+    /// Returns the squared distance (m²) from the center below which a point may penetrate the circle.
     #[inline(always)]
     pub(super) fn within(&self) -> R {
         // Includes a slack for rounding, so that no node is missed that the exact gap would find.

@@ -31,7 +31,7 @@ impl<R: Real> Vec2<R> {
     pub fn length(self) -> R {
         self.dot(self).sqrt()
     }
-    /// Rotates by a quarter turn from `x` toward `z`.
+    /// Rotates the vector by a quarter turn from `x` toward `z`.
     #[inline(always)]
     #[must_use]
     pub fn quarter_turn(self) -> Self {
@@ -246,7 +246,8 @@ impl<R: Real> Space for Planar<R> {
     fn spin_energy(inertia: R, _rotation: Rotation2<R>, spin: R) -> R {
         R::splat(0.5) * inertia * spin * spin
     }
-    /// Positive along the normal rotated by a quarter turn from `z` toward `x`: to the right on a floor.
+    /// A tangent is positive in the direction of the normal rotated by a quarter turn from `z` toward `x`: to the right
+    /// on a floor.
     #[inline(always)]
     fn tangential(vector: Vec2<R>, normal: Vec2<R>) -> R {
         vector.x * normal.z - vector.z * normal.x
@@ -293,7 +294,7 @@ impl<R: Real> Space for Planar<R> {
     }
 }
 
-/// Returns a row of a damping matrix times a velocity.
+/// Returns the product of one row of a damping matrix and a velocity.
 #[inline(always)]
 fn row<R: Real>(row: [R; 3], linear: Vec2<R>, spin: R) -> R {
     row[0] * linear.x + row[1] * linear.z + row[2] * spin
