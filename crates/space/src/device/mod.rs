@@ -1,8 +1,8 @@
-//! Devices on a stack in space: how each of them is attached, one file each.
+//! Attachment of devices to a stack in space; each device has a file of its own.
 //!
-//! The definition, loads, cost and words of a device are those of the plane. A device that acts in both planes acts in
-//! both directions in space. Chocks are part of the racks ([`tubes`](crate::rack::tubes)), pads part of the contact
-//! laws.
+//! The definition, loads, cost and descriptions of a device are those of the plane models. A device that acts in both
+//! plane models acts in both directions in space. Chocks are part of the racks ([`tubes`](crate::rack::tubes)), and
+//! pads are part of the contact laws.
 
 mod isolator;
 mod lid;
@@ -24,7 +24,7 @@ use crate::stack::Stack;
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
-    /// Excess (m) of the length of the element over the distance of its ends; negative under pretension.
+    /// Length (m) of the unloaded element less the distance between its ends; negative for a pretensioned element.
     give: f64,
     /// `true` for a guide on a body that may turn about the axis of the guide.
     about_axis: bool,
@@ -83,10 +83,11 @@ impl Builder<'_> {
         (0..self.parts.len()).filter(on).collect()
     }
 
-    /// Returns names and positions of the left and right ends at `±across` (m), and of the near and far ends at
-    /// `±along` (m).
+    /// Returns the names and positions of four points: left and right at `±across` (m), and near and far at `±along`
+    /// (m).
     ///
-    /// In a mirrored stack the right end comes before the left one, so that the order of summation is mirrored, too.
+    /// In a mirrored stack the right point comes before the left point, so that the order of summation is mirrored,
+    /// too.
     fn sides(&self, across: f64, along: f64) -> [(&'static str, Vec3); 4] {
         let [left, right] =
             [("left", -across), ("right", across)].map(|(side, x)| (side, Vec3::new(x, 0.0, 0.0)));
