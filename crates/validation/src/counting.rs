@@ -1,4 +1,5 @@
-//! A number type that counts arithmetic operations, to compare the work of a step with that of earlier versions.
+//! A number type that counts arithmetic operations, so that the work of a time step can be compared with earlier
+//! versions of the program.
 //!
 //! Counts depend on the algorithm only, not on the machine, its load or the compiler.
 

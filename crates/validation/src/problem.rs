@@ -1,4 +1,4 @@
-//! A problem: the requested quantity, the exact answer, and the computation of ours.
+//! A problem: the requested quantity, the exact answer, and the computation that gives the answer of the program.
 
 use barrelstack_dynamics::{ModelError, RunError, SettleError};
 
@@ -11,7 +11,7 @@ pub enum Effort {
     Full,
 }
 
-/// The allowed deviation of an answer from the exact one.
+/// The allowed deviation of an answer from the exact answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
     /// Relative to the exact answer.
@@ -21,7 +21,7 @@ pub enum Tolerance {
 }
 
 impl Tolerance {
-    /// Returns the error of an answer, relative or absolute like this tolerance.
+    /// Returns the error of an answer, relative or absolute in accordance with this tolerance.
     pub fn error(self, value: f64, exact: f64) -> f64 {
         match self {
             Self::Relative(_) => (value - exact).abs() / exact.abs(),
@@ -36,13 +36,13 @@ impl Tolerance {
         }
     }
 
-    /// Returns `true` if an answer is within the tolerance; NaN never is.
+    /// Returns `true` if an answer is within the tolerance; NaN is never within.
     pub fn admits(self, value: f64, exact: f64) -> bool {
         self.error(value, exact) <= self.limit()
     }
 }
 
-/// Our answer to a problem.
+/// The answer of the program to a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// The answer, in the unit of the problem.
@@ -76,7 +76,7 @@ impl From<f64> for Outcome {
 /// Reasons why a problem has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// The bodies make no valid model.
+    /// The bodies do not form a valid model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The run failed numerically.
@@ -115,7 +115,7 @@ pub struct Problem {
     pub source: String,
     /// The requested quantity.
     pub quantity: &'static str,
-    /// Its unit; empty for pure numbers.
+    /// Unit of the quantity; empty for pure numbers.
     pub unit: &'static str,
     /// The exact or published answer.
     pub exact: f64,
@@ -123,7 +123,7 @@ pub struct Problem {
     pub tolerance: Tolerance,
     /// Tolerance at fast effort, if it is coarser.
     pub fast: Option<Tolerance>,
-    /// The computation.
+    /// The computation of the answer.
     pub run: Run,
 }
 
@@ -184,7 +184,7 @@ pub fn absolute(exact: f64, limit: f64) -> Answer {
 }
 
 impl Answer {
-    /// Returns the answer with another limit of the same kind for fast effort.
+    /// Returns the answer with a second limit, of the same kind, that applies at fast effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -224,7 +224,8 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// Adds a bisection between brackets at a fraction of the exact answer to either side of it (see [`border`]).
+    /// Adds a bisection between two brackets (see [`border`]), which lie on both sides of the exact answer, at a
+    /// distance that is a fraction of it.
     pub fn at_border(
         self,
         share: f64,
