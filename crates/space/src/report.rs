@@ -204,8 +204,8 @@ fn fates(run: &Run) -> Table {
     let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
     Table::of(
-        "Slips are displacements relative to the supports of a body, before the first loss of seat. All other displacements \
-         are those at the end.",
+        "Slips are displacements relative to the supports of a body, before the first loss of \
+         seat. All other displacements are those at the end.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
             ("body", "", &|(part, _)| Cell::text(&part.name)),

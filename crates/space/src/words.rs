@@ -82,16 +82,16 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.first();
         if across + along > 0 {
             sentences.push(format!(
-                "In the {} variants that fall, the first body leaves its seat across the barrels in {across} and \
-                 along the barrels in {along}.",
+                "In the {} variants that fall, the first body leaves its seat across the barrels \
+                 in {across} and along the barrels in {along}.",
                 across + along
             ));
         }
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall{}, {} end up across the barrels from their position at rest, and {} along the \
-                 barrels.",
+                "Of the barrels that fall{}, {} end up across the barrels from their position at \
+                 rest, and {} along the barrels.",
                 summary
                     .ensemble
                     .as_ref()

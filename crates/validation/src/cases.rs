@@ -141,8 +141,8 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: a border needs \"g\" or \"m/s\", and a time or a displacement must have no unit; \
-                 found {unit:?} for {quantity:?}"
+                "expect.unit: a border needs \"g\" or \"m/s\", and a time or a displacement must \
+                 have no unit; found {unit:?} for {quantity:?}"
             )));
         }
     };

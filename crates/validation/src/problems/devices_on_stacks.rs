@@ -168,7 +168,8 @@ fn tie() -> Problem {
     let omega = (stiffness / ABOARD).sqrt();
     setting(
         "devices/tie",
-        "a stack that slides without friction between ties to both walls, each tie with 2 cm of slack",
+        "a stack that slides without friction between ties to both walls, each tie with 2 cm of \
+         slack",
         "4 δ/v + 2π/ω",
     )
     .quantity("period", "s", relative(4.0 * slack / speed + TAU / omega, 5e-3))
@@ -270,7 +271,10 @@ fn tuned(share: f64) -> Problem {
     let (blow, seconds) = (0.5, 0.02);
     setting(
         format!("devices/tuned-mass-{share}"),
-        format!("a stack on a platform with springs and a tuned mass by Den Hartog, {share} times all other mass"),
+        format!(
+            "a stack on a platform with springs and a tuned mass by Den Hartog, {share} times all \
+             other mass"
+        ),
         "two degrees of freedom",
     )
     .quantity("largest displacement divided by the static displacement", "", relative(exact, 1e-2))

@@ -35,7 +35,8 @@ fn stopped(height: f64) -> Problem {
     let [mass, radius, hardness] = BARREL;
     let exact = largest_force(height);
     setting(format!("falls/force-{height}"), format!(
-            "a barrel that falls {height} m onto ground with the stiffness of the default impact law"
+            "a barrel that falls {height} m onto ground with the stiffness of the default impact \
+             law"
         ), "energy: m g (h + δ) = ⅖ k δ^2.5")
 .quantity("largest force on the barrel", "N", relative(exact, 1e-4))
 .by(move |_| {

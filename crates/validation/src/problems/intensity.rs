@@ -94,7 +94,8 @@ fn of_push(period: f64) -> Problem {
 fn short_period() -> Problem {
     setting(
         "intensity/short-period",
-        "the harmonic motion with twelve samples per cycle; oscillator period of a twentieth of the sample step",
+        "the harmonic motion with twelve samples per cycle; oscillator period of a twentieth of \
+         the sample step",
         SOURCE,
     )
     .quantity("Sa divided by PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4

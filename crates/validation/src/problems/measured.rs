@@ -55,7 +55,10 @@ fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));
     setting(
         format!("measured/{name}-decay"),
-        format!("the same block, with the damping calibrated at the first impact to the measured η = {ratio}"),
+        format!(
+            "the same block, with the damping calibrated at the first impact to the measured η = \
+             {ratio}"
+        ),
         SOURCE,
     )
     // The loss at an impact depends slightly on the rotation, mostly for the smallest of the three blocks.

@@ -67,7 +67,8 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     setting(
         format!("ode/rocking-{name}"),
         format!(
-            "block of α = {alpha} released at φ = 0.5, ground acceleration with a sine of {push} g, {omega} rad/s"
+            "block of α = {alpha} released at φ = 0.5, ground acceleration with a sine of {push} \
+             g, {omega} rad/s"
         ),
         SOURCE,
     )
@@ -162,8 +163,8 @@ fn springs() -> Problem {
     let exact = depth(z, angle);
     setting(
         "ode/two-springs",
-        "tilted block on two frictionless springs (60 rad/s, ζ = 0.02) on a floor that moves \
-         up and down",
+        "tilted block on two frictionless springs (60 rad/s, ζ = 0.02) on a floor that moves up \
+         and down",
         SOURCE,
     )
     .quantity("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
@@ -240,7 +241,8 @@ fn bowl() -> Problem {
     let exact = solution(rates, [0.0, 0.0, spin], (0.0, until))[0];
     setting(
         "ode/cradle-slip",
-        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m with a spin of 40 rad/s; it slips",
+        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m with a spin of 40 rad/s; it \
+         slips",
         SOURCE,
     )
     .quantity("angle after 0.6 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.7e-6 and 4.4e-5
@@ -305,8 +307,8 @@ fn own_lean() -> Problem {
     let exact = solution(rates, [start, 0.0], (0.0, until))[0];
     setting(
         "ode/own-integrator-lean",
-        "the problem ode/rocking-leaning, solved by the integrator for rigid blocks of this \
-         crate, in steps of at most 10 ms",
+        "the problem ode/rocking-leaning, solved by the integrator for rigid blocks of this crate, \
+         in steps of at most 10 ms",
         SOURCE,
     )
     .quantity("rotation after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
@@ -333,14 +335,14 @@ fn own_peak() -> Problem {
     let exact = rigid.alpha - acos(left);
     setting(
         "ode/own-integrator-peak",
-        "block at rest under a half-sine of 1.7 g tan α, solved by the integrator of this crate with the time step of \
-         the ensembles",
+        "block at rest under a half-sine of 1.7 g tan α, solved by the integrator of this crate \
+         with the time step of the ensembles",
         SOURCE,
     )
     .quantity("largest rotation", "rad", relative(exact, 1e-5)) // measured 1.9e-7
     .by(move |_| {
-            let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
-            let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);
-            Ok(ride.peak)
-        })
+        let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
+        let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);
+        Ok(ride.peak)
+    })
 }

@@ -10,42 +10,46 @@ use barrelstack::scenario::{RackKind, Scenario, catalog};
 /// Creates the problem of the deepest overlap of two bodies without a common seat. Stacks of all kinds are strongly
 /// shaken, and all frames until the bodies come to rest are checked.
 pub(super) fn problem() -> Problem {
-    setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")
-.quantity("deepest overlap, except at seats", "m", absolute(0.0, 0.015))
-.by(|effort| {
-            let (count, records) =
-                if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
-            let mut worst = Survey::default();
-            let (mut fallen, mut unstable) = (0, 0);
-            for case in 0..count {
-                let scenario = random_stack(case, &records)?;
-                let run = match scenario.run() {
-                    Ok(run) => run,
-                    // A stack whose rails are too steep for the staves does not come to rest; it is counted as such.
-                    Err(barrelstack::RunFailure::Settle(_)) => {
-                        unstable += 1;
-                        continue;
-                    }
-                    Err(failure) => return Err(failure.into()),
-                };
-                fallen += usize::from(run.fates.collapse_time().is_some());
-                worst.look(&run);
-            }
-            if fallen * 3 < count {
-                return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
-            }
-            let note = format!(
-                "{fallen} of {count} stacks fell; {unstable} did not stand at rest; {} records besides the \
-                 bundled one; overlap at seats {:.1} mm; at the end \
-                 {:.1} mm, and {:.1} mm at seats; largest residual of the energy balance {:.1e}",
-                records.len(),
-                1e3 * worst.seat,
-                1e3 * worst.end,
-                1e3 * worst.seat_end,
-                worst.balance
-            );
-            Ok(Outcome::of(worst.loose).noted(note))
-        })
+    setting(
+        "solids/overlap-of-falling-stacks",
+        "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames",
+        "bodies are solid",
+    )
+    .quantity("deepest overlap, except at seats", "m", absolute(0.0, 0.015))
+    .by(|effort| {
+        let (count, records) =
+            if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
+        let mut worst = Survey::default();
+        let (mut fallen, mut unstable) = (0, 0);
+        for case in 0..count {
+            let scenario = random_stack(case, &records)?;
+            let run = match scenario.run() {
+                Ok(run) => run,
+                // A stack whose rails are too steep for the staves does not come to rest; it is counted as such.
+                Err(barrelstack::RunFailure::Settle(_)) => {
+                    unstable += 1;
+                    continue;
+                }
+                Err(failure) => return Err(failure.into()),
+            };
+            fallen += usize::from(run.fates.collapse_time().is_some());
+            worst.look(&run);
+        }
+        if fallen * 3 < count {
+            return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
+        }
+        let note = format!(
+            "{fallen} of {count} stacks fell; {unstable} did not stand at rest; {} records besides \
+             the bundled one; overlap at seats {:.1} mm; at the end {:.1} mm, and {:.1} mm at \
+             seats; largest residual of the energy balance {:.1e}",
+            records.len(),
+            1e3 * worst.seat,
+            1e3 * worst.end,
+            1e3 * worst.seat_end,
+            worst.balance
+        );
+        Ok(Outcome::of(worst.loose).noted(note))
+    })
 }
 
 /// Deepest overlaps (m) that occurred.

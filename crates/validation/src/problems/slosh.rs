@@ -37,7 +37,10 @@ fn number(depth: f64) -> f64 {
 fn frequency(name: &str, source: &'static str, depth: f64, exact: f64, tolerance: f64) -> Problem {
     setting(
         format!("slosh/{name}"),
-        format!("horizontal cylinder filled to a depth of {depth} times its radius, first transverse wave"),
+        format!(
+            "horizontal cylinder filled to a depth of {depth} times its radius, first transverse \
+             wave"
+        ),
         source,
     )
     .quantity("ω² R/g", "", relative(exact, tolerance))
@@ -49,7 +52,8 @@ fn nearly_full() -> Problem {
     let half_width = (1.0 - (depth - 1.0) * (depth - 1.0)).sqrt();
     setting(
         "slosh/nearly-full",
-        "horizontal cylinder, full except for a narrow free surface (a slit), first transverse wave",
+        "horizontal cylinder, full except for a narrow free surface (a slit), first transverse \
+         wave",
         NEARLY_FULL,
     )
     .quantity("ω² b/g with half the width b of the slit", "", relative(2.006_119, 1e-3))
@@ -63,7 +67,10 @@ fn by_elements(depth: f64) -> Problem {
     let (exact, _) = finite_elements(depth, SIDE);
     setting(
         format!("slosh/frequency-{depth}"),
-        format!("horizontal cylinder filled to a depth of {depth} times its radius, first transverse wave"),
+        format!(
+            "horizontal cylinder filled to a depth of {depth} times its radius, first transverse \
+             wave"
+        ),
         ELEMENTS,
     )
     .quantity("ω² R/g", "", relative(exact, 4e-3))
@@ -74,7 +81,10 @@ fn mass(depth: f64) -> Problem {
     let (_, exact) = finite_elements(depth, SIDE);
     setting(
         format!("slosh/mass-{depth}"),
-        format!("horizontal cylinder filled to a depth of {depth} times its radius, first transverse wave"),
+        format!(
+            "horizontal cylinder filled to a depth of {depth} times its radius, first transverse \
+             wave"
+        ),
         ELEMENTS,
     )
     .quantity("share of the mass that moves with the wave", "", relative(exact, 4e-3))

@@ -155,7 +155,8 @@ fn rocks() -> Vec<Problem> {
     for degrees in [0.0, 30.0, 90.0] {
         let angle = f64::to_radians(degrees);
         let title = format!(
-            "box of 0.54 × 1.8 m that rocks, with the scene rotated by {degrees}° about the vertical"
+            "box of 0.54 × 1.8 m that rocks, with the scene rotated by {degrees}° about the \
+             vertical"
         );
         let mut problem = |name: &str, source, (quantity, unit, exact), of: fn(Impact) -> f64| {
             list.push(
@@ -179,8 +180,8 @@ fn rocks() -> Vec<Problem> {
             list.push(
                 setting(format!("space-blocks/rocks-{degrees}-turned"), title, "isotropy of space")
                     .quantity(
-                        "relative change of the next peak rotation and of the angular velocity when the scene \
-                         is rotated",
+                        "relative change of the next peak rotation and of the angular velocity \
+                         when the scene is rotated",
                         "",
                         absolute(0.0, 1e-9),
                     )

@@ -248,10 +248,17 @@ fn circling() -> [Problem; 2] {
     let problem = |name: &str, time: f64, place: (f64, f64)| {
         setting(
             format!("space-sliding/circling-{name}"),
-            format!("block on ground that moves in a circle with 5 m/s² and 1 Hz, μ = 0.3, after {time} s"),
+            format!(
+                "block on ground that moves in a circle with 5 m/s² and 1 Hz, μ = 0.3, after \
+                 {time} s"
+            ),
             "steady slip: friction moves the block in a circle, too",
         )
-        .quantity("distance from the exact position relative to the ground", "m", absolute(0.0, 1e-4))
+        .quantity(
+            "distance from the exact position relative to the ground",
+            "m",
+            absolute(0.0, 1e-4),
+        )
         .by(move |_| {
             let drive = Circling { acceleration: 5.0, omega: TAU };
             let mut scene = block(0.3, 0.0, 0.0, down())?;
