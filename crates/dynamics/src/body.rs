@@ -23,7 +23,7 @@ pub struct Placed<S: Space> {
     pub surface: S::Surface,
     /// Position (m) of the origin of the surface's frame in the body frame, relative to the center of mass.
     pub offset: S::Vector,
-    /// Rotation of the surface's frame in the body frame.
+    /// Rotation from the surface's frame to the body frame.
     pub rotation: S::Rotation,
 }
 
@@ -76,7 +76,7 @@ pub struct Round<S: Space> {
 /// the plane. For other bodies, whose edges may extend past the face, the direction of the contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
-    /// A point of the face (m), from the center of mass.
+    /// A point of the face (m), relative to the center of mass.
     pub point: S::Vector,
     /// Unit normal out of the body.
     pub outward: S::Vector,
@@ -99,7 +99,7 @@ pub enum Nodes<S: Space> {
         center: S::Vector,
         /// Radius of the circle (m).
         radius: S::Real,
-        /// Tributary length of boundary (m) of the node.
+        /// Length of boundary (m) that is tributary to the node.
         tributary_length: S::Real,
     },
     /// A convex solid of a three-dimensional model; its contacts are at its deepest points.
@@ -129,7 +129,7 @@ pub struct Body<S: Space> {
     pub mass: S::Real,
     /// Moment of inertia about the center of mass (kg·m²).
     pub inertia: S::Inertia,
-    /// Viscous damping matrix (eq. 2.8) acting on the velocity in the inertial frame.
+    /// Viscous damping matrix (eq. 2.8), which acts on the velocity in the inertial frame.
     pub damping: Option<S::Damping>,
     /// Initial pose.
     pub pose: Pose<S>,

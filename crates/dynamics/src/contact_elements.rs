@@ -62,10 +62,10 @@ pub struct ContactElements<S: Space> {
     pub(crate) weights: Vec<S::Real>,
     /// Stick memory of every element.
     pub(crate) sticks: Vec<Stick<S>>,
-    /// Smallest gap (m) of the elements of every group when the list was built.
+    /// For every group, the smallest gap (m) of its elements when the list was built.
     apart: Vec<S::Real>,
-    /// Upper bound of the displacement (m) of every body from the build of the list to the end of the current step;
-    /// infinite outside of a step.
+    /// For every body, an upper bound of its displacement (m) between the build of the list and the end of the current
+    /// step; infinite outside of a step.
     travels: Vec<S::Real>,
     /// Poses of the bodies when the list was built.
     built_for: Vec<Pose<S>>,
@@ -191,7 +191,7 @@ impl<S: Space> ContactElements<S> {
         stale.any()
     }
 
-    /// Lists the elements within the margin and transfers their memory.
+    /// Lists the elements within reach and transfers their memory from the old list.
     ///
     /// Returns the origins: for every element of the new list, its index in the old list.
     pub(crate) fn rebuild(
@@ -293,7 +293,8 @@ impl<S: Space> ContactElements<S> {
         couples.into_iter().flatten().collect()
     }
 
-    /// Returns the distance (m) of a ball about a point from a surface; `None` if it exceeds a margin (m) in all lanes.
+    /// Returns the distance (m) between a surface and a ball about a point; `None` if the distance exceeds a margin (m)
+    /// in all lanes.
     #[inline(always)]
     fn near(
         &self,
@@ -335,7 +336,8 @@ impl<S: Space> ContactElements<S> {
         !self.exhaustive && (round.greatest_depth + travels).lt(depth).all()
     }
 
-    /// Adds the elements of a pair that are within reach to the list; returns their least gap (m) in every lane.
+    /// Adds the elements of a pair that are within reach to the list; returns the smallest gap (m) of these elements in
+    /// every lane.
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
         let mut least = S::Real::splat(f64::INFINITY);
@@ -485,7 +487,7 @@ fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     model.bodies.iter().enumerate().map(allowance).collect()
 }
 
-/// Traverses an old list in step with a new one; both are sorted by pair and node.
+/// Looks up elements in an old list while a new list is traversed; both lists are sorted by pair and node.
 struct Remembered<'a, S: Space> {
     old: &'a ContactElements<S>,
     group: usize,

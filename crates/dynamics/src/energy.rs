@@ -14,13 +14,13 @@ use crate::state::State;
 pub struct EnergySummary {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Potential energy in gravity, relative to the start.
+    /// Gravitational potential energy, relative to the start.
     pub potential: f64,
     /// Energy stored in normal springs and in force elements.
     pub elastic: f64,
     /// Energy stored in sticks, the tangential springs of friction.
     pub stick: f64,
-    /// Energy lost in the dampers of contacts and elements, by yielding, and with broken elements.
+    /// Energy lost in the dampers of contacts and elements, by yielding of elements, and by the breaking of elements.
     pub damped: f64,
     /// Energy lost to friction, that is, to sliding and to the damping of sticks.
     pub friction: f64,
@@ -96,7 +96,7 @@ struct Stored<R> {
 }
 
 impl<S: Space> EnergyLedger<S> {
-    /// Starts the balance at a state whose forces are in `scratch`.
+    /// Starts the energy balance at a state whose forces are in `scratch`.
     pub fn new(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Self {
         let stored = stored(model, state, scratch);
         Self {

@@ -30,10 +30,9 @@ pub struct ContactPair {
     pub counts: Counts,
 }
 
-/// Filter that assigns each contact near a face to exactly one pair.
-///
-/// One pair may test a face by its nodes and another pair test it exactly. Without the filter, a contact found by both
-/// would be counted twice.
+/// Filter that assigns each contact near a face to exactly one pair. One pair may test a face with the nodes of the
+/// face, and another pair may test the same face exactly. Without the filter, a contact found by both would be counted
+/// twice.
 ///
 /// A contact belongs to the face if the other body's center of mass lies in front of the face and the angle between the
 /// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
@@ -58,14 +57,14 @@ pub const FORESEEN: f64 = 0.01;
 /// Impact laws are the stiffest laws of a model, but only at large penetration, so steps are divided only then.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substepping<R> {
-    /// Number of substeps of a time step while an impact requires it; an integer, one or more.
+    /// Number of substeps into which a time step is divided while an impact requires it; an integer, at least one.
     pub substeps: R,
     /// For every interface, the largest penetration (m) that whole time steps resolve; infinite for no limit.
     pub whole_step_depth: Vec<R>,
     /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
     /// contact at rest: for such a contact, only stability limits the penetration, while impacts must also be accurate.
     pub resting_allowance: R,
-    /// Gap (m) below which impacts are predicted; an impact that closes a larger gap within the lookahead is detected
+    /// Gap (m) below which impacts are predicted. If a larger gap closes within the lookahead, the impact is detected
     /// late. [`FORESEEN`] suits stacks.
     pub foreseen_gap: R,
     /// Additional rules for fast contacts of whole bodies; `None` to disable them.
@@ -97,8 +96,8 @@ pub struct Model<S: Space> {
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
-    /// For every body, the first body with equal boundaries. Boundaries are read from that body, so that a thousand
-    /// equal blocks occupy the cache of one.
+    /// For every body, the first body with equal boundaries. Boundaries are read from the first body, so that a
+    /// thousand equal blocks need no more cache than one block.
     pub(crate) alike: Vec<BodyId>,
     pub(crate) substepping: Substepping<S::Real>,
 }
@@ -272,7 +271,7 @@ impl<S: Space> Model<S> {
         Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }
 
-    /// Enables substeps during impacts; a new model divides no step.
+    /// Enables substeps during impacts. In a new model, substeps are disabled.
     ///
     /// # Panics
     /// If the number of penetrations differs from the number of interfaces.
@@ -329,8 +328,8 @@ impl<S: Space> Model<S> {
         self.pairs.get(number)
     }
 
-    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all that may be its
-    /// target.
+    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all bodies that may be
+    /// its target.
     pub fn each_meeting(&self, report: &mut TellMeeting<'_>) {
         self.pairs.each(report);
     }
@@ -360,7 +359,7 @@ impl<S: Space> Model<S> {
         self.inert.iter().any(|body| body.damped)
     }
 
-    /// Returns the body from which the boundaries of a body are read.
+    /// Returns the body whose boundaries stand for those of a body: the first body with equal boundaries.
     #[inline(always)]
     pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
         &self.bodies[self.alike[body]]

@@ -29,7 +29,7 @@ pub(crate) struct AtFace<S: Space> {
     /// Outward normal of the face, in the frame of the target's surface, with the same sign convention as contact
     /// normals.
     out: S::Vector,
-    /// [`Face::widest`](crate::body::Face::widest).
+    /// Copy of [`Face::widest`](crate::body::Face::widest).
     widest: S::Real,
     of_nodes: bool,
 }

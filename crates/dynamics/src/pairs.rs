@@ -21,14 +21,15 @@ pub(crate) enum Pairs {
         /// The kind of every body.
         kinds: Vec<usize>,
         /// The pairs of two bodies, indexed by the kind of the body with the lower ID and then by the kind of the other
-        /// body. In these pairs the former has the ID 0 and the latter the ID 1.
+        /// body. In these pairs, the body with the lower ID is number 0 and the other body is number 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
-        /// Number of pair numbers reserved for every two bodies.
+        /// Number of pair indices that are reserved for every two bodies.
         most: usize,
     },
 }
 
-/// Callback: a representative pair, its candidate contactors, and its candidate targets.
+/// Callback that receives a representative pair, all bodies that may be its contactor, and all bodies that may be its
+/// target.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
 /// The pairs of two bodies in the list.
@@ -134,8 +135,8 @@ impl Pairs {
         (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
     }
 
-    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all that may be its
-    /// target.
+    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all bodies that may be
+    /// its target.
     pub(crate) fn each(&self, report: &mut TellMeeting<'_>) {
         match self {
             Self::Listed { pairs, .. } => {

@@ -66,8 +66,8 @@ where
 pub struct Simulation {
     /// The method.
     pub method: Method,
-    /// Time step (s), divided during impacts if the model has [`Substepping`]; for an adaptive method, the first and
-    /// the maximum step.
+    /// Time step (s). It is divided during impacts if the model has [`Substepping`]. For an adaptive method, it is the
+    /// first step and the maximum step.
     pub time_step: f64,
     /// End time (s).
     pub end_time: f64,
@@ -201,7 +201,7 @@ impl<R: Real> StepTimes<R> {
         (self.whole, self.short) = (R::splat(1.0), R::splat(1.0));
     }
 
-    /// Returns the time (s) ahead for which impacts are predicted; zero if no step is divided.
+    /// Returns the time span (s) over which impacts are predicted; zero if steps are never divided.
     pub(crate) fn lookahead(&self) -> R {
         let divided = self.short.lt(self.whole);
         R::select(divided, R::splat(LOOKAHEAD) * self.time_step, R::zero())

@@ -23,7 +23,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) spec: &'a StackSpec,
     pub(crate) barrel: Barrel,
     pub(crate) bodies: Vec<Body<Spatial>>,
-    /// One part for every body, in the same order.
+    /// Descriptions of the bodies, in the order of the bodies.
     pub(crate) parts: Vec<Part>,
     pub(crate) laws: Laws,
     /// Elements that will be fitted to the stack at rest.
@@ -38,7 +38,7 @@ pub(crate) struct Builder<'a> {
 
 /// Contact laws, and the indices of the laws of devices.
 pub(crate) struct Laws {
-    /// All laws: those of [`StackPair::ALL`] at their indices, followed by those of devices.
+    /// All laws: those of [`StackPair::ALL`] at their indices, followed by the laws of devices.
     pub(crate) all: Vec<Interface<Spatial>>,
     /// Index of the law between a barrel and its cradle.
     cradle: InterfaceId,
@@ -295,7 +295,7 @@ impl<'a> Builder<'a> {
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// Adds the pairs of all solids of two bodies, each with the law of the contactor's solid.
+    /// Adds the contact pairs of all solids of two bodies; the law of a pair depends on the solid of the contactor.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,

@@ -41,7 +41,7 @@ pub fn specs() -> impl Iterator<Item = ColumnSpec> {
     COLUMNS.iter().map(|(name, kind, _)| ColumnSpec::new(name, "", Role::Outcome, *kind))
 }
 
-/// Returns the meaning of a column; `None` if the column is not one of this module.
+/// Returns the meaning of a column; `None` if the column does not belong to this module.
 pub fn meaning(name: &str) -> Option<&'static str> {
     COLUMNS.iter().find(|(known, ..)| *known == name).map(|(.., meaning)| *meaning)
 }

@@ -55,7 +55,8 @@ impl Sight {
         }
     }
 
-    /// Returns `true` if events with a heading are labeled in this view; each event is labeled in one view.
+    /// Returns `true` if events in the direction `heading` are labeled in this view. Each event is labeled in exactly
+    /// one view.
     fn shows(self, heading: Heading) -> bool {
         match self {
             Self::Across => heading.is_across(),
@@ -222,7 +223,7 @@ fn slope(run: &Run) -> f64 {
 /// Returns the ground: the floor, as a line longer than any picture is wide, and the walls, ceilings and dishes of
 /// devices.
 ///
-/// The floor has no line in the view from above, nor in the view along the barrels if the ground slopes.
+/// The floor is not drawn in the view from above, nor in the view along the barrels if the ground slopes.
 fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
     let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
@@ -247,7 +248,7 @@ fn yard(run: &Run, sight: Sight) -> SceneBody {
     SceneBody::new("", Role::Block, corners.into())
 }
 
-/// Returns the corners of the area that all bodies cover, relative to the ground.
+/// Returns two opposite corners of the area that all bodies cover, relative to the ground.
 fn bounds(run: &Run, sight: Sight) -> [Point; 2] {
     let page = sight.page();
     let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);

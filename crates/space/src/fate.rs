@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::stack::Stack;
 
-/// Horizontal direction of a motion, for a viewer in front of the heads of the barrels: `x` is to the right and `y`
-/// away.
+/// Horizontal direction of a motion, as seen by a viewer in front of the heads of the barrels: `x` points to the right
+/// and `y` away from the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Heading {
@@ -63,7 +63,7 @@ pub struct Fate {
     pub rest: Vec3,
     /// Time (s), kind and direction of the loss of seat.
     pub left_seat: Option<(f64, Loss, Heading)>,
-    /// Time (s) at which the body had dropped by the threshold of a fall.
+    /// Time (s) at which the drop of the body reached the threshold that counts as a fall.
     pub fell_at: Option<f64>,
     /// Largest drop (m) below the position at rest.
     pub drop: f64,
@@ -120,7 +120,7 @@ pub struct Fates<'a> {
     all: Vec<Fate>,
     /// Time (s) of the first loss of seat, and the body that lost its seat.
     collapse: Option<(f64, BodyId)>,
-    /// Time (s) at which the first barrel had fallen.
+    /// Time (s) at which the first barrel counted as fallen.
     first_fall: Option<f64>,
 }
 
@@ -155,7 +155,7 @@ impl<'a> Fates<'a> {
         self.collapse
     }
 
-    /// Returns the time (s) at which the first barrel had fallen.
+    /// Returns the time (s) at which the first barrel counted as fallen.
     pub fn first_fall(&self) -> Option<f64> {
         self.first_fall
     }

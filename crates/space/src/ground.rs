@@ -11,13 +11,14 @@ const SQUARE: f64 = 5.0;
 /// Ground motion of a stack in space.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// The horizontal component of the scenario, and the vertical component if there is one.
+    /// The horizontal component that the scenario names, and the vertical component if there is one.
     pub first: barrelstack::Ground,
     /// The other horizontal component; `None` if the motion has only one.
     pub second: Option<barrelstack::Ground>,
     /// Cosine and sine of the angle by which the stack is rotated counterclockwise.
     turn: [f64; 2],
-    /// 1 if the second component points a quarter turn counterclockwise from the first, -1 if clockwise.
+    /// 1 if the second component points a quarter turn counterclockwise from the first; -1 if it points a quarter turn
+    /// clockwise.
     hand: f64,
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
@@ -100,7 +101,7 @@ impl Ground {
         self.each(|ground| ground.calm_from(limit))
     }
 
-    /// Returns source and processing of all components, one sentence each.
+    /// Returns the source and the processing of all components, in one sentence each.
     pub fn provenance(&self) -> Vec<String> {
         let grounds = [Some(&self.first), self.second.as_ref()];
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());

@@ -37,10 +37,10 @@ pub struct Part {
 /// Seats of the tubes of a rack.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seats {
-    /// For every tube, the barrel that it carries.
+    /// For every tube, the barrel that the tube carries, if any.
     pub(crate) carries: Vec<Option<BodyId>>,
-    /// For every tube, the barrels on which it lies; empty for a tube on the ground, `None` for a tube that rests on
-    /// nothing.
+    /// For every tube, the barrels on which the tube lies; empty for a tube on the ground, `None` for a tube that rests
+    /// on nothing.
     pub(crate) lies_on: Vec<Option<Vec<BodyId>>>,
 }
 

@@ -32,7 +32,7 @@ pub(crate) struct Tubes {
     pub(crate) posts: Vec<((u32, u32), usize)>,
 }
 
-/// Heights (m) that result from the dimensions of rack and barrel.
+/// Heights (m) that follow from the dimensions of the rack and the barrel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Heights {
     /// Height of the axis of a carried barrel above the underside of its rack.

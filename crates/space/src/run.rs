@@ -38,7 +38,7 @@ pub struct Standing {
     pub settled: Option<Settled>,
 }
 
-/// Poses and twists of all bodies at the frames of a run.
+/// Poses and twists of all bodies in the frames of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     /// Times (s).
@@ -65,7 +65,7 @@ pub struct Run {
     pub heading: Option<Heading>,
     /// Fates of all bodies, in the order of the parts.
     pub fates: Vec<Fate>,
-    /// Time (s) at which the first barrel had fallen.
+    /// Time (s) at which the first barrel counted as fallen.
     pub first_fall: Option<f64>,
     /// Fates of all elements of the devices, in the order of the elements in the model.
     pub elements: Vec<ElementFate>,
@@ -134,7 +134,7 @@ fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure
     Ok(Standing { stack, state, scratch, settled })
 }
 
-/// Rejects a stack whose bodies overlap as built.
+/// Rejects a stack whose bodies overlap in their initial positions.
 fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), AssembleError> {
     let depth = |contact: &&Contact<Spatial>| contact.penetration;
     let deepest = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -146,7 +146,7 @@ fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), Assemb
     Err(AssembleError::Overlap { first, second, depth: contact.penetration })
 }
 
-/// Runs a scenario in space under its own motion.
+/// Runs a scenario in space under the ground motion of the scenario.
 ///
 /// ```
 /// use barrelstack::Scenario;
@@ -262,7 +262,7 @@ impl Run {
         elements.zip(self.stack.devices.iter().copied()).zip(&self.elements)
     }
 
-    /// Returns the barrels that fell, in order.
+    /// Returns the barrels that fell, in the order of the parts.
     pub fn fallen(&self) -> impl Iterator<Item = BodyId> + '_ {
         let fell = |body: &BodyId| self.fates[*body].fell_at.is_some();
         self.stack.of_kind(PartKind::Barrel).filter(fell)

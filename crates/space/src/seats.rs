@@ -46,7 +46,8 @@ struct Pair {
     bodies: [BodyId; 2],
     /// Index of the first contact element of the pair.
     first: usize,
-    /// Index of the joint of the two bodies, once they have touched, and `true` if the contactor is the upper body.
+    /// Index of the joint between the two bodies, and `true` if the contactor is the upper body; `None` until the
+    /// bodies have touched.
     joint: Option<(usize, bool)>,
 }
 

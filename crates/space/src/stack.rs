@@ -21,7 +21,7 @@ use crate::rack::Heights;
 pub struct Stack {
     /// The model.
     pub model: Model<Spatial>,
-    /// One part for every body, in the same order; the ground comes first.
+    /// Descriptions of the bodies, in the order of the bodies; the ground comes first.
     pub parts: Vec<Part>,
     /// Time step (s), divided during impacts; for a stack, the smallest of the steps of its plane models across and
     /// along the barrels.
@@ -30,14 +30,14 @@ pub struct Stack {
     pub height: f64,
     /// Number of levels; zero for a free scene.
     pub levels: u32,
-    /// Radius (m) of a barrel at its widest, on which it lies on the ground; zero for a free scene.
+    /// Radius (m) of a barrel at its bilge, the widest part, on which it lies on the ground; zero for a free scene.
     pub bilge_radius: f64,
     /// Displacements (m) of a rack on the barrels below, across and along the barrels, beyond which the rack is no
     /// longer supported. The values are those of the respective plane models.
     pub reach: [f64; 2],
     /// Vertical force (N) that the staves of a barrel can bear between two racks; zero for a free scene.
     pub stave_capacity: f64,
-    /// Elements of devices that will be fitted once the stack is at rest.
+    /// Elements of devices that will be fitted when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
     /// The device of every element of the model.
     pub(crate) devices: Vec<&'static Words>,
@@ -112,7 +112,7 @@ impl Stack {
     }
 }
 
-/// Returns the specification of the stack of a scenario; fails if there is none in space.
+/// Returns the specification of the stack of a scenario; fails if the scenario has no stack in space.
 fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     match &scenario.scene {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
@@ -143,7 +143,7 @@ struct Pace {
     step: f64,
     /// Number of substeps during impacts.
     substeps: f64,
-    /// Largest penetration (m) that whole steps resolve, by the name of the law.
+    /// Largest penetration (m) that whole steps resolve, for each law by its name.
     depths: BTreeMap<String, f64>,
     /// [`Substepping::resting_allowance`]: the smallest value of all plane models.
     resting_allowance: f64,

@@ -22,7 +22,7 @@ const LONGEST: f64 = 1e-3;
 /// a tumbling block stays below 3e-9.
 const TURN: f64 = 5e-3;
 
-/// Returns the time step (s) that a scenario states, or by default one that follows from its contacts and spins.
+/// Returns the time step (s) that a scenario states or, by default, a step derived from its contacts and initial spins.
 pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f64, RunFailure> {
     let rate = fastest(model, |pair| {
         let law = &model.interfaces()[pair.interface];

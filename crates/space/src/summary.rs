@@ -17,7 +17,7 @@ use crate::variants::{Case, demands};
 
 described! {
     /// The summary of a run in space. Lengths are in m, times in s, angles in rad; `x` is across the barrels, `y` along
-    /// them, `z` up. A value is null where an event did not happen or does not apply.
+    /// the barrels, `z` up. A value is null where an event did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct Summary {
         /// Name and version of this layout.
@@ -32,7 +32,7 @@ described! {
         pub unfinished: Option<Unfinished>,
         /// Changes that would have kept the stack up; null if the stack stands or if no change was searched for.
         pub remedy: Option<Remedy>,
-        /// Directions in which variants fall; null where no variants were run.
+        /// Numbers of variants and barrels that fall in each direction; null where no variants were run.
         pub directions: Option<Directions>,
         /// Outcome of the run.
         pub outcome: OutcomeInSpace,
@@ -49,9 +49,9 @@ described! {
         pub devices: Devices,
         /// The energy balance; null where the numbers are no longer finite.
         pub energy: Option<EnergyBalance>,
-        /// The horizontal component of the scenario, and the vertical component.
+        /// The horizontal component of the ground motion that the scenario names, and the vertical component.
         pub motion: Option<MotionSummary>,
-        /// The other horizontal component; null where the motion has only one.
+        /// The other horizontal component of the ground motion; null where the motion has only one.
         pub other_component: Option<MotionSummary>,
         /// Settings and work of the computation.
         pub run: RunInSpace,
@@ -101,7 +101,7 @@ described! {
         pub from_level: Option<u32>,
         /// Highest of the levels that collapse.
         pub to_level: Option<u32>,
-        /// Time at which the first barrel had fallen.
+        /// Time at which the first barrel counted as fallen.
         pub first_fall: Option<f64> as "s",
         /// Barrels that had fallen at the end; null where the run is invalid or was interrupted.
         pub barrels_fallen: Option<usize>,
@@ -128,7 +128,7 @@ described! {
         pub left_seat_at: Option<f64> as "s",
         /// Direction in which the body left its seat.
         pub left_seat_to: Option<&'static str> ["right", "left", "away", "near"],
-        /// Time at which the body had fallen.
+        /// Time at which the body counted as fallen.
         pub fell_at: Option<f64> as "s",
         /// Largest drop below the position at rest.
         pub drop: f64 as "m",
@@ -190,12 +190,12 @@ described! {
     }
 }
 
-/// Returns the number of cases whose first body falls in a direction.
+/// Returns the number of cases in which the first body leaves its seat in a given direction.
 fn first(cases: &[Case], heading: Heading) -> u32 {
     count(cases, |case| usize::from(case.first == Some(heading)))
 }
 
-/// Returns the number of barrels, in all cases, that fell in a direction.
+/// Returns the number of barrels, in all cases, that fell in a given direction.
 fn debris(cases: &[Case], heading: Heading) -> u32 {
     count(cases, |case| case.debris.iter().filter(|lies| **lies == heading).count())
 }

@@ -30,7 +30,7 @@ use crate::summary::{Directions, Summary};
 pub struct Case {
     /// The same results as for a case in a plane, but without trails.
     pub result: CaseResult,
-    /// Direction in which the first body left its seat, if any did.
+    /// Direction in which the first body left its seat, if any body did.
     pub first: Option<Heading>,
     /// For each fallen barrel, the direction from its position at rest to its final position.
     pub debris: Vec<Heading>,
@@ -45,7 +45,8 @@ pub struct Answer {
     pub run: Run,
     /// Summary of the run, with the statistics of all variants.
     pub summary: Summary,
-    /// The case as stated and its variants, including interrupted ones; empty if no variants were run.
+    /// Results of the scenario as stated and of its variants, including interrupted cases; empty if no variants were
+    /// run.
     pub cases: Vec<Case>,
 }
 
@@ -99,7 +100,7 @@ impl Case {
         Self { result, first: None, debris: Vec::new() }
     }
 
-    /// Returns the direction in which the first body left its seat, if any did, and the directions of the fallen
+    /// Returns the direction in which the first body left its seat, if any body did, and the directions of the fallen
     /// barrels; `None` without a verdict.
     pub fn headings(&self) -> Option<(Option<Heading>, &[Heading])> {
         let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
@@ -124,7 +125,7 @@ fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResul
     Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }
 
-/// Returns the demands in a span of a run; displacements are horizontal, in any direction.
+/// Returns the demands in a span of a run. Displacements are horizontal and may have any direction.
 pub fn demands(run: &Run, span: Span) -> Demands {
     let Run { stack, fates, seats, .. } = run;
     let most = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> Option<f64>| {
@@ -163,13 +164,13 @@ pub fn demands(run: &Run, span: Span) -> Demands {
     }
 }
 
-/// Runs the case as stated and all its variants on all cores.
+/// Runs the scenario as stated and all its variants on all cores.
 ///
-/// The observer receives the number of finished cases and their total, and may stop the work; unfinished cases are
+/// The observer receives the number of finished cases and their total, and may stop the work. Unfinished cases are
 /// returned as interrupted.
 ///
-/// The first result is the case as stated, followed by the variants in the order of their numbers. Unlike in a plane,
-/// no variant exchanges the horizontal components: all keep the azimuth of the scenario.
+/// The first result is that of the scenario as stated, followed by those of the variants in the order of their numbers.
+/// Unlike in a plane, no variant exchanges the horizontal components: all variants keep the azimuth of the scenario.
 ///
 /// # Errors
 /// If the motion cannot be read, or the stack as stated cannot be built or does not stand.
@@ -233,7 +234,7 @@ fn run_some(
     pool::map(numbers, work, &|_| ())
 }
 
-/// A stack in space with a change that is tried as a remedy, and its variants.
+/// A stack in space to which a change is applied as a possible remedy, and its variants.
 struct InSpace {
     plane: Plane,
     ground: Ground,

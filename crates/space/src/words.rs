@@ -114,10 +114,11 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Maximum number of bodies of a free scene listed individually in the console; files list all.
+/// Maximum number of bodies of a free scene that the console output lists individually; the output files list all
+/// bodies.
 const MOST_LISTED: usize = 10;
 
-/// Demands shown in the console; the page shows all.
+/// Demands that the console output shows; the page shows all demands.
 const SHOWN: [&str; 5] = [
     "top_drift_ratio",
     "stress_amplification",

@@ -53,7 +53,7 @@ impl Rocker {
 
     /// Takes one Runge–Kutta step.
     ///
-    /// The push is evaluated slightly inside the ends of the step, since it may be discontinuous there.
+    /// The push is evaluated slightly inside the ends of the step, since it may be discontinuous at the ends.
     fn step(
         &self,
         (theta, spin): (f64, f64),
@@ -90,7 +90,7 @@ impl Rocker {
         (0..steps).fold(start, |at, i| self.step(at, 1.0, (f64::from(i) * length, length), &push))
     }
 
-    /// Returns `true` if the block can no longer overturn unless it is pushed again.
+    /// Returns `true` if the block cannot overturn any more without another push.
     fn safe(&self, theta: f64, spin: f64) -> bool {
         let left = self.alpha - theta.abs();
         let barrier = if self.slender { 0.5 * left * left } else { 1.0 - cos(left) };

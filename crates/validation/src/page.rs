@@ -1,5 +1,5 @@
-//! The report: every problem, with the exact answer, the answer of the program, the error, the tolerance and the order
-//! of convergence.
+//! The report: every problem, with the exact answer, the program's answer, the error, the tolerance and the order of
+//! convergence.
 
 use std::fmt::Write as _;
 

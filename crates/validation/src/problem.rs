@@ -1,13 +1,13 @@
-//! A problem: the requested quantity, the exact answer, and the computation that gives the answer of the program.
+//! A problem: the requested quantity, the exact answer, and the computation that gives the program's answer.
 
 use barrelstack_dynamics::{ModelError, RunError, SettleError};
 
 /// The computational effort of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// For the test suite: softer contacts, wider brackets, smaller ensembles.
+    /// Effort for the test suite: softer contacts, wider brackets, smaller ensembles.
     Fast,
-    /// For the report: converged answers, with the order of convergence.
+    /// Effort for the report: converged answers, with the order of convergence.
     Full,
 }
 
@@ -42,7 +42,7 @@ impl Tolerance {
     }
 }
 
-/// The answer of the program to a problem.
+/// The program's answer to a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// The answer, in the unit of the problem.
@@ -96,7 +96,7 @@ pub enum Failure {
     Absent(String),
 }
 
-/// Converts an error of another library to a failure.
+/// Converts any error to a failure.
 #[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
 pub fn absent(reason: impl ToString) -> Failure {
     Failure::Absent(reason.to_string())
@@ -121,7 +121,7 @@ pub struct Problem {
     pub exact: f64,
     /// Tolerance at full effort.
     pub tolerance: Tolerance,
-    /// Tolerance at fast effort, if it is coarser.
+    /// Tolerance at fast effort, if it differs from the tolerance at full effort.
     pub fast: Option<Tolerance>,
     /// The computation of the answer.
     pub run: Run,
@@ -237,7 +237,7 @@ impl Question {
     }
 }
 
-/// Evaluates the refinements 0, 1 and 2 at full effort, and only the coarsest, 0, at fast effort.
+/// Evaluates the refinements 0, 1 and 2 at full effort, and only the coarsest refinement, 0, at fast effort.
 ///
 /// # Errors
 /// If `answer` fails.

@@ -5,7 +5,7 @@ use crate::space::{Linear, Space};
 
 /// Friction law of one node.
 ///
-/// The returned force has the sign of the slip; the contact loop applies it to the contactor with a minus.
+/// The returned force has the sign of the slip; the contact loop applies the opposite force to the contactor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionLaw<R = f64> {
     /// No friction.
@@ -57,7 +57,7 @@ pub struct Stick<S: Space> {
     pub slipping: <S::Real as Real>::Mask,
 }
 
-/// A friction force and its recoverable energy.
+/// A friction force, and the recoverable energy of its spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<S: Space> {
     /// Force (N) in the direction of the slip; the opposite force acts on the contactor.
@@ -136,10 +136,9 @@ impl<S: Space> Stick<S> {
         Self { displacement, tangent_plane: to, ..self }
     }
 
-    /// Returns the stick memory after an accepted step: the displacement, limited by friction, and whether the node
-    /// slips.
-    ///
-    /// `self` has the displacement at the end of the step; `weight` is as in [`FrictionLaw::force`].
+    /// Returns the stick memory after an accepted step: the displacement, limited to the friction capacity, and whether
+    /// the node slips. `self` contains the displacement at the end of the step; `weight` is as in
+    /// [`FrictionLaw::force`].
     #[inline(always)]
     #[must_use]
     pub fn commit(

@@ -18,15 +18,15 @@ pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 /// number affects the location of the force but not the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
-    /// Constants of one node (N/m, N·s/m).
+    /// Constants per node (N/m, N·s/m).
     Node,
-    /// Constants of one meter of boundary (N/m², N·s/m²).
+    /// Constants per meter of boundary (N/m², N·s/m²).
     Length,
-    /// Constants of one seat (N/m, N·s/m). A seat is a place where two bodies touch, or a whole row of nodes on one
+    /// Constants per seat (N/m, N·s/m). A seat is a place where two bodies touch, or a whole row of nodes on one
     /// surface.
     ///
-    /// The depth of a row is that of its deepest node, and its force is divided among its nodes in proportion to
-    /// their depths.
+    /// The depth of a row is the depth of its deepest node, and the force of the row is divided among the nodes in
+    /// proportion to their depths.
     Seat,
 }
 
@@ -69,7 +69,7 @@ pub struct Interface<S: Space> {
     pub name: String,
     /// Normal law: compressive force from penetration and its rate.
     pub normal: NormalLaw<S::Real>,
-    /// Second law beyond the stroke of the normal law; `None` for an unlimited stroke.
+    /// Additional law that acts beyond the stroke of the normal law; `None` for an unlimited stroke.
     pub stop: Option<Stop<S::Real>>,
     /// Rolling resistance, if any.
     pub rolling: Option<Rolling<S::Real>>,

@@ -75,8 +75,8 @@ pub struct Stop<R = f64> {
 }
 
 impl<R: Real> Stop<R> {
-    /// Adds the force of the stop, in lanes that reach it, to the force of the soft law; `step` (s) is as in
-    /// [`NormalForce::within_step`].
+    /// Adds the force of the stop to the force of the soft law, in lanes whose penetration reaches the stop; `step` (s)
+    /// is as in [`NormalForce::within_step`].
     #[inline(always)]
     pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R, step: R) -> NormalForce<R> {
         let beyond = depth - self.depth;
@@ -102,7 +102,7 @@ pub enum Exponent {
     Hertzian,
 }
 
-/// A normal force and its recoverable part.
+/// A normal force, its recoverable part, and the stored energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalForce<R> {
     /// Compressive force (N), never negative.

@@ -16,7 +16,7 @@ pub fn damping(stiffness: f64, damping_ratio: f64, mass: f64) -> f64 {
 }
 
 /// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`, with
-/// `arcosh` and `√(ζ² − 1)` above ζ = 1.
+/// `arcosh ζ` and `√(ζ² − 1)` instead for ζ > 1.
 pub fn speed_gap(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let exponent = if (zeta - 1.0).abs() < 1e-7 {

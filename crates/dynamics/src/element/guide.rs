@@ -1,4 +1,4 @@
-//! Guides: a spring, a damper and stops along an axis of the body they are fixed to.
+//! Guides: a spring, a damper and stops that act along an axis of the body to which the guide is fixed.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -22,15 +22,15 @@ use crate::state::State;
 pub struct Guide<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Axis: a unit vector in the frame of the first body.
+    /// Axis of the guide: a unit vector in the frame of the first body.
     pub axis: S::Vector,
-    /// Vector from the first point to the second at rest (m), in the frame of the first body.
+    /// Vector (m) from the first point to the second point at rest, in the frame of the first body.
     pub place: S::Vector,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
-    /// Displacement δ (m) to either side at which the point meets a stop; infinite without stops.
+    /// Displacement δ (m) to either side at which the point reaches a stop; infinite for a guide without stops.
     pub gap: S::Real,
     /// Stiffness kₛ of the stops (N/m).
     pub stop_stiffness: S::Real,
@@ -38,7 +38,8 @@ pub struct Guide<S: Space> {
     pub stop_damping: S::Real,
     /// Force (N) above which the guide breaks; infinite if it never breaks.
     pub strength: S::Real,
-    /// Distance (m) from the axis beyond which the guide releases the point; infinite if it never does.
+    /// Distance (m) from the axis beyond which the guide releases the point; infinite if the guide never releases the
+    /// point.
     pub reach: S::Real,
     /// Direction in which the distance from the axis is not limited: a unit vector in the frame of the first body. Zero
     /// if the distance is limited in every direction.

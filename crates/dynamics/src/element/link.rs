@@ -13,7 +13,7 @@ pub struct Link<S: Space> {
     pub name: String,
     /// The joined bodies.
     pub bodies: [BodyId; 2],
-    /// Attachment points (m), each in the frame of its body.
+    /// Attachment points (m), each in the frame of the body to which it is fixed.
     pub points: [S::Vector; 2],
 }
 
@@ -22,9 +22,9 @@ lanewise!(struct Link<Planar<R>> { name, bodies, points });
 /// Geometry of a link at a state.
 pub(super) struct Line<S: Space> {
     bodies: [BodyId; 2],
-    /// Vectors (m) from the centers of mass to the points, in the inertial frame.
+    /// Vectors (m) from the centers of mass of the bodies to their attachment points, in the inertial frame.
     pub(super) arms: [S::Vector; 2],
-    /// Vector (m) from the first point to the second.
+    /// Vector (m) from the first attachment point to the second.
     apart: S::Vector,
     /// Distance (m) between the points.
     pub(super) distance: S::Real,

@@ -25,7 +25,7 @@ pub use strap::Strap;
 pub struct Memory<S: Space> {
     /// Plastic elongation (m).
     pub plastic: S::Real,
-    /// `true` once the element is broken; from then on it exerts no force.
+    /// `true` if the element is broken. A broken element exerts no force.
     pub broken: <S::Real as Real>::Mask,
 }
 
@@ -34,11 +34,11 @@ lanewise!(struct Memory<Planar<R>> { plastic } masks { broken });
 /// Force and energy of an element at a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load<R: Real> {
-    /// Force (N) along the element, positive where it pulls its bodies together.
+    /// Force (N) along the element, positive in tension.
     pub force: R,
-    /// Energy stored in the element (J); lost when it breaks.
+    /// Energy stored in the element (J), which is lost when the element breaks.
     pub energy: R,
-    /// Part of the force (N) that is due to the spring and stores the energy.
+    /// Part of the force (N) that is due to the spring, which stores the energy.
     pub elastic: R,
     /// Plastic elongation (m) of the element if the state is accepted.
     pub plastic: R,
@@ -53,7 +53,7 @@ pub(crate) struct Action<S: Space> {
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
-/// Declares the kinds of elements, each a struct with a `link` and the functions called here.
+/// Declares the kinds of elements. Each kind is a struct with a field `link` and the functions that are called here.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident),*) => {
         /// A force element.
@@ -76,12 +76,12 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => &element.link),* }
             }
 
-            /// Returns the largest stiffness (N/m) between the points.
+            /// Returns the largest stiffness (N/m) of the element between its two points.
             pub fn stiffness(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.stiffness()),* }
             }
 
-            /// Returns the largest damping (N·s/m) between the points.
+            /// Returns the largest damping (N·s/m) of the element between its two points.
             pub fn damping(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
@@ -96,7 +96,8 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => element.flaw()),* }
             }
 
-            /// Returns load and wrenches at a state; zero in lanes where the element is broken.
+            /// Returns the load and the wrenches of the element at a state; they are zero in lanes where the element is
+            /// broken.
             #[inline(always)]
             pub(crate) fn act(
                 &self,
@@ -146,7 +147,7 @@ impl<S: Space> Element<S> {
     }
 }
 
-/// Returns `true` if a number is `sound` in every lane.
+/// Returns `true` if `sound` accepts the number in every lane.
 fn all<R: Real>(number: R, sound: fn(f64) -> bool) -> bool {
     (0..R::LANES).all(|lane| sound(number.lane(lane)))
 }

@@ -53,7 +53,7 @@ pub struct ContactTotals<R> {
 
 /// Dissipative forces on one body, with their moments about its center of mass.
 ///
-/// The energy ledger multiplies them by the motion of the body.
+/// The energy ledger multiplies these forces by the displacement of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
     /// Dampers of contacts and elements.
@@ -92,9 +92,9 @@ pub struct Scratch<S: Space> {
     /// Contacts of the last evaluation, in the order of their elements; empty unless [`Scratch::keeps_contacts`]. The
     /// contacts do not include the additional force along a side; see [`PairForce`].
     pub contacts: Vec<Contact<S>>,
-    /// `true` to store `contacts`, which observers of contacts need, but the computation of forces does not.
+    /// `true` to store `contacts`. Observers of contacts need them; the computation of forces does not.
     pub keeps_contacts: bool,
-    /// Total forces of every touching pair, in the order of the pairs.
+    /// Total contact force of every touching pair, in the order of the pairs.
     pub pair_forces: Vec<PairForce<S>>,
     /// Total energies of the contacts.
     pub totals: ContactTotals<S::Real>,
@@ -104,7 +104,7 @@ pub struct Scratch<S: Space> {
     pub wrenches: Vec<Wrench<S>>,
     /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,
-    /// Viscous damping forces on every body; empty if no body has any.
+    /// Viscous damping force on every body; empty if no body has viscous damping.
     pub viscous: Vec<Wrench<S>>,
     /// Acceleration of every body due to forces and moments; zero for prescribed bodies.
     pub accelerations: Vec<Twist<S>>,
@@ -117,8 +117,8 @@ pub struct Scratch<S: Space> {
     pub evaluations: u64,
     /// Number of contact elements tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Lanes that need substepping: within [`Scratch::lookahead`] some contact is predicted to exceed
-    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) at its current speed.
+    /// Lanes that need substepping: at its current speed, some contact is predicted to exceed
+    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) within [`Scratch::lookahead`].
     pub(crate) needs_substeps: <S::Real as Real>::Mask,
     /// Lanes in which a predicted impact is [hard](crate::model::Fast::hard).
     pub(crate) is_hard: <S::Real as Real>::Mask,
@@ -310,7 +310,8 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.evaluations += 1;
 }
 
-/// Solves Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
+/// Computes the acceleration of every free body from contact forces, element forces, gravity and viscous damping (eq.
+/// 2.8).
 #[inline(always)]
 fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     for (i, body) in model.inert.iter().enumerate() {

@@ -179,20 +179,20 @@ fn leads<S: Space>(model: &Model<S>, pair: &ContactPair) -> <S::Real as Real>::M
 
 /// Accumulator for the nodes of a pair that press into a surface.
 struct Press<'a, S: Space, L> {
-    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; `None` if
-    /// infinite.
+    /// Copy of [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) for the interface; `None`
+    /// if it is infinite.
     whole_step_depth: Option<S::Real>,
-    /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
+    /// Copy of [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
     resting_allowance: S::Real,
-    /// [`Substepping::foreseen_gap`](crate::model::Substepping::foreseen_gap).
+    /// Copy of [`Substepping::foreseen_gap`](crate::model::Substepping::foreseen_gap).
     foreseen_gap: S::Real,
-    /// [`Substepping::fast`](crate::model::Substepping::fast).
+    /// Copy of [`Substepping::fast`](crate::model::Substepping::fast).
     fast: Option<Fast<S::Real>>,
-    /// [`Scratch::lookahead`].
+    /// Copy of [`Scratch::lookahead`].
     lookahead: S::Real,
-    /// [`Scratch::needs_substeps`].
+    /// Accumulates [`Scratch::needs_substeps`].
     needs_substeps: <S::Real as Real>::Mask,
-    /// [`Scratch::is_hard`].
+    /// Accumulates [`Scratch::is_hard`].
     is_hard: <S::Real as Real>::Mask,
     /// Rolling resistance of the pair, if any.
     rolling: Option<RollingPair<S::Real>>,
@@ -220,7 +220,7 @@ struct Press<'a, S: Space, L> {
     contacts: Option<&'a mut Vec<Contact<S>>>,
 }
 
-/// A contact is at rest if its depth changes by less than this share of
+/// A contact counts as at rest if its depth changes by less than this share of
 /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance) within [`Scratch::lookahead`].
 const RESTING_SHARE: f64 = 0.01;
 
@@ -303,8 +303,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Requests substeps in lanes where a node at `node` (m) is predicted to exceed the depth that whole time steps
-    /// resolve.
+    /// Requests substeps in lanes where the penetration of a node at `node` (m) is predicted to exceed the penetration
+    /// that whole time steps resolve.
     #[inline(always)]
     fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(whole_step_depth) = self.whole_step_depth else { return };
@@ -421,8 +421,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Returns the node (m) of a round piece about `center`, placed so that the force acts midway between the boundaries
-/// and exchanging the bodies changes nothing.
+/// Returns the node (m) of a round piece about `center`, placed so that the force acts midway between the two
+/// boundaries. So the result does not change if the bodies are exchanged.
 #[inline(always)]
 fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vector {
     center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))
@@ -430,14 +430,15 @@ fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vecto
 
 /// Rolling resistance of the contacts of a pair.
 struct RollingPair<R> {
-    /// [`Rolling::lever`].
+    /// Copy of [`Rolling::lever`].
     lever: R,
-    /// `√(ω² + ω₀²)` (rad/s), by which the spin is divided.
+    /// `√(ω² + ω₀²)` (rad/s): the divisor of the spin in the rolling resistance.
     scale: R,
 }
 
 impl<R: Real> RollingPair<R> {
-    /// Creates the resistance at a relative spin; called only for pairs that need it, since it takes a square root.
+    /// Creates the rolling resistance at a relative spin. Called only for pairs with rolling resistance, since it
+    /// computes a square root.
     #[inline(always)]
     fn new(rolling: Rolling<R>, spin: impl Linear<R>) -> Self {
         let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();

@@ -48,7 +48,7 @@ pub enum Method {
     RungeKutta4,
     /// Bogacki–Shampine 3(2) with step control: three evaluations per step.
     BogackiShampine {
-        /// Largest local error (m) of a position, and of a velocity times the step.
+        /// Largest local error (m) of a position, and of a velocity multiplied by the step.
         tolerance: f64,
     },
 }
@@ -96,7 +96,8 @@ impl<S: Space> Integrator<S> {
         evaluate(model, state, scratch);
     }
 
-    /// Advances `state` to the time `until` (s) in one step, or by less if an adaptive method requires it.
+    /// Advances `state` by one step: to the time `until` (s), or to an earlier time if an adaptive method requires a
+    /// shorter step.
     ///
     /// Returns the step (s) to try next.
     pub fn step(

@@ -1,4 +1,4 @@
-//! Explicit Runge–Kutta methods: their tableaus, and one stepper for all of them.
+//! Explicit Runge–Kutta methods: their tableaus, and one stepper for all tableaus.
 
 use super::{Drive, accept, free, place_prescribed};
 use crate::contact::Stick;
@@ -88,7 +88,7 @@ impl<S: Space> Stages<S> {
         accept(model, state, scratch);
     }
 
-    /// Takes one step that is as long as the tolerance allows, and ends at `until` at the latest.
+    /// Takes one step that is as long as the tolerance allows and does not extend beyond `until` (s).
     ///
     /// Returns the step (s) to try next. All lanes take the shortest step that any of them requires.
     #[expect(clippy::too_many_arguments, reason = "the method, its tolerance, and what it acts on")]

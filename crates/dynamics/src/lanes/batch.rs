@@ -44,7 +44,7 @@ pub trait Batch<'a, R: Real> {
     /// Ground motion of a case.
     type Drive: Drive<Planar>;
 
-    /// Returns the next case for a lane; all cases of a batch have one [`Topology`](super::Topology).
+    /// Returns the next case for a lane; all cases of a batch must have the same [`Topology`](super::Topology).
     fn next(&mut self, lane: usize) -> Option<Case<'a, Self::Drive>>;
 
     /// Called with the initial state of a case, after its prescribed bodies have been moved with the ground, and with
@@ -110,7 +110,7 @@ struct Lanes<R: Real, D> {
     end_time: R,
 }
 
-/// Ground motion of every lane; at rest for a lane without a case.
+/// Ground motion of every lane; the ground is at rest in a lane without a case.
 struct Drives<D>(Vec<Option<D>>);
 
 impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
@@ -185,7 +185,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.busy = R::Mask::from_lanes(|l| l == lane || self.busy.lane(l));
     }
 
-    /// Freezes a lane in the state of a running lane, so that it needs no additional contact elements.
+    /// Freezes a lane in the state of a running lane, so that the frozen lane needs no additional contact elements.
     fn retire(&mut self, lane: usize) {
         self.busy = R::Mask::from_lanes(|l| l != lane && self.busy.lane(l));
         self.drives.0[lane] = None;

@@ -1,13 +1,13 @@
 //! Runs of many cases side by side, in the lanes of a vector register.
 //!
-//! A lane computes the same bits as a single run, with the same source code: laws, shapes, methods and the energy
-//! balance are generic over [`Real`], which the bundles of this module implement. The vector unit is detected at run
-//! time.
+//! The results of a lane are bit-identical to those of a single run, and the source code is the same: laws, shapes,
+//! methods and the energy balance are generic over [`Real`], which the bundles of this module implement. The vector
+//! unit is detected at run time.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
-//! - [`Topology`]: properties that cases must share to run in one bundle.
+//! - [`Topology`]: properties that must be equal for cases that run in one bundle.
 //! - [`Lanewise`]: insertion and extraction of single lanes.
-//! - [`run_batch`]: the run loop of all lanes, which refills the lane of a case that has ended.
+//! - [`run_batch`]: the run loop of all lanes. When a case has ended, its lane gets the next case.
 
 mod batch;
 #[cfg(target_arch = "x86_64")]
@@ -64,7 +64,7 @@ impl Width {
         }
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the width in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
@@ -78,7 +78,7 @@ impl Width {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }
 
-    /// Runs a task with the bundles of this width; `None` if this machine does not support it.
+    /// Runs a task with the bundles of this width; `None` if this machine does not support the width.
     pub fn run<T: Task>(self, task: T) -> Option<T::Output> {
         if !self.is_here() {
             return None;

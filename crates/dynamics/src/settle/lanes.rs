@@ -89,7 +89,7 @@ struct Try {
 }
 
 impl<R: Real> Lanes<R> {
-    /// Creates lanes that all hold one model, without stacks.
+    /// Creates lanes that all contain the same model and no stack.
     fn of(model: &Model<Planar>) -> Self {
         let model = Model::<Planar<R>>::in_all(model);
         let state = State::initial(&model);
@@ -131,8 +131,8 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// Rebuilds the list of contact elements of all lanes; elements of lanes that begin a stack get the memory of that
-    /// stack.
+    /// Rebuilds the list of contact elements of all lanes; in lanes where a new stack begins, the elements get the
+    /// memory of that stack.
     fn list(&mut self, begin: &[usize], stacks: &[Stack<'_>]) {
         let State { contact_elements, poses, twists, .. } = &mut self.state;
         let origins = contact_elements.rebuild(&self.model, poses, twists);

@@ -23,7 +23,7 @@ use relax::Relaxation;
 /// Result of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Number of steps of the successful try; each has one force evaluation.
+    /// Number of steps of the successful try; each step has one force evaluation.
     pub steps: u64,
     /// Largest residual acceleration, as a fraction of gravity.
     pub unbalanced: f64,
@@ -31,7 +31,8 @@ pub struct Settled {
     pub locked: Locked,
 }
 
-/// Friction at rest: forces that equilibrium alone does not determine, since they depend on the path to it.
+/// Friction at rest: forces that equilibrium alone does not determine, since they depend on how equilibrium was
+/// reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Locked {
     /// Number of contacts whose stick holds.
@@ -45,8 +46,8 @@ pub struct Locked {
 /// Maximum number of steps of a try.
 const MOST_STEPS: u64 = 40_000;
 
-/// Retry schedule: fictitious-mass factor, and number of initial steps without momentum. Heavier masses converge more
-/// slowly, with less overshoot.
+/// Retry schedule: for each try, the factor of the fictitious masses and the number of initial steps without momentum.
+/// With heavier masses, convergence is slower and overshoots less.
 const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
 /// Number of steps between two checks for bodies that have moved out of place.
@@ -100,7 +101,8 @@ pub fn settle<S: Space>(
     result.map(|(steps, unbalanced)| Settled { steps, unbalanced, locked })
 }
 
-/// Relaxes until every lane is at rest, with one entry of [`TRIES`]; returns the number of steps and the residual.
+/// Relaxes until every lane is at rest, with the parameters of one entry of [`TRIES`]; returns the number of steps and
+/// the residual.
 fn sink<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -166,7 +168,7 @@ impl Locked {
     }
 }
 
-/// Returns the magnitude of gravity (m/s²), bounded below so that it can be a divisor.
+/// Returns the magnitude of gravity (m/s²), with a lower bound, so that it can be used as a divisor.
 fn gravity<S: Space>(model: &Model<S>) -> S::Real {
     model.gravity.dot(model.gravity).sqrt().max(S::Real::splat(1e-12))
 }

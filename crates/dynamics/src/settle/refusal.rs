@@ -87,7 +87,7 @@ pub enum Lack {
         on: String,
     },
     /// The body leaves its support.
-    #[error("it is pushed out of its place")]
+    #[error("it is pushed out of place")]
     Place,
     /// The forces do not balance, but the body stays in place.
     #[error(

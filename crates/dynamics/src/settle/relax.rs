@@ -24,7 +24,7 @@ const LONGEST_WAY: f64 = 2e-3;
 /// static part.
 const SLOWLY: f64 = 1.0 / (1_u128 << 100) as f64;
 
-/// A contact with the geometry of both of its bodies.
+/// A contact, and its position relative to both bodies.
 struct Touch<S: Space> {
     element: usize,
     touching: <S::Real as Real>::Mask,
@@ -151,7 +151,7 @@ impl<S: Space> Relaxation<S> {
         )
     }
 
-    /// Updates the contacts of the last evaluation, and the stiffness that supports each body.
+    /// Updates the list of contacts from the last evaluation, and the stiffness of the supports of each body.
     pub(super) fn weigh(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -390,7 +390,7 @@ fn length<S: Space>(vector: S::Vector) -> S::Real {
     vector.dot(vector).sqrt()
 }
 
-/// Returns the force on every body including gravity, and its moment about the center of mass.
+/// Returns the force on every body, including gravity, and the moment of the force about the center of mass.
 #[inline(always)]
 fn each<'a, S: Space>(
     model: &'a Model<S>,

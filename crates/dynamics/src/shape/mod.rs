@@ -51,7 +51,7 @@ pub struct Nearest<S: Space> {
 }
 
 impl<S: Space> Nearest<S> {
-    /// Creates the result for a piece without ends; `round` has the lanes in which the piece is round.
+    /// Creates the result for a piece without ends; `round` contains the lanes in which the piece is round.
     #[inline(always)]
     pub(crate) fn endless(gap: Gap<S>, round: <S::Real as Real>::Mask) -> Self {
         let to_end = S::Real::splat(f64::INFINITY);
@@ -59,7 +59,7 @@ impl<S: Space> Nearest<S> {
     }
 }
 
-/// Directions in which the boundary of a body faces at a point.
+/// Range of directions in which the boundary of a body faces at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
     /// Unit vectors with the meaning of [`Round::limits`], in the frame of the other body's surface.
@@ -92,7 +92,7 @@ impl<S: Space> Facing<S> {
 }
 
 impl<R: Real> Nearest<Planar<R>> {
-    /// Selects `self` in lanes of the mask, and `other` elsewhere.
+    /// Returns `self` in lanes where `holds` is set, and `other` in all other lanes.
     #[inline(always)]
     fn where_it(self, holds: R::Mask, other: Self) -> Self {
         Self {
@@ -346,7 +346,7 @@ impl Shape {
     }
 
     /// Returns nodes along the whole boundary, at most `spacing` (m) apart. Their tributary lengths add up to the
-    /// length of the boundary; a half-plane has none.
+    /// length of the boundary; a half-plane has no nodes.
     pub fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         match self {
             Self::Circle(shape) => shape.nodes(spacing),

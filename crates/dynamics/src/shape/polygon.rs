@@ -1,4 +1,4 @@
-//! A convex polygon with sharp or rounded corners: a rack beam, a block, a brick.
+//! A convex polygon with sharp or rounded corners, such as a rack beam, a block or a brick.
 
 use std::f64::consts::TAU;
 
@@ -53,7 +53,7 @@ pub enum PolygonError {
         /// Number of corners given.
         found: usize,
     },
-    /// A corner turns inward, or three corners are in line.
+    /// A corner turns inward, or three successive corners are in line.
     #[error(
         "corner {corner} at ({x:.6} m, {z:.6} m) does not turn left: give the corners of a convex \
          polygon counterclockwise, none of them in line with its neighbors"
@@ -72,7 +72,7 @@ pub enum PolygonError {
          polygon once"
     )]
     Overlapping {
-        /// The corner at which the first turn is complete, counted from 1.
+        /// Number of the corner, counted from 1, at which the first full turn is complete.
         corner: usize,
     },
     /// The corner radius is too large for the polygon.
@@ -241,7 +241,7 @@ impl Polygon {
         Ok(Self::grown(&core, corner_radius))
     }
 
-    /// Creates a bar with round ends: all points within a radius (m) of the line between two points (m).
+    /// Creates a bar with round ends: all points within a radius (m) of the line segment between two points (m).
     ///
     /// # Errors
     /// If the points coincide or the radius is not positive.
@@ -365,7 +365,7 @@ impl Polygon {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
-    /// Returns nodes at the ends of every side, and between `parts` equal parts of it.
+    /// Divides every side into `parts` equal parts, and returns nodes at the ends of all parts.
     pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
         let longest = self.sides.iter().map(|side| 2.0 * side.half_length).fold(0.0, f64::max);
         if self.corner_radius > 0.0 {

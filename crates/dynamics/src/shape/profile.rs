@@ -29,7 +29,7 @@ pub struct BarrelProfile<R = f64> {
     pub corner_height: R,
 }
 
-/// Number of parts of a rounded edge for drawing.
+/// Number of parts into which a rounded edge is divided for drawing.
 const EDGE_STEPS: usize = 6;
 
 impl<R: Real> BarrelProfile<R> {
@@ -165,7 +165,7 @@ impl BarrelProfile {
         sound.then_some(Self { rounding, corner_height, ..self })
     }
 
-    /// Returns the radius (m) of the barrel at a distance (m) along its axis from the bilge.
+    /// Returns the radius (m) of the barrel at a position along its axis, given as the distance (m) from the bilge.
     pub fn radius_at(&self, x: f64) -> f64 {
         self.bilge_radius - self.stave_radius
             + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
@@ -225,7 +225,7 @@ impl BarrelProfile {
         sum * (1.0 / sum.length())
     }
 
-    /// Returns half the angle (rad) of the arc of a stave.
+    /// Returns half of the angle (rad) that the arc of a stave spans.
     fn half_stave(&self) -> f64 {
         math::atan2(
             self.half_length - self.rounding,
@@ -233,7 +233,8 @@ impl BarrelProfile {
         )
     }
 
-    /// Returns the outline as a chain of points, from the right head over the top, the left head and the bottom.
+    /// Returns the outline as a chain of points that starts at the right head and runs over the top, the left head and
+    /// the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
         let half = self.half_stave();
         let direction = |angle: f64| {

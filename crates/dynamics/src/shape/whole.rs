@@ -4,7 +4,7 @@ use super::{Gap, Shape};
 use crate::real::Real;
 use crate::space::{Planar, Rotation2, Space, Vec2, Wrench};
 
-/// A convex solid that touches with its deepest point, or with a whole line or face where it lies flat.
+/// A convex solid that touches at its deepest point or, where it lies flat on a surface, along a whole line or face.
 pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
     /// Visits the contact patches with a surface, in the order of their sticks and in the frame of the surface. Some of
     /// the patches may be open.
@@ -19,7 +19,7 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         visit: impl FnMut(Patch<S>),
     );
 
-    /// Returns the points that bear on a surface, if the contact is one of several separate points; the arguments are
+    /// Returns the points that bear on a surface, if the contact consists of several separate points; the arguments are
     /// as in [`Whole::meet`].
     #[inline(always)]
     fn points(
@@ -31,14 +31,14 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         None
     }
 
-    /// Returns the maximum number of sticks with one surface.
+    /// Returns the maximum number of sticks that the solid needs for one surface.
     fn most_sticks(&self) -> usize;
 
     /// Returns the center (m, in the body frame, relative to the center of mass) and the radius (m) of an enclosing
     /// ball.
     fn ball(&self) -> (S::Vector, S::Real);
 
-    /// Returns the tributary length of boundary (m) of a contact.
+    /// Returns the tributary length (m) of a contact.
     fn tributary_length(&self) -> S::Real;
 }
 
@@ -62,7 +62,7 @@ impl<S: Space> Touch<S> {
 /// Contact of two bodies: at a point, along a line that they share, or over a face that they share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch<S: Space> {
-    /// Index of the first stick of the patch, below [`Whole::most_sticks`].
+    /// Index of the first stick of the patch; less than [`Whole::most_sticks`].
     pub first: usize,
     /// Deepest point of the patch.
     pub deepest: Touch<S>,
@@ -129,7 +129,7 @@ pub struct Spread<S: Space> {
 /// (1/rad), stored as moments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of δ₀ (m), without the part that is due to the motion of the material points at the middle.
+    /// Derivative of δ₀ (m), without the part that is due to the motion of the two bodies at the middle of the patch.
     pub middle: Wrench<S>,
     /// Derivative of `a`.
     pub deepest: Wrench<S>,

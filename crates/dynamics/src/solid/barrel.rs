@@ -1,4 +1,4 @@
-//! A barrel of revolution about `x`: stave, heads, and a rounded chime between them.
+//! A barrel as a body of revolution about `x`: stave, heads, and a rounded chime between stave and heads.
 
 use crate::real::{Mask, Real};
 use crate::shape::Gap;
@@ -15,9 +15,9 @@ pub struct Barrel<R = f64> {
     pub half_length: R,
     /// Radius (m) of the heads of the core.
     pub head_radius: R,
-    /// `R`, the radius (m) of the stave of the core along the barrel.
+    /// `R`, the radius (m) of the longitudinal arc of the core's stave.
     pub stave_radius: R,
-    /// `a`, the distance (m) of the center of the stave's arc beyond the axis.
+    /// `a`, the distance (m) by which the center of the stave's arc lies beyond the axis.
     pub stave_offset: R,
     /// Distance (m) of the surface from the core.
     pub rounding: R,

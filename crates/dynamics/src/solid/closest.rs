@@ -41,11 +41,10 @@ const MOST_HALLEY: u32 = 6;
 /// rounding error.
 const LAST_HALLEY: f64 = 1e-5;
 
-/// Returns the point of a segment that is closest to a hull.
-///
-/// For a tube there is a closed form; for a stave, the usual case, Halley's method converges in two or three steps.
-/// Since the gap is convex, the result is valid if the gap does not decrease to either side. Otherwise [`along_axis`]
-/// searches for the minimum.
+/// Returns the point of a segment that is closest to a hull. For a tube there is a closed form. For the stave of a
+/// barrel, which is the usual case, Halley's method converges in two or three steps. Since the gap is convex, the
+/// result is the minimum if the gap does not decrease toward either side. Otherwise [`along_axis`] searches for the
+/// minimum.
 #[inline(always)]
 pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     // `inline(always)`: a closure left out of line loses the target feature.
@@ -143,7 +142,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
     (best.0, best.1, MOST_ALONG, false)
 }
 
-/// Returns the gap at a position on a segment, and its slope.
+/// Returns the gap at a position on a segment, and the slope of the gap along the segment.
 #[inline(always)]
 fn slope(
     gap: &impl Fn(Vec3) -> Gap<Spatial>,

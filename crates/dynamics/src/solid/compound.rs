@@ -10,9 +10,9 @@ use crate::space::{Pose, Rotation3, Spatial, Vec3};
 pub struct Part {
     /// Surface of the solid, used both as contactor and as target.
     pub hull: Hull,
-    /// Origin (m) of the solid in the common frame of all parts.
+    /// Position (m) of the solid's origin in the common frame of all parts.
     pub center: Vec3,
-    /// Rotation of the solid in the common frame.
+    /// Rotation from the frame of the solid to the common frame.
     pub rotation: Rotation3,
     /// Mass distribution in the frame of the solid.
     pub bulk: Bulk,

@@ -1,4 +1,5 @@
-//! Contact of the faces of two blocks: the polygon that they share, and the share of each corner in the force.
+//! Contact of the faces of two blocks: the polygon that the faces share, and the share of the force that acts at each
+//! corner of the polygon.
 //!
 //! All computations are scalar, as in [`closest`](super::closest).
 
@@ -45,7 +46,7 @@ enum Side {
     Target(usize),
 }
 
-/// Corners of a polygon, each with the side that follows counterclockwise.
+/// Corners of a polygon in counterclockwise order, each with the side that follows.
 #[derive(Clone, Copy)]
 struct Chain {
     corners: [(Vec2, Side); 2 * MOST],

@@ -22,7 +22,7 @@ pub(super) struct Flat {
     pub(super) axes: [Vec3; 2],
 }
 
-/// Sine of the angle between two solids above which they share no patch.
+/// Sine of the largest angle between two solids that share a patch.
 pub(super) const WIDEST: f64 = 0.1;
 /// Extent (m) of a line or face from its middle, above which the line or face has full weight.
 const LONG: f64 = 0.05;
@@ -34,7 +34,7 @@ pub(super) fn smooth(u: f64) -> f64 {
 }
 
 /// Returns the weights of a patch that acts like `springs` springs and extends `length` (m) from its middle, for two
-/// solids inclined to each other by an angle with the given squared sine.
+/// solids that are inclined to each other; `sine_squared` is the squared sine of the angle between them.
 ///
 /// The shorter the patch, the smaller the permitted angle: the part of an inclined tube in front of a head does not
 /// contain the deepest point, so its weight must vanish before this part ends.
@@ -161,7 +161,7 @@ pub(super) fn slopes(
     Slopes { middle, deepest, others }
 }
 
-/// Returns the patch of two tubes, the target along `x`.
+/// Returns the patch of two tubes; the axis of the target is along `x`.
 fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> Option<Flat> {
     let sine_squared = 1.0 - direction.x * direction.x;
     if sine_squared >= WIDEST * WIDEST {

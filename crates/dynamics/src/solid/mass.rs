@@ -60,7 +60,7 @@ impl Bulk {
         outside.of_density(mass / outside.volume)
     }
 
-    /// Returns the distribution rotated and then displaced (m).
+    /// Returns the distribution after a rotation and then a displacement (m).
     #[must_use]
     pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
         // R S Rᵀ: first its rows, then its columns.
@@ -89,8 +89,8 @@ impl Bulk {
 
     /// Returns the principal moments of inertia (kg·m²) about the center of mass, and the rotation of their axes.
     ///
-    /// Uses Jacobi's method, which rotates one plane after the other until the matrix is diagonal. Distributions that
-    /// are symmetric about the planes of their frame keep its axes.
+    /// Uses Jacobi's method, which rotates one plane after the other until the matrix is diagonal. For distributions
+    /// that are symmetric about the planes of their frame, the principal axes are the axes of the frame.
     pub fn principal(&self) -> (Vec3, Quaternion) {
         let mut turned = Quaternion::identity();
         let mut second = self.second;
@@ -181,7 +181,7 @@ impl Revolved {
 }
 
 impl Cask {
-    /// Returns the cavity for wine, and the whole space inside the staves.
+    /// Returns the integrals over the cavity for wine, and the integrals over the whole space inside the staves.
     fn rooms(&self) -> [Revolved; 2] {
         let end = self.barrel.half_length + self.barrel.rounding;
         [end - self.chime - self.wall, end].map(|end| within(&self.barrel, self.wall, end))
@@ -192,7 +192,7 @@ impl Cask {
         self.rooms()[0].volume
     }
 
-    /// Returns the wood: the staves, and the two heads between them.
+    /// Returns the integrals over the wood: the staves, and the two heads between the staves.
     fn staves_and_heads(&self) -> Revolved {
         let [room, open] = self.rooms();
         let outer_face = self.barrel.half_length + self.barrel.rounding - self.chime;
@@ -324,8 +324,8 @@ fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }
 
-/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part of a
-/// body of revolution below a level (m above the axis).
+/// For the part of a body of revolution below a level (m above the axis), returns the volume, the first moment upward,
+/// and the second moments along the axis, across it and upward.
 ///
 /// `radius` returns the radius (m) at a position along the axis, up to `end` (m) on both sides of the middle.
 fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {

@@ -29,9 +29,9 @@ pub struct Rounded<R = f64> {
     pub hull: Hull<R>,
     /// Position (m) of the origin of the hull in the body frame, relative to the center of mass.
     pub center: Vec3<R>,
-    /// Rotation of the hull's frame in the body frame.
+    /// Rotation from the frame of the hull to the body frame.
     pub rotation: Rotation3<R>,
-    /// Tributary length of boundary (m) of each contact.
+    /// Tributary length (m) of each contact.
     pub tributary_length: R,
 }
 
@@ -42,7 +42,7 @@ const OF_FACE: usize = 5;
 const CORNERS: usize = 8;
 
 impl<R: Real> Rounded<R> {
-    /// Creates a hull at the center of mass of its body.
+    /// Creates a hull whose center is at the center of mass of the body.
     pub fn centered(hull: Hull<R>) -> Self {
         Self {
             hull,

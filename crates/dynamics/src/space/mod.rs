@@ -51,7 +51,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     type Spin: Linear<Self::Real>;
     /// Orientation of a body, advanced by the integrator.
     type Orientation: Copy + Debug + PartialEq + Send + Sync + 'static;
-    /// Rotation of a vector; computed once from an orientation.
+    /// Rotation that can be applied to vectors; computed once from an orientation.
     type Rotation: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// Moment of inertia about the center of mass (kg·m²).
     type Inertia: Copy + Debug + PartialEq + Send + Sync + 'static;
@@ -84,9 +84,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Returns the velocity, due to a spin, of a point at the vector `arm` from the axis.
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
-    /// Returns an upper bound of the length of a vector, cheaper than the length and close to it for most vectors.
+    /// Returns an upper bound of the length of a vector. The bound is cheaper to compute than the length, and close to
+    /// the length for most vectors.
     fn length_bound(vector: Self::Vector) -> Self::Real;
-    /// Returns the first coordinate of a vector, along which bodies are sorted to find neighbors.
+    /// Returns the first coordinate of a vector; bodies are sorted by this coordinate to find neighbors.
     fn first_coordinate(vector: Self::Vector) -> Self::Real;
     /// Returns the magnitude of a spin.
     fn spin_magnitude(spin: Self::Spin) -> Self::Real;
@@ -101,10 +102,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Returns the rotation (rad) from one orientation to a nearby one, as the spin that causes this rotation in one
     /// unit of time.
     fn turn_between(from: Self::Orientation, to: Self::Orientation) -> Self::Spin;
-    /// Returns the angle (rad) between two orientations, or an upper bound.
+    /// Returns the angle (rad) between two orientations, or an upper bound of this angle.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
-    /// Returns the angular acceleration due to a moment alone; the torque-free part is in [`Space::coast`] and
-    /// [`Space::momentum`].
+    /// Returns the angular acceleration due to a moment alone; [`Space::coast`] and [`Space::momentum`] account for the
+    /// torque-free part.
     fn spin_rate(
         inertia: Self::Inertia,
         rotation: Self::Rotation,
@@ -113,7 +114,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Returns the rotational quantity that is conserved without moments, up to a constant factor: the angular momentum
     /// in three dimensions, the spin itself in the plane.
     fn momentum(inertia: Self::Inertia, rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
-    /// Returns the spin of a body from its angular momentum, [`Space::momentum`].
+    /// Returns the spin of a body, given its [`Space::momentum`].
     fn spin_of(
         inertia: Self::Inertia,
         orientation: Self::Orientation,
@@ -172,7 +173,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     ) -> Self::Tangent;
     /// Shortens a tangent to the length `limit` (not negative) if it is longer.
     fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     fn choose(
         mask: <Self::Real as Real>::Mask,
         yes: Self::Tangent,
@@ -235,7 +236,7 @@ impl<S: Space> Pose<S> {
         }
     }
 
-    /// Returns pose and twist after force-free motion for a time (s).
+    /// Returns the pose and the twist after force-free motion for a time (s).
     #[inline(always)]
     #[must_use]
     pub fn coasted(self, inertia: S::Inertia, twist: Twist<S>, time: S::Real) -> (Self, Twist<S>) {
@@ -287,7 +288,7 @@ impl<S: Space> Wrench<S> {
         Self { force: self.force * factor, moment: self.moment * factor }
     }
 
-    /// Returns the power (W) for a twist, or the work (J) for a displacement.
+    /// Returns the power (W) of the wrench for a twist, or its work (J) for a displacement.
     #[inline(always)]
     pub fn power(self, twist: Twist<S>) -> S::Real {
         self.force.dot(twist.linear) + self.moment.dot(twist.angular)

@@ -1,4 +1,4 @@
-//! Motion in the vertical plane: `x` to the right, `z` up, angles from `x` toward `z`.
+//! Motion in a vertical plane: `x` to the right, `z` up, angles measured from `x` toward `z`.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -37,7 +37,7 @@ impl<R: Real> Vec2<R> {
     pub fn quarter_turn(self) -> Self {
         Self::new(-self.z, self.x)
     }
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self::new(R::select(mask, yes.x, no.x), R::select(mask, yes.z, no.z))
@@ -189,7 +189,8 @@ impl<R: Real> Space for Planar<R> {
     fn velocity_at(spin: R, arm: Vec2<R>) -> Vec2<R> {
         Vec2::new(-(spin * arm.z), spin * arm.x)
     }
-    /// Sum of the longer component and √2 − 1 times the shorter one: at most 8 % above the length.
+    /// Computes the sum of the larger component and √2 − 1 times the smaller component, which exceeds the length by at
+    /// most 8 %.
     #[inline(always)]
     fn length_bound(vector: Vec2<R>) -> R {
         let (x, z) = (vector.x.abs(), vector.z.abs());

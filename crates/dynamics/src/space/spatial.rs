@@ -62,7 +62,7 @@ impl<R: Real> Space for Spatial<R> {
     fn velocity_at(spin: Vec3<R>, arm: Vec3<R>) -> Vec3<R> {
         spin.cross(arm)
     }
-    /// Returns the length itself, with a margin for rounding.
+    /// Returns the length itself, increased by a margin for rounding.
     #[inline(always)]
     fn length_bound(vector: Vec3<R>) -> R {
         vector.length() * R::splat(1.0 + 1e-15)
@@ -83,8 +83,8 @@ impl<R: Real> Space for Spatial<R> {
     fn turn(orientation: Quaternion<R>, spin: Vec3<R>, time: R) -> Quaternion<R> {
         Quaternion::turn(spin * time).after(orientation).normalized()
     }
-    /// Returns the rotation vector, by the series of `asin s / s`: accurate to 1e-14 rad below 0.2 rad, and too small
-    /// for larger rotations.
+    /// Returns the rotation vector, computed with the series of `asin s / s`. The result is accurate to 1e-14 rad for
+    /// rotations below 0.2 rad, and too small for larger rotations.
     #[inline(always)]
     fn turn_between(from: Quaternion<R>, to: Quaternion<R>) -> Vec3<R> {
         let turn = to.after(from.back());

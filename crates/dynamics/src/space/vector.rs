@@ -59,7 +59,7 @@ impl<R: Real> Vec3<R> {
     pub fn over(self, other: Self) -> Self {
         Self::new(self.x / other.x, self.y / other.y, self.z / other.z)
     }
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self::new(

@@ -55,7 +55,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
     }
 }
 
-/// Adds the platform of a rack, from its center (m) and half its sides (m).
+/// Adds the platform of a rack, given the center (m) and half the side lengths (m) of the platform.
 fn platform(
     device: &Isolators,
     builder: &mut Builder<'_>,

@@ -47,7 +47,7 @@ impl Loose {
     }
 }
 
-/// Installs all devices on a stack, in their order.
+/// Installs all devices on a stack, one kind after the other.
 pub(crate) fn place(builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     let Devices { strap, walking_stop, chock: _, lid, pad: _, isolator, tie, tuned_mass } =
         &builder.spec.devices;
@@ -71,7 +71,7 @@ impl Builder<'_> {
         self.turned(body).unapply(place - self.bodies[body].pose.position)
     }
 
-    /// Adds a line to the drawing of a body, through positions (m) in the stack.
+    /// Adds a line to the drawing of a body; the line runs through positions (m) in the stack.
     fn draw(&mut self, body: BodyId, line: &[Vec3]) {
         let line = line.iter().map(|place| self.within(body, *place)).collect();
         self.parts[body].lines.push(line);
@@ -109,7 +109,7 @@ impl Builder<'_> {
 }
 
 impl Stack {
-    /// Fits the elements to the stack at rest in `state`; returns `true` if any of them is under load.
+    /// Fits the elements to the stack at rest in `state`; returns `true` if any element is under load.
     pub(crate) fn fasten(&mut self, state: &mut State<Spatial>) -> Result<bool, ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

@@ -14,7 +14,7 @@ use barrelstack_dynamics::{BodyId, Link, Vec3};
 use super::Loose;
 use crate::builder::Builder;
 
-/// Installs the straps from the ground up, those on the left first.
+/// Installs the straps, body by body from the ground up; for each body, the strap on the left comes first.
 pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     if !device.is_on() {
         return Ok(());

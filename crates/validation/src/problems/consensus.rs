@@ -62,7 +62,7 @@ fn first_fall() -> Problem {
         })
 }
 
-/// Scene A from a file: a free scene whose racks have explicit nodes.
+/// Creates the problem of scene A from a file: a free scene whose racks have explicit nodes.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),

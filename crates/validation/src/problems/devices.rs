@@ -28,7 +28,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A stack of one level on a rack so wide and heavy, and with contacts so stiff, that only the device deforms.
+/// Returns the scenario of a one-level stack. Its rack is so wide and heavy, and its contacts are so stiff, that only
+/// the device deforms.
 fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario, Failure> {
     let text = format!(
         "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\nrack = {{ width = \"8 m\", mass = \"400 kg\" }}\n\
@@ -66,14 +67,14 @@ pub(super) fn push(amplitude: f64, seconds: f64) -> String {
     )
 }
 
-/// Returns the displacement (m) of a body along an axis, with its times (s).
+/// Returns the history of the displacement (m) of a body along an axis, as pairs of time (s) and displacement.
 pub(super) fn displacement(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     let name = format!("{body} displacement {axis}");
     let channel = run.recording.channel(&name).ok_or(Failure::Absent(name))?;
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
 }
 
-/// Returns the settings of chocks at an angle (rad) without a gap, on cradles that are lower than the chocks.
+/// Returns the settings for chocks at an angle (rad) without a gap; the cradles are lower than the chocks.
 fn chocks(angle: f64) -> Vec<String> {
     vec![
         "stack.chock.levels=1".into(),
@@ -229,7 +230,7 @@ fn pads() -> Problem {
 
 const MASS: f64 = 100.0;
 
-/// A mass that flies at a speed (m/s) without gravity, joined to the ground by an element.
+/// Creates a mass that moves at a speed (m/s) without gravity and is joined to the ground by an element.
 fn flying(
     speed: f64,
     element: barrelstack_dynamics::Element<barrelstack_dynamics::Planar>,
@@ -291,8 +292,8 @@ const OMEGA: f64 = TAU;
 /// Returns the largest dynamic amplification of the displacement of a structure with a tuned mass, over all frequencies
 /// of a harmonic force.
 ///
-/// The tuned mass is `share` of the mass of the structure. The response to an impulse, which excites all frequencies,
-/// is transformed to the frequency domain.
+/// The tuned mass is `share` times the mass of the structure. The response to an impulse, which excites all
+/// frequencies, is transformed to the frequency domain.
 fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure> {
     let body = |name: &str, mass: f64, z: f64| Body {
         mass,

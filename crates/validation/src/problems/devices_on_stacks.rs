@@ -21,7 +21,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Angle (rad) of the supports of a cradle of the scenario.
+/// Angle (rad) from the vertical at which a barrel rests on the supports of a cradle.
 const CRADLE: f64 = 28.0 * TAU / 360.0;
 
 /// Mass of a full barrel (kg).
@@ -99,7 +99,7 @@ fn strap() -> Problem {
     })
 }
 
-/// Returns the period (s) of the zero crossings of a quantity after a time (s).
+/// Returns the period (s) of a quantity, computed from its zero crossings after a time (s).
 fn period(samples: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
     devices::period(samples, after)
         .ok_or_else(|| Failure::Absent("the stack does not swing".into()))
@@ -147,7 +147,7 @@ fn walking_stop() -> [Problem; 2] {
     ]
 }
 
-/// Settings of a platform without friction.
+/// Returns the settings of a platform without friction.
 fn platform(recentring: f64) -> Vec<String> {
     vec![
         "stack.isolator.path=\"flat\"".to_owned(),
@@ -239,7 +239,7 @@ fn frequency(upper: usize) -> Problem {
     })
 }
 
-/// The frequencies (rad/s) at which the response is evaluated.
+/// Returns the frequencies (rad/s) at which the response is evaluated.
 fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
@@ -247,8 +247,8 @@ fn frequencies() -> impl Iterator<Item = f64> {
 /// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass tuned by Den
 /// Hartog's formula, over all frequencies of the ground.
 ///
-/// The exact answer is a closed form. The answer of the program is computed from the response to an impulse, which
-/// excites all frequencies.
+/// The exact answer is a closed form. The program's answer is computed from the response to an impulse, which excites
+/// all frequencies.
 fn tuned(share: f64) -> Problem {
     let tuning = Tuning::den_hartog(share);
     let whole = SPRINGS / ABOARD;

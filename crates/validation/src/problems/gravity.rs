@@ -155,7 +155,7 @@ fn rest() -> Problem {
     })
 }
 
-/// Returns `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
+/// Returns `true` if a stack of `n` bricks with harmonic overhangs, multiplied by the fraction `share`, stands.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
     // The lowest lies on a table that ends at x = 0; brick i from the top overhangs the one below by L/2i.

@@ -83,7 +83,7 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     })
 }
 
-/// Creates the problem of a block on a soft corner, with the full equations of the springs and dampers of the normal
+/// Creates the problem of a block on a soft corner, with the full equations of the springs and dampers in the normal
 /// and tangential directions.
 fn corner() -> Problem {
     let (alpha, omega, push, until) = (0.25, 6.0, 0.3, 0.8);
@@ -297,7 +297,8 @@ fn rigid() -> Rocker {
     Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
 }
 
-/// Creates the problem that verifies the integrator of the ensembles over an interval without impact.
+/// Creates the problem that verifies the rigid-block integrator, which the ensembles use, over an interval without
+/// impact.
 fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);
     let rigid = rigid();

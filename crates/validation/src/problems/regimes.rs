@@ -120,7 +120,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     })
 }
 
-/// Runs a block that is too flat to rock through a motion of the ground.
+/// Simulates a block that is too flat to rock, under a given motion of the ground.
 ///
 /// # Errors
 /// If the run fails numerically.

@@ -213,7 +213,7 @@ fn long() -> Problem {
     })
 }
 
-/// Creates the problem of the wine of a barrel in its cradle, excited by a short push.
+/// Creates the problem of a wave in the wine of a barrel in its cradle, excited by a short push.
 fn in_a_stack(filled: f64) -> Problem {
     let wave = scenario(filled)
         .ok()

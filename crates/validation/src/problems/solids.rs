@@ -104,7 +104,7 @@ fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     })
 }
 
-/// Creates the problem of the rebound with the default step of a stack.
+/// Creates the problem of the rebound, computed with the default time step of a stack.
 fn default_step() -> Problem {
     setting(
         "solids/restitution-at-the-default-step",

@@ -21,7 +21,7 @@ pub(crate) struct PairKinematics<S: Space> {
 /// Relative motion of two bodies.
 #[derive(Clone, Copy, Debug)]
 struct Motion<S: Space> {
-    /// Vector (m) from the center of mass of the target to that of the contactor.
+    /// Vector (m) from the center of mass of the target to the center of mass of the contactor.
     apart: S::Vector,
     /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
     linear: S::Vector,
@@ -53,7 +53,8 @@ impl<S: Space> PairKinematics<S> {
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
 
-    /// Returns the kinematics of a pair; reuses those of the previous pair if it has the same bodies and surface.
+    /// Returns the kinematics of a pair; reuses the kinematics of the previous pair if that pair has the same bodies
+    /// and the same surface.
     #[inline(always)]
     pub(super) fn shared<'a>(
         last: &'a mut Option<Self>,

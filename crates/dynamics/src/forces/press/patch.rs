@@ -219,7 +219,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Adds a share of the friction of a patch, at the offset `aside` (m) from its center of pressure.
+    /// Adds a share of the friction of a patch, at the offset `aside` (m) from the center of pressure.
     #[inline(always)]
     fn stick(&mut self, element: usize, at: &Pressure<S>, aside: S::Vector, share: S::Real) {
         let meeting = self.meeting;

@@ -87,8 +87,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Returns the piece of a surface nearest to the center (m) of a round piece; if the center is inside the core, the
-    /// nearest piece on which the round piece can bear.
+    /// Returns the piece of a surface that is nearest to the center (m) of a round piece. If the center is inside the
+    /// core of the surface's shape, returns the nearest piece on which the round piece can bear.
     #[inline(always)]
     fn nearest(
         &self,

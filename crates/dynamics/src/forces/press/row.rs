@@ -11,7 +11,7 @@ use crate::space::Space;
 
 use super::{Laws, Press};
 
-/// Returns the gap in lanes where the contact filter accepts it, and an open gap elsewhere.
+/// Returns the gap in lanes where the contact filter accepts the contact, and an open gap in all other lanes.
 #[inline(always)]
 pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) -> Gap<S> {
     if let Some(face) = counted {
