@@ -41,11 +41,11 @@ pub enum Counts {
     /// All contacts count.
     #[default]
     Everywhere,
-    /// Only contacts that belong to this face of the contactor count.
+    /// Only contacts that belong to the contactor's face with this index count.
     BeforeFace(usize),
-    /// Only contacts that do not belong to this face of the contactor count.
+    /// Only contacts that do not belong to the contactor's face with this index count.
     BehindFace(usize),
-    /// Only contacts that do not belong to this face of the target count.
+    /// Only contacts that do not belong to the target's face with this index count.
     BehindFaceOfTarget(usize),
 }
 

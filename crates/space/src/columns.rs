@@ -12,27 +12,27 @@ const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "heading",
         ValueKind::Text,
-        "direction in which the first body left its seat: right or left across the barrels, away or near along them",
+        "direction in which the first body left its seat: right or left across the barrels, away or near along the barrels",
     ),
     (
         "debris_right",
         ValueKind::Integer,
-        "fallen barrels that came to lie to the right of their place at rest, more than along the barrels",
+        "fallen barrels whose displacement from rest is mainly to the right",
     ),
     (
         "debris_left",
         ValueKind::Integer,
-        "fallen barrels that came to lie to the left of their place at rest, more than along the barrels",
+        "fallen barrels whose displacement from rest is mainly to the left",
     ),
     (
         "debris_away",
         ValueKind::Integer,
-        "fallen barrels that came to lie away along the barrels, more than across them",
+        "fallen barrels whose displacement from rest is mainly along the barrels, away from the viewer",
     ),
     (
         "debris_near",
         ValueKind::Integer,
-        "fallen barrels that came to lie near along the barrels, more than across them",
+        "fallen barrels whose displacement from rest is mainly along the barrels, toward the near side",
     ),
 ];
 

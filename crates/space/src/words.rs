@@ -165,7 +165,10 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     if let Some(energy) = &summary.energy {
         row(
             "energy balance",
-            format!("residual {:.0e} of the energy that went through", energy.residual_ratio),
+            format!(
+                "residual {:.0e} of the energy that passed through the system",
+                energy.residual_ratio
+            ),
         );
     }
     let Summary { run: done, .. } = summary;

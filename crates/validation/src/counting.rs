@@ -127,7 +127,7 @@ impl SubAssign for Counting {
 /// Counts of the work of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
     /// Number of touching nodes, summed over the steps.
     pub touching: u64,

@@ -224,8 +224,8 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// Adds a bisection between two brackets (see [`border`]), which lie on both sides of the exact answer, at a
-    /// distance that is a fraction of it.
+    /// Adds a bisection between two brackets (see [`border`]). The brackets lie on both sides of the exact answer;
+    /// their distance from the answer is a fraction of the answer.
     pub fn at_border(
         self,
         share: f64,

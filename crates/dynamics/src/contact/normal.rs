@@ -2,8 +2,8 @@
 
 use crate::real::{Mask, Real};
 
-/// Law of the compressive force of one node with penetration δ (m) and penetration rate δ̇ (m/s, positive while
-/// approaching). No law ever pulls.
+/// Normal contact law: the compressive force on one node as a function of its penetration δ (m) and penetration rate δ̇
+/// (m/s, positive while approaching). The force is never tensile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NormalLaw<R = f64> {
     /// Linear spring in parallel with a damper that acts only while the penetration grows:

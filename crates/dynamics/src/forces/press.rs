@@ -343,9 +343,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.press(element, node, gap, share, None)
     }
 
-    /// Adds the forces of a node at `node` (m) whose gap the contact filter accepts.
+    /// Adds the forces of a node at `node` (m) whose contact the filter accepts.
     ///
-    /// The laws are evaluated at the depth `shared` (m) of a row of nodes, or at the depth of the node itself.
+    /// The laws are evaluated at the depth `shared` (m) of the row of nodes, if given, and otherwise at the depth of
+    /// the node itself.
     #[inline(always)]
     fn press(
         &mut self,

@@ -33,8 +33,8 @@ pub struct Polygon<R = f64> {
 struct Side<R> {
     /// Start point (m).
     start: Vec2<R>,
-    /// Midpoint (m). Distances are measured from it and not from an end, since mirroring exchanges the ends. So a
-    /// mirrored polygon has the same rounding errors.
+    /// Midpoint (m). Distances are measured from the midpoint and not from an end, since mirroring exchanges the ends.
+    /// So a mirrored polygon has the same rounding errors.
     middle: Vec2<R>,
     /// Unit vector along the side.
     along: Vec2<R>,

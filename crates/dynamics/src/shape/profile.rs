@@ -266,7 +266,7 @@ impl BarrelProfile {
         self.chain(24)
     }
 
-    /// Returns nodes of the profile with sharp edges.
+    /// Returns nodes along the profile, without regard to the rounding of the edges.
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         let half =
             math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius);

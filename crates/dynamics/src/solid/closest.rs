@@ -191,9 +191,9 @@ impl Set<'_> {
 
     /// Returns the support of a unit direction, with the curvature of the surface there.
     ///
-    /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime, with the components α
-    /// along the axis and β across the axis; the second derivatives of `|n|` and `β` are `1` tangentially and `1/β`
-    /// around the axis.
+    /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime, where α and β are the
+    /// components of the direction along and across the axis; the second derivatives of `|n|` and `β` are `1`
+    /// tangentially and `1/β` around the axis.
     fn support(&self, direction: Vec3) -> Support {
         let local = self.rotation.unapply(direction);
         let barrel = self.barrel;

@@ -245,8 +245,9 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
     }
 }
 
-/// Returns the contact line of a tube on a plane perpendicular to an axis, given by height and rounding (m), along a
-/// chord given by its middle and by half its length (m) along the tube.
+/// Returns the contact line of a tube on a plane perpendicular to an axis. The plane is given by its height (m) along
+/// the axis and its rounding (m); the contact line follows a chord that is given by its middle and by half its length
+/// (m) along the tube.
 fn on_plane(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -305,7 +306,8 @@ fn head_on_block(
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// Returns the patch of the head of a barrel on a plane perpendicular to an axis, given by height and rounding (m).
+/// Returns the patch of the head of a barrel on a plane perpendicular to an axis; the plane is given by its height (m)
+/// along the axis and its rounding (m).
 ///
 /// `middle` maps the position of the center of the head in the plane to the middle of the shared area and its extent
 /// (m).

@@ -1,4 +1,4 @@
-//! Protection devices with exact answers; each device is on a stack that a scenario states.
+//! Protection devices with exact answers, each on a stack built from a scenario.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;

@@ -1,4 +1,4 @@
-//! Protection devices on stacks that scenarios state: forces, periods and frequencies.
+//! Protection devices on stacks built from scenarios: forces, periods and frequencies.
 
 use std::f64::consts::TAU;
 
@@ -188,7 +188,7 @@ fn tie() -> Problem {
 /// Stiffness (N/m) of the springs of a platform with a tuned mass.
 const SPRINGS: f64 = 1e5;
 
-/// Runs a platform on springs, with a tuned mass on the rack that the platform carries.
+/// Simulates a platform on springs, with a tuned mass on the rack that the platform carries.
 fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Result<Run, Failure> {
     let own = TAU / (tuning.frequency * (SPRINGS / ABOARD).sqrt());
     let mut settings = platform(SPRINGS);

@@ -110,8 +110,8 @@ impl<'a, S: Space> Meeting<'a, S> {
     /// zero.
     ///
     /// The force acts on both bodies at the companion point of `node`, and the velocities of both bodies are taken at
-    /// this point. So the pair conserves momentum, and the power that it loses is the force times the relative
-    /// velocity.
+    /// this point. So the contact conserves momentum, and the power lost in the contact is the product of the force and
+    /// the relative velocity.
     #[inline(always)]
     pub(super) fn contact(
         &self,
