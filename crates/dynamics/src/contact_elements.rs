@@ -69,8 +69,8 @@ pub struct ContactElements<S: Space> {
     travels: Vec<S::Real>,
     /// Poses of the bodies when the list was built.
     built_for: Vec<Pose<S>>,
-    /// Allowance (m) of every body: the displacement that it may make before the list is rebuilt. The list contains all
-    /// elements whose gap, when the list was built, was at most the sum of the allowances of their two bodies.
+    /// Allowance (m) of every body: the displacement that is permitted before the list is rebuilt. The list contains
+    /// all elements whose gap, when the list was built, was at most the sum of the allowances of their two bodies.
     allowances: Vec<f64>,
     /// `true` if the list contains all elements of the model.
     exhaustive: bool,
@@ -464,7 +464,7 @@ impl<R: Real> ContactElements<Planar<R>> {
     }
 }
 
-/// Returns the allowance (m) of each body: the displacement that it may make before the list is rebuilt.
+/// Returns the allowance (m) of each body: the displacement that is permitted before the list is rebuilt.
 ///
 /// The allowance grows with the speed of the body in the fastest lane. The speed is relative to the ground, since the
 /// motion of the ground moves all bodies together.

@@ -12,7 +12,8 @@ const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "heading",
         ValueKind::Text,
-        "direction in which the first body left its seat: right or left across the barrels, away or near along the barrels",
+        "direction in which the first body left its seat: right or left across the barrels, away \
+         or near along the barrels",
     ),
     (
         "debris_right",
@@ -27,12 +28,14 @@ const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "debris_away",
         ValueKind::Integer,
-        "fallen barrels whose displacement from rest is mainly along the barrels, away from the viewer",
+        "fallen barrels whose displacement from rest is mainly along the barrels, away from the \
+         viewer",
     ),
     (
         "debris_near",
         ValueKind::Integer,
-        "fallen barrels whose displacement from rest is mainly along the barrels, toward the near side",
+        "fallen barrels whose displacement from rest is mainly along the barrels, toward the near \
+         side",
     ),
 ];
 

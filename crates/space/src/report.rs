@@ -128,8 +128,8 @@ fn variants(summary: &Summary) -> Option<Table> {
     let mut table = Table::new(
         format!(
             "Ranges cover 5 to 95 % of the variants. The direction of the first body is the one in \
-             which it left its seat. The direction of a barrel that fell{} leads from its place at rest to its place at the \
-             end of the variant.",
+             which it left its seat. The direction of a barrel that fell{} leads from its position \
+             at rest to its position at the end of the variant.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],

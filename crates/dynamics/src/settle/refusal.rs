@@ -173,8 +173,8 @@ impl<S: Space> Departure<S> {
         most(model, &self.strayed(model, poses)) >= LEFT
     }
 
-    /// Returns the error for a stack in which no body is out of place, but the forces do not balance: for the first
-    /// body that moved or, if none did, the body with the largest residual.
+    /// Returns the error for a stack in which no body is out of place, but the forces do not balance. The error names
+    /// the first body that moved or, if no body moved, the body with the largest residual.
     pub(super) fn unbalanced(
         &mut self,
         model: &Model<S>,

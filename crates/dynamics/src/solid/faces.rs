@@ -170,8 +170,8 @@ pub(super) fn shared_by_both(
 
 /// Returns the polygon that a block shares with a target, in the frame of the target.
 ///
-/// `at` is the origin (m) of the contactor, `frame` the rotation from its frame to that of the target, and `normal`
-/// points out of the target at the closest points.
+/// `at` is the origin (m) of the contactor, `frame` the rotation from the frame of the contactor to that of the target,
+/// and `normal` points out of the target at the closest points.
 ///
 /// The two faces that meet at the closest points overlap in a polygon, in projection on the face of the target. Each
 /// corner of the polygon acts like one spring per right angle by which the polygon turns at the corner, so the whole

@@ -49,8 +49,8 @@ fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
 /// Returns the patch that a contactor shares with a target, in the frame of the target; `None` if they touch at a
 /// point.
 ///
-/// `at` is the origin (m) of the contactor, `frame` the rotation from its frame to that of the target, and `normal` the
-/// contact normal out of the target.
+/// `at` is the origin (m) of the contactor, `frame` the rotation from the frame of the contactor to that of the target,
+/// and `normal` the contact normal out of the target.
 pub(super) fn shared(
     contactor: &Hull,
     target: &Hull,

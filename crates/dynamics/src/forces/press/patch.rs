@@ -263,8 +263,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space> Spread<S> {
-    /// Returns the lanes in which other parts of the patch than the deepest point are in contact, given the distance
-    /// (m) of the deepest point.
+    /// Returns the lanes in which more than the deepest point of the patch is in contact; `deepest` is the distance (m)
+    /// of this point.
     #[inline(always)]
     fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
         let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);
