@@ -17,11 +17,11 @@ thread_local! {
 /// Number of operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operations {
-    /// Additions, subtractions and multiplications.
+    /// Number of additions, subtractions and multiplications.
     pub plain: u64,
-    /// Divisions and square roots.
+    /// Number of divisions and square roots.
     pub divisions: u64,
-    /// Comparisons, selections and changes of sign.
+    /// Number of comparisons, selections and changes of sign.
     pub choices: u64,
 }
 

@@ -91,7 +91,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }
 
-            /// Returns the error in the constants, if there is one.
+            /// Returns a description of the error in the constants, if there is one.
             fn flaw(&self) -> Option<&'static str> {
                 match self { $(Self::$kind(element) => element.flaw()),* }
             }
@@ -121,7 +121,8 @@ kinds!(
 );
 
 impl<S: Space> Element<S> {
-    /// Returns the error in the element, if there is one; `bodies` is the number of bodies of the model.
+    /// Returns a description of the error in the element, if there is one; `bodies` is the number of bodies of the
+    /// model.
     pub(crate) fn problem(&self, bodies: usize) -> Option<&'static str> {
         self.link().flaw(bodies).or_else(|| self.flaw())
     }

@@ -359,8 +359,8 @@ impl Polygon {
         unit(touching)
     }
 
-    /// Returns the corners as nodes; the tributary length of each is half of both adjacent sides. A rounded corner is
-    /// divided into parts that turn by at most 15 degrees.
+    /// Returns the corners as nodes; the tributary length of a corner is half the total length of its two adjacent
+    /// sides. A rounded corner is divided into parts that turn by at most 15 degrees.
     pub fn corner_nodes(&self) -> Vec<BoundaryNode> {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }

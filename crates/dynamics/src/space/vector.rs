@@ -129,9 +129,9 @@ impl<R: Real> Linear<R> for Vec3<R> {
 /// A unit quaternion, which rotates from the body frame to the outer frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion<R = f64> {
-    /// Cosine of half the angle.
+    /// Cosine of half the rotation angle.
     pub w: R,
-    /// Vector along the axis whose length is the sine of half the angle.
+    /// Vector along the rotation axis, with the sine of half the rotation angle as its length.
     pub v: Vec3<R>,
 }
 

@@ -91,7 +91,7 @@ fn strap() -> Problem {
         "a barrel strapped into a cradle of 28° without slack, pushed with 0.9 g",
         HELD,
     )
-    .quantity("tension of one of its two straps", "N", relative(exact, 5e-3))
+    .quantity("tension of one of the two straps", "N", relative(exact, 5e-3))
     .by(|_| {
         let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
         let settings = settings.map(str::to_owned);

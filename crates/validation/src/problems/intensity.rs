@@ -82,12 +82,7 @@ fn of_push(period: f64) -> Problem {
         format!("oscillator with a period of {period} s and 5 % damping under a sustained push"),
         STEP,
     )
-    .quantity(
-        "pseudo-acceleration divided by the \
-               push",
-        "",
-        relative(overshoot(), 1e-5),
-    ) // measured 1.3e-6
+    .quantity("pseudo-acceleration divided by the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
     .by(move |_| {
         let motion = push(period / 1000.0)?;
         let found =

@@ -42,12 +42,7 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
         format!("granite block {width} m by {height} m released at φ = 0.5"),
         SOURCE,
     )
-    .quantity(
-        "time until the block is \
-               upright",
-        "s",
-        relative(exact, 5e-3).fast(1.2e-2),
-    ) // measured 9.6e-6
+    .quantity("time until the block is upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
     .by(move |effort| {
         let block = firm(effort, radius, alpha);
         Ok(block.quarter_period(0.5)? / block.rate())

@@ -167,12 +167,7 @@ fn springs() -> Problem {
          and down",
         SOURCE,
     )
-    .quantity(
-        "penetration of the left corner after 1 \
-               s",
-        "m",
-        relative(exact, 1e-4).fast(1e-3),
-    ) // measured 2.3e-6 and 3.6e-5
+    .quantity("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
     .refined(move |_, level| {
         let size = (2.0 * half_width, 2.0 * half_height);
         let body = block("block", size, MASS, pose(0.0, start, tilt));
@@ -317,12 +312,7 @@ fn own_lean() -> Problem {
          in steps of at most 10 ms",
         SOURCE,
     )
-    .quantity(
-        "rotation after 1 s, without \
-               impact",
-        "rad",
-        relative(exact, 1e-8).fast(1e-6),
-    ) // measured 6.6e-11 and 1.7e-8
+    .quantity("rotation after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
     .refined(move |_, level| {
         let steps = 100 << level;
         Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)

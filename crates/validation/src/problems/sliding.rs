@@ -62,12 +62,7 @@ fn slide(name: &str, title: &str, drive: Shake, exact: f64) -> Problem {
 
 fn ride_along() -> Problem {
     setting("sliding/below-yield", "half-sine push of 0.19 g for 0.4 s, μ = 0.2", SOURCE)
-        .quantity(
-            "displacement of the block relative to the \
-                   ground",
-            "m",
-            absolute(0.0, 1e-9),
-        ) // measured 1.2e-12
+        .quantity("displacement of the block relative to the ground", "m", absolute(0.0, 1e-9)) // measured 1.2e-12
         .by(|effort| {
             let drive =
                 Shake::Sine { acceleration: 0.19 * GRAVITY, omega: PI / 0.4, half_waves: 1.0 };
