@@ -359,7 +359,7 @@ impl<S: Space> Model<S> {
         self.inert.iter().any(|body| body.damped)
     }
 
-    /// Returns the body whose boundaries stand for those of a body: the first body with equal boundaries.
+    /// Returns the body that supplies the boundaries of a body: the first body with equal boundaries.
     #[inline(always)]
     pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
         &self.bodies[self.alike[body]]

@@ -23,7 +23,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) spec: &'a StackSpec,
     pub(crate) barrel: Barrel,
     pub(crate) bodies: Vec<Body<Spatial>>,
-    /// Descriptions of the bodies, in the order of the bodies.
+    /// Description of every body, in the order of the body IDs.
     pub(crate) parts: Vec<Part>,
     pub(crate) laws: Laws,
     /// Elements that will be fitted to the stack at rest.

@@ -145,8 +145,8 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     })
 }
 
-/// A strap or a tie. It is drawn between two invisible bodies at its ends, since in the drawings of a solid body, which
-/// depend on its rotation, a point of the body has no fixed position.
+/// A strap or a tie. It is drawn between two invisible bodies at its ends. It cannot be attached to the drawings of the
+/// joined bodies: these depend on the rotation of a body, so that no point of the body has a fixed position in them.
 struct Band<'a> {
     link: &'a Link<Spatial>,
     drawn: Tie,

@@ -21,7 +21,7 @@ use crate::rack::Heights;
 pub struct Stack {
     /// The model.
     pub model: Model<Spatial>,
-    /// Descriptions of the bodies, in the order of the bodies; the ground comes first.
+    /// Description of every body, in the order of the body IDs; the ground comes first.
     pub parts: Vec<Part>,
     /// Time step (s), divided during impacts; for a stack, the smallest of the steps of its plane models across and
     /// along the barrels.

@@ -64,23 +64,23 @@ described! {
     /// Numbers of variants and barrels that fall in each direction.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Directions of cases: &[Case] {
-        /// Variants whose first body leaves its seat to the right (positive x).
+        /// Number of variants whose first body leaves its seat to the right (positive x).
         pub first_right: u32 = first(cases, Heading::Right),
-        /// Variants whose first body leaves its seat to the left (negative x).
+        /// Number of variants whose first body leaves its seat to the left (negative x).
         pub first_left: u32 = first(cases, Heading::Left),
-        /// Variants whose first body leaves its seat along the barrels, away from the viewer (positive y).
+        /// Number of variants whose first body leaves its seat along the barrels, away from the viewer (positive y).
         pub first_away: u32 = first(cases, Heading::Away),
-        /// Variants whose first body leaves its seat along the barrels, toward the near side (negative y).
+        /// Number of variants whose first body leaves its seat along the barrels, toward the near side (negative y).
         pub first_near: u32 = first(cases, Heading::Near),
-        /// Fallen barrels, in all variants, whose displacement from rest is mainly to the right.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the right.
         pub debris_right: u32 = debris(cases, Heading::Right),
-        /// Fallen barrels, in all variants, whose displacement from rest is mainly to the left.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the left.
         pub debris_left: u32 = debris(cases, Heading::Left),
-        /// Fallen barrels, in all variants, whose displacement from rest is mainly along the barrels, away from the
-        /// viewer.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly along the barrels, away
+        /// from the viewer.
         pub debris_away: u32 = debris(cases, Heading::Away),
-        /// Fallen barrels, in all variants, whose displacement from rest is mainly along the barrels, toward the near
-        /// side.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly along the barrels, toward
+        /// the near side.
         pub debris_near: u32 = debris(cases, Heading::Near),
     }
 
@@ -103,7 +103,7 @@ described! {
         pub to_level: Option<u32>,
         /// Time at which the first barrel counted as fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end; null where the run is invalid or was interrupted.
+        /// Number of barrels that had fallen at the end; null where the run is invalid or was interrupted.
         pub barrels_fallen: Option<usize>,
         /// Number of all barrels.
         pub barrels: usize,

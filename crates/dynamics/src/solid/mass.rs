@@ -208,9 +208,10 @@ impl Cask {
     /// Returns the mass distribution of wood and contents.
     ///
     /// Wine does not rotate about the axis of a rolling barrel, since its boundary layer is thin. About a transverse
-    /// axis it rotates like the liquid in a spheroid with the same second moments. Its effective moment of inertia is
-    /// `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid). Mass and
-    /// center of mass include the wine; the returned second moments are those of an equivalent rigid body.
+    /// axis, wine rotates like the liquid in a spheroid with the same second moments. The effective moment of inertia
+    /// of this liquid is `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with
+    /// liquid). Mass and center of mass include the wine; the returned second moments are those of an equivalent rigid
+    /// body.
     pub fn bulk(&self, fill: Fill) -> Bulk {
         let wood = self.staves_and_heads();
         let wood = wood.of_density(self.wood / wood.volume);

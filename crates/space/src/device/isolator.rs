@@ -1,5 +1,5 @@
-//! Isolators in space: a platform under every bottom rack, with a bearing at each corner of the platform that slides on
-//! a flat surface or in a dish.
+//! Isolators in space: a platform under every bottom rack. At each corner, the platform has a bearing that slides on a
+//! flat surface or in a dish.
 //!
 //! Springs and stops act at the middles of the four sides of the platform, so that they resist the rotation of the
 //! platform as well. Since they act separately across and along the barrels, the platform may move farther than the
