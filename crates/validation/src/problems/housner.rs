@@ -56,7 +56,7 @@ fn quarter_period(alpha: f64, share: f64) -> Problem {
         format!("block of α = {alpha} released at φ = {share}"),
         SOURCE,
     )
-    .quantity("p times the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
+    .quantity("p multiplied by the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
     .by(move |effort| {
         let block = firm(effort, 1.0, alpha);
         let slender = theory::slender_quarter_period(share);
@@ -124,7 +124,7 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
         format!("block of α = {alpha} released at φ = 0.5"),
         SOURCE,
     )
-    .quantity("p times the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
+    .quantity("p multiplied by the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
     .refined(move |effort, level| {
         let block = firm(effort, 1.0, alpha).refined(level - 1);
         let swings = block.swings(0.5, impacts + 1, 12.0)?;
