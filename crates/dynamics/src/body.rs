@@ -12,7 +12,7 @@ pub type BodyId = usize;
 pub enum Motion {
     /// The body moves under forces.
     Free,
-    /// The body moves with the ground: it keeps its position and orientation relative to it.
+    /// The body moves with the ground: its position and orientation relative to the ground are constant.
     Prescribed,
 }
 
@@ -21,18 +21,18 @@ pub enum Motion {
 pub struct Placed<S: Space> {
     /// The surface, in its own frame.
     pub surface: S::Surface,
-    /// Origin of the surface's frame (m), in the body frame, from the center of mass.
+    /// Position (m) of the origin of the surface's frame in the body frame, relative to the center of mass.
     pub offset: S::Vector,
-    /// Rotation of the surface's frame in the body frame.
+    /// Rotation from the surface's frame to the body frame.
     pub rotation: S::Rotation,
 }
 
 /// A node fixed to a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node<S: Space> {
-    /// Position (m) in the body frame, from the center of mass.
+    /// Position (m) in the body frame, relative to the center of mass.
     pub position: S::Vector,
-    /// Tributary length of boundary (m).
+    /// Length of boundary (m) that is tributary to the node.
     pub tributary_length: S::Real,
     /// Outward unit normal of the boundary at the node, in the body frame; at a corner, the mean of both sides. `None`
     /// if contact is possible from every direction.
@@ -46,45 +46,46 @@ pub struct Node<S: Space> {
 /// round piece of the other, so every contact belongs to one round piece and is counted once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round<S: Space> {
-    /// Center (m) in the body frame, from the center of mass.
+    /// Position (m) of the center in the body frame, relative to the center of mass.
     pub center: S::Vector,
     /// Radius (m); zero for a sharp corner.
     pub radius: S::Real,
-    /// Unit vectors in the body frame that bound the outward normals `d` of the piece: `d · limit ≤ 0` for both. A zero
-    /// vector sets no bound.
+    /// Unit vectors, in the body frame, that limit the range of the outward normals `d` of the piece: `d · limit ≤ 0`
+    /// for both. A zero vector sets no bound.
     pub limits: [S::Vector; 2],
-    /// The limits at which an arc adjoins; `None` where the boundary continues straight. Past a straight end a corner
-    /// still bears against a side: both lower corners of a block carry it on a floor, whichever is deeper.
+    /// The entries of `limits` at which the piece is adjacent to an arc; `None` where it is adjacent to a straight
+    /// side. At a straight side, the piece bears on another body even if its deepest point lies beyond the limit: both
+    /// lower corners of a block on a floor carry the block, whichever corner is deeper.
     pub arc_limits: [Option<S::Vector>; 2],
     /// `true` if normals exactly at the limit of an arc belong to this piece and not to its neighbor.
     pub takes_limit: bool,
-    /// The straight sides adjoining the ends of an arc, as unit normal and distance (m) from the center of mass. A
-    /// corner of another body that is nearer to such a side than to the arc touches the side.
+    /// The straight sides adjacent to the ends of an arc, each given by its unit normal and its distance (m) from the
+    /// center of mass. A corner of another body that is nearer to such a side than to the arc touches the side.
     pub sides: [Option<(S::Vector, S::Real)>; 2],
-    /// Penetration (m) beyond which there is no contact, since the nearest point then lies behind the body: the center
-    /// of an arc may lie far beyond its body.
+    /// Penetration (m) beyond which there is no contact. The center of an arc may lie far outside its body, so a
+    /// surface behind the body may seem to penetrate the arc deeply.
     pub greatest_depth: S::Real,
-    /// Tributary length of boundary (m) of its contact.
+    /// Tributary length (m) of the contact of the piece.
     pub tributary_length: S::Real,
 }
 
 /// A flat piece of boundary that carries nodes, as a plane in the body frame.
 ///
-/// Where nodes and the exact test would both find a contact, the plane decides: a round body with its center in front
-/// of the plane is tested by the nodes, one with its center behind the plane by the exact test. For other bodies, whose
-/// edges may extend past the face, the direction of the contact decides as well.
+/// Where both the nodes and the exact test would find a contact, the plane decides which of the two applies: the nodes
+/// for a round body whose center is in front of the plane, and the exact test for a round body whose center is behind
+/// the plane. For other bodies, whose edges may extend past the face, the direction of the contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
-    /// A point of the face (m), from the center of mass.
+    /// A point of the face (m), relative to the center of mass.
     pub point: S::Vector,
     /// Unit normal out of the body.
     pub outward: S::Vector,
     /// Cosine of the largest angle between `outward` and the outward normal of a contact that belongs to the face;
-    /// below -1 if every direction does.
+    /// below -1 if contacts in every direction belong to the face.
     pub widest: S::Real,
 }
 
-/// Contact points of a boundary.
+/// A set of contact points on the boundary of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Nodes<S: Space> {
     /// Nodes fixed to the body, as in Candia, de la Llera and Almazán (2008).
@@ -98,10 +99,10 @@ pub enum Nodes<S: Space> {
         center: S::Vector,
         /// Radius of the circle (m).
         radius: S::Real,
-        /// Tributary length of boundary (m) of the node.
+        /// Length of boundary (m) that is tributary to the node.
         tributary_length: S::Real,
     },
-    /// A convex solid in space, which touches with its deepest points.
+    /// A convex solid of a three-dimensional model; its contacts are at its deepest points.
     Whole(S::Whole),
 }
 
@@ -128,7 +129,7 @@ pub struct Body<S: Space> {
     pub mass: S::Real,
     /// Moment of inertia about the center of mass (kg·m²).
     pub inertia: S::Inertia,
-    /// Viscous damping matrix (eq. 2.8) acting on the velocity in the inertial frame.
+    /// Viscous damping matrix (eq. 2.8), which acts on the velocity in the inertial frame.
     pub damping: Option<S::Damping>,
     /// Initial pose.
     pub pose: Pose<S>,
@@ -161,7 +162,7 @@ impl<S: Space> Inert<S> {
 }
 
 impl Body<Planar> {
-    /// Creates the ground: a half-plane below its origin, inclined by an angle (rad).
+    /// Creates the ground: a half-plane whose surface passes through the origin at an inclination (rad).
     pub fn ground(orientation: f64) -> Self {
         let floor = Placed {
             surface: Shape::HalfPlane(HalfPlane),

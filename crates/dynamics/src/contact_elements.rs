@@ -1,8 +1,9 @@
-//! List of the contact elements that could touch soon, with their memory.
+//! List of the contact elements that could touch soon, with their stick memory.
 //!
-//! A contact element is a node of a contactor and the surface of a target. The list has only the elements within reach;
-//! it is rebuilt before any body can have moved far enough for a missing element to touch. The list affects speed
-//! alone: forces are bit-identical to those of testing every node in every step.
+//! A contact element is a node of a contactor and the surface of a target. The list contains only the elements within
+//! reach; it is rebuilt before any body can have moved far enough for a missing element to touch. The list affects only
+//! the speed of the computation: the forces are bit-identical to those of a computation that tests every node in every
+//! step.
 
 use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::Stick;
@@ -14,17 +15,19 @@ use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Planar, Pose, Space, Twist};
 
 /// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on the list, so
-/// no missing element may be nearer than the displacements within the lookahead plus this slack.
+/// the gap of every element that is missing from the list must exceed the displacements within the lookahead plus this
+/// slack.
 const LOOKAHEAD_SLACK: f64 = 1e-3;
 
-/// Least displacement (m) that is allowed to every body before the list is rebuilt.
+/// Minimum allowance (m): every body may move at least this far before the list is rebuilt.
 const LEAST_ALLOWANCE: f64 = 0.015;
 
-/// Time (s) for which the list shall stay valid while bodies keep their speeds, so that falling bodies do not require a
+/// Time (s) for which the list should remain valid if bodies keep their speeds, so that falling bodies do not require a
 /// new list every other step.
 const HORIZON: f64 = 0.012;
 
-/// Maximum displacement (m) that is allowed to a body before the list is rebuilt, since long lists are expensive, too.
+/// Maximum allowance (m): no body may move farther before the list is rebuilt. A larger allowance would make the list
+/// longer, and long lists are expensive, too.
 const MOST_ALLOWANCE: f64 = 0.15;
 
 /// The elements of one contact pair.
@@ -36,14 +39,14 @@ pub(crate) struct Group {
     bodies: [BodyId; 2],
     /// Interface of the pair.
     pub(crate) interface: InterfaceId,
-    /// Index of its first element.
+    /// Index of the first element of the group.
     pub(crate) first: usize,
-    /// Index past its last element.
+    /// Index after the last element of the group.
     pub(crate) end: usize,
 }
 
-/// Gap (m), in addition to the predicted displacements in a step, above which a group is skipped; forces may change
-/// velocities within the step.
+/// Slack (m) for changes of velocity within a step: a group is skipped if its gap exceeds the displacements predicted
+/// for the step by more than this.
 const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
 
 /// The contact elements within reach, in the order in which their forces are summed.
@@ -54,22 +57,22 @@ pub struct ContactElements<S: Space> {
     pub(crate) nodes: Vec<u32>,
     /// Position (m) of every element's node in the body frame of its contactor.
     pub(crate) positions: Vec<S::Vector>,
-    /// Factor of the constants of every element's law: 1 for constants per node, the tributary length (m) for constants
-    /// per length.
+    /// Factor by which the constants of every element's laws are multiplied: 1 for constants per node, the tributary
+    /// length (m) for constants per length.
     pub(crate) weights: Vec<S::Real>,
-    /// Memory of every element.
+    /// Stick memory of every element.
     pub(crate) sticks: Vec<Stick<S>>,
-    /// Smallest gap (m) of the elements of every group when the list was built.
+    /// For every group, the smallest gap (m) of its elements when the list was built.
     apart: Vec<S::Real>,
-    /// Upper bound of the displacement (m) of every body from the build of the list to the end of the current step;
-    /// infinite outside of a step.
+    /// For every body, an upper bound of its displacement (m) between the build of the list and the end of the current
+    /// step; infinite outside of a step.
     travels: Vec<S::Real>,
-    /// Poses at which the list was built.
+    /// Poses of the bodies when the list was built.
     built_for: Vec<Pose<S>>,
-    /// Displacement (m) that is allowed to every body until the list is rebuilt: the list has all elements whose gap
-    /// was at most the sum of the displacements allowed to their two bodies.
+    /// Allowance (m) of every body: the displacement that is permitted before the list is rebuilt. The list contains
+    /// all elements whose gap, when the list was built, was at most the sum of the allowances of their two bodies.
     allowances: Vec<f64>,
-    /// `true` if the list has all elements of the model.
+    /// `true` if the list contains all elements of the model.
     exhaustive: bool,
 }
 
@@ -96,13 +99,13 @@ impl<S: Space> ContactElements<S> {
         self.nodes.len()
     }
 
-    /// Returns `true` if no node is near any surface.
+    /// Returns `true` if the list has no elements, because no node is near a surface.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Returns `true` if no element of a group can come within a gap (m) during the current step in any lane, so that
-    /// the group need not be tested.
+    /// Returns `true` if the gap of every element of a group stays larger than `gap` (m) during the current step in all
+    /// lanes, so that the group need not be tested.
     #[inline(always)]
     pub(crate) fn sleeps(&self, group: usize, gap: S::Real) -> bool {
         let [a, b] = self.groups[group].bodies;
@@ -110,24 +113,25 @@ impl<S: Space> ContactElements<S> {
         (travel + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group]).all()
     }
 
-    /// Ends the step: until the next one begins, bodies may be moved anywhere, so no group is skipped.
+    /// Ends the step. Until the next step begins, bodies may be moved anywhere, so no group is skipped.
     pub(crate) fn end_step(&mut self) {
         self.travels.fill(S::Real::splat(f64::INFINITY));
     }
 
-    /// Returns the memory of an element; numbered as in [`Contact::element`](crate::forces::Contact::element).
+    /// Returns the stick memory of the element with an index as in
+    /// [`Contact::element`](crate::forces::Contact::element).
     pub fn stick(&self, element: usize) -> Stick<S> {
         self.sticks[element]
     }
 
-    /// Keeps every element in the list from now on; tests use this as the reference of the shorter list.
+    /// Keeps every element in the list from now on; tests use the complete list as the reference for the shorter list.
     pub fn make_exhaustive(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
         self.exhaustive = true;
         self.rebuild(model, poses, &vec![Twist::default(); poses.len()]);
     }
 
-    /// Rebuilds the list if a missing element could touch now or within `dt` (s); returns the origins of
-    /// [`ContactElements::rebuild`] if it did.
+    /// Rebuilds the list if a missing element could touch now or within `dt` (s); if the list was rebuilt, returns the
+    /// origins as [`ContactElements::rebuild`] does.
     pub(crate) fn refresh(
         &mut self,
         model: &Model<S>,
@@ -152,7 +156,7 @@ impl<S: Space> ContactElements<S> {
         })
     }
 
-    /// Updates the displacements of all bodies; returns `true` if one may exceed its allowance.
+    /// Updates the displacements of all bodies; returns `true` if a body may exceed its allowance.
     #[inline(always)]
     fn has_moved_out(
         &mut self,
@@ -187,7 +191,7 @@ impl<S: Space> ContactElements<S> {
         stale.any()
     }
 
-    /// Lists the elements within the margin and transfers their memory.
+    /// Lists the elements within reach and transfers their memory from the old list.
     ///
     /// Returns the origins: for every element of the new list, its index in the old list.
     pub(crate) fn rebuild(
@@ -238,9 +242,10 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// Returns the pairs of bodies whose bounding balls come within their margins, in the order of the model.
+    /// Returns the pairs of bodies whose bounding balls are no farther apart than the margins of the two bodies, in the
+    /// order of the model.
     ///
-    /// Bodies are swept along the first axis, so that the cost for a row of bodies is not quadratic.
+    /// The bodies are sorted and swept along the first axis, so that the cost for a row of bodies is not quadratic.
     fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
             return model.pairs.numbers().collect();
@@ -288,7 +293,8 @@ impl<S: Space> ContactElements<S> {
         couples.into_iter().flatten().collect()
     }
 
-    /// Returns the distance (m) of a ball about a point from a surface; `None` if it exceeds a margin (m) in all lanes.
+    /// Returns the distance (m) between a surface and a ball about a point; `None` if the distance exceeds a margin (m)
+    /// in all lanes.
     #[inline(always)]
     fn near(
         &self,
@@ -302,10 +308,11 @@ impl<S: Space> ContactElements<S> {
         near.then_some(distance)
     }
 
-    /// Returns `true` if a surface stays deeper than [`Round::greatest_depth`] within a round piece in all lanes, so
-    /// that there is no contact.
+    /// Returns `true` if, in all lanes, a surface stays deeper than [`Round::greatest_depth`] in a round piece until
+    /// the list is rebuilt, so that there is no contact.
     ///
-    /// The center of an arc may lie far beyond its body, and then moves farther than the body.
+    /// The center of an arc may lie far outside its body; as the body turns, the center then moves farther than the
+    /// body.
     #[inline(always)]
     fn behind(
         &self,
@@ -329,7 +336,8 @@ impl<S: Space> ContactElements<S> {
         !self.exhaustive && (round.greatest_depth + travels).lt(depth).all()
     }
 
-    /// Adds the elements of a pair that are within reach to the list; returns their least gap (m) in every lane.
+    /// Adds the elements of a pair that are within reach to the list; returns the smallest gap (m) of these elements in
+    /// every lane.
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
         let mut least = S::Real::splat(f64::INFINITY);
@@ -421,8 +429,8 @@ impl<S: Space> ContactElements<S> {
 }
 
 impl<R: Real> ContactElements<Planar<R>> {
-    /// Copies the stick memory and the slip rates of a single state into one lane; elements that the single state lacks
-    /// get none.
+    /// Copies the stick memory and the slip rates of a single state into one lane; elements that are missing in the
+    /// single state get an empty memory.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
@@ -444,7 +452,8 @@ impl<R: Real> ContactElements<Planar<R>> {
         }
     }
 
-    /// Returns the memory of the elements that touch in one lane, as a list that must be rebuilt for a single state.
+    /// Returns the stick memory of the elements that touch in one lane. The returned list must be rebuilt before it is
+    /// used with a single state.
     pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
         let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {
             if touching.lane(lane) { stick.of_lane(lane) } else { Stick::default() }
@@ -455,9 +464,10 @@ impl<R: Real> ContactElements<Planar<R>> {
     }
 }
 
-/// Returns the displacement (m) that is allowed to each body before the list is stale.
+/// Returns the allowance (m) of each body: the displacement that is permitted before the list is rebuilt.
 ///
-/// It grows with the speed of the body in the fastest lane, relative to the ground, which moves all bodies together.
+/// The allowance grows with the speed of the body in the fastest lane. The speed is relative to the ground, since the
+/// motion of the ground moves all bodies together.
 fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
     let carrier = ground.map_or_else(S::Vector::default, |ground| twists[ground].linear);
@@ -477,7 +487,7 @@ fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     model.bodies.iter().enumerate().map(allowance).collect()
 }
 
-/// Traverses an old list in step with a new one; both are sorted by pair and node.
+/// Looks up elements in an old list while a new list is traversed; both lists are sorted by pair and node.
 struct Remembered<'a, S: Space> {
     old: &'a ContactElements<S>,
     group: usize,

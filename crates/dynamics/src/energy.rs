@@ -9,20 +9,20 @@ use crate::real::Real;
 use crate::space::{Linear, Pose, Space, Wrench};
 use crate::state::State;
 
-/// Energies and works at one time (J), since the start of the run.
+/// Energies (J) at one time, and works (J) from the start of the run to that time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergySummary {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Potential energy in gravity, relative to the start.
+    /// Gravitational potential energy, relative to the start.
     pub potential: f64,
     /// Energy stored in normal springs and in force elements.
     pub elastic: f64,
-    /// Energy stored in sticks.
+    /// Energy stored in sticks, the tangential springs of friction.
     pub stick: f64,
-    /// Energy lost in the dampers of contacts and elements, by yielding, and with broken elements.
+    /// Energy lost in the dampers of contacts and elements, by yielding of elements, and by the breaking of elements.
     pub damped: f64,
-    /// Energy lost to friction: by sliding, and by the damping of sticks.
+    /// Energy lost to friction, that is, to sliding and to the damping of sticks.
     pub friction: f64,
     /// Energy lost to viscous damping of bodies.
     pub viscous: f64,
@@ -30,8 +30,9 @@ pub struct EnergySummary {
     pub ground_work: f64,
     /// Stored and lost energy, less the initial energy and the work of the ground; zero for an exact integration.
     pub residual: f64,
-    /// Energy that went through the system so far: the absolute work of the ground, plus the energy that was available
-    /// at the start (motion, springs, and the deepest drop). It is the scale of the residual.
+    /// Energy that has passed through the system so far: the absolute work of the ground, plus the energy available at
+    /// the start (kinetic energy, energy of springs, and potential energy of the deepest drop). The residual is stated
+    /// relative to the throughput.
     pub throughput: f64,
 }
 
@@ -44,15 +45,15 @@ impl EnergySummary {
 
 /// Energy balance of every lane, summed over the accepted steps of a run.
 ///
-/// The work of a force in a step is the mean of the force at the two ends of the step times the displacement of its
-/// body: the discrete balance of the central difference method. Velocity Verlet satisfies this balance to rounding,
-/// except for the difference between the velocities at the ends and in the middle of a step, which does not accumulate.
-/// So a linear spring returns all its energy, and the works of dampers, friction and the ground are exact, however
-/// abruptly these forces set in.
+/// The work of a force in a step is the mean of the forces at the start and at the end of the step, multiplied by the
+/// displacement of the body. This is the discrete energy balance of the central difference method. Velocity Verlet
+/// satisfies this balance to rounding, except for the difference between the velocities at the ends and in the middle
+/// of a step, which does not accumulate. So a linear spring returns all its energy, and the works of dampers, friction
+/// and the ground are exact, however abruptly these forces set in.
 ///
-/// The residual is the error of the integration itself: springs that engage or release within a step, nonlinear laws,
-/// and geometry. Stored energies are computed from the state alone, so a force that is not the derivative of its
-/// energy, or that differs between the motion and the balance, leaves a residual, too.
+/// The residual is the error of the time integration alone. Its sources are springs that engage or release within a
+/// step, nonlinear laws, and changes of geometry. Stored energies are computed from the state alone, so a force that is
+/// not the derivative of its energy, or that differs between the motion and the balance, leaves a residual, too.
 #[derive(Clone, Debug)]
 pub struct EnergyLedger<S: Space> {
     initial: S::Real,
@@ -95,7 +96,7 @@ struct Stored<R> {
 }
 
 impl<S: Space> EnergyLedger<S> {
-    /// Starts the balance at a state whose forces are in `scratch`.
+    /// Starts the energy balance at a state whose forces are in `scratch`.
     pub fn new(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Self {
         let stored = stored(model, state, scratch);
         Self {
@@ -168,7 +169,7 @@ impl<S: Space> EnergyLedger<S> {
         (self.stored.kinetic + self.stored.potential).is_finite_mask()
     }
 
-    /// Returns the balance of one lane.
+    /// Returns the energy balance of one lane.
     pub fn summary(&self, lane: usize) -> EnergySummary {
         let Stored { kinetic, potential, elastic, stick } = self.stored;
         let now = kinetic + potential + elastic;

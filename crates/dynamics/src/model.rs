@@ -18,22 +18,21 @@ pub type InterfaceId = usize;
 pub struct ContactPair {
     /// The body that carries the nodes.
     pub contactor: BodyId,
-    /// Index of its node set.
+    /// Index of the node set of the contactor.
     pub nodes: usize,
     /// The body that carries the surface.
     pub target: BodyId,
-    /// Index of its surface.
+    /// Index of the surface of the target.
     pub surface: usize,
-    /// The law between them.
+    /// Interface that states the contact laws of the pair.
     pub interface: InterfaceId,
-    /// Filter of the contacts by their position relative to a face.
+    /// Filter that selects contacts by their position relative to a face.
     pub counts: Counts,
 }
 
-/// Filter that assigns each contact near a face to exactly one pair.
-///
-/// One pair may test a face by its nodes and another pair test it exactly. Without the filter, a contact found by both
-/// would be counted twice.
+/// Filter that assigns each contact near a face to exactly one pair. One pair may test a face with the nodes of the
+/// face, and another pair may test the same face exactly. Without the filter, a contact found by both would be counted
+/// twice.
 ///
 /// A contact belongs to the face if the other body's center of mass lies in front of the face and the angle between the
 /// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
@@ -42,11 +41,11 @@ pub enum Counts {
     /// All contacts count.
     #[default]
     Everywhere,
-    /// Only contacts that belong to this face of the contactor count.
+    /// Only contacts that belong to the contactor's face with this index count.
     BeforeFace(usize),
-    /// Only contacts that do not belong to this face of the contactor count.
+    /// Only contacts that do not belong to the contactor's face with this index count.
     BehindFace(usize),
-    /// Only contacts that do not belong to this face of the target count.
+    /// Only contacts that do not belong to the target's face with this index count.
     BehindFaceOfTarget(usize),
 }
 
@@ -58,14 +57,14 @@ pub const FORESEEN: f64 = 0.01;
 /// Impact laws are the stiffest laws of a model, but only at large penetration, so steps are divided only then.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substepping<R> {
-    /// Number of substeps of a time step while an impact requires it; an integer, one or more.
+    /// Number of substeps into which a time step is divided while an impact requires it; an integer, at least one.
     pub substeps: R,
     /// For every interface, the largest penetration (m) that whole time steps resolve; infinite for no limit.
     pub whole_step_depth: Vec<R>,
     /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
-    /// contact at rest: stability allows a larger depth than the accuracy of an impact does.
+    /// contact at rest: for such a contact, only stability limits the penetration, while impacts must also be accurate.
     pub resting_allowance: R,
-    /// Gap (m) below which impacts are predicted; an impact that closes a larger gap within the lookahead is detected
+    /// Gap (m) below which impacts are predicted. If a larger gap closes within the lookahead, the impact is detected
     /// late. [`FORESEEN`] suits stacks.
     pub foreseen_gap: R,
     /// Additional rules for fast contacts of whole bodies; `None` to disable them.
@@ -75,10 +74,11 @@ pub struct Substepping<R> {
 /// Additional substepping rules for fast contacts of whole bodies ([`Nodes::Whole`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since spring and damper
-    /// would engage or release too abruptly.
+    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since the spring and the
+    /// damper of the contact would otherwise engage or release too abruptly.
     pub whole_step_way: R,
-    /// Approach speed (m/s) above which an impact counts as hard; substeps are then halved until no impact remains.
+    /// Approach speed (m/s) above which an impact counts as hard; the substeps are then half as long until no impact
+    /// remains.
     pub hard: R,
 }
 
@@ -96,8 +96,8 @@ pub struct Model<S: Space> {
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
-    /// For every body, the first body with equal boundaries. Boundaries are read from that body, so that a thousand
-    /// equal blocks occupy the cache of one.
+    /// For every body, the first body with equal boundaries. Boundaries are read from the first body, so that a
+    /// thousand equal blocks need no more cache than one block.
     pub(crate) alike: Vec<BodyId>,
     pub(crate) substepping: Substepping<S::Real>,
 }
@@ -116,7 +116,7 @@ pub enum ModelError {
     Mass {
         /// The body.
         name: String,
-        /// Its mass (kg).
+        /// Mass (kg) of the body.
         mass: f64,
     },
     /// A free body has no moment of inertia.
@@ -127,7 +127,7 @@ pub enum ModelError {
     Inertia {
         /// The body.
         name: String,
-        /// Its least moment of inertia (kg·m²).
+        /// Smallest principal moment of inertia (kg·m²) of the body.
         inertia: f64,
     },
     /// A free body has an unbounded surface.
@@ -147,13 +147,13 @@ pub enum ModelError {
     /// A pair refers to a missing item.
     #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
     Dangling {
-        /// The pair, counted from 0.
+        /// Index of the pair, counted from 0.
         pair: usize,
         /// Kind of the item.
         what: &'static str,
-        /// Its index.
+        /// Index of the item.
         index: usize,
-        /// Number of such items.
+        /// Number of existing items of this kind.
         count: usize,
     },
 }
@@ -271,7 +271,7 @@ impl<S: Space> Model<S> {
         Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }
 
-    /// Enables substeps during impacts; a new model divides no step.
+    /// Enables substeps during impacts. In a new model, substeps are disabled.
     ///
     /// # Panics
     /// If the number of penetrations differs from the number of interfaces.
@@ -316,20 +316,20 @@ impl<S: Space> Model<S> {
         &self.interfaces
     }
 
-    /// Returns the contact pairs, in the order in which their forces are summed; in a model of kinds their number is
-    /// quadratic in that of bodies.
+    /// Returns the contact pairs, in the order in which their forces are summed; in a model created by
+    /// [`Model::of_kinds`], the number of pairs is quadratic in the number of bodies.
     pub fn pairs(&self) -> impl Iterator<Item = ContactPair> + '_ {
         self.pairs.numbers().map(|number| self.pairs.get(number))
     }
 
-    /// Returns the contact pair with a number, such as that of a [`Contact`](crate::forces::Contact).
+    /// Returns the contact pair with the given number, such as [`Contact::pair`](crate::forces::Contact::pair).
     #[inline(always)]
     pub fn pair(&self, number: usize) -> ContactPair {
         self.pairs.get(number)
     }
 
-    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all that may be its
-    /// target.
+    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all bodies that may be
+    /// its target.
     pub fn each_meeting(&self, report: &mut TellMeeting<'_>) {
         self.pairs.each(report);
     }
@@ -359,7 +359,7 @@ impl<S: Space> Model<S> {
         self.inert.iter().any(|body| body.damped)
     }
 
-    /// Returns the body from which the boundaries of a body are read.
+    /// Returns the body that supplies the boundaries of a body: the first body with equal boundaries.
     #[inline(always)]
     pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
         &self.bodies[self.alike[body]]

@@ -1,4 +1,4 @@
-//! Relative pose of two bodies in the frame of a surface, and the filter of their contacts by a face.
+//! Relative pose of two bodies in the frame of a surface, and a filter that selects their contacts by a face.
 
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
@@ -21,14 +21,15 @@ pub(crate) struct PairFrame<S: Space> {
     placed: S::Rotation,
 }
 
-/// Filter of the contacts of a pair by a face, as required by [`Counts`].
+/// Filter that selects the contacts of a pair by a face, as [`Counts`] requires.
 #[derive(Clone, Copy)]
 pub(crate) struct AtFace<S: Space> {
     /// Lanes in which the other body's center of mass lies in front of the face.
     before: <S::Real as Real>::Mask,
-    /// Outward normal of the face, with the sign of a contact normal, in the frame of the target's surface.
+    /// Outward normal of the face, in the frame of the target's surface, with the same sign convention as contact
+    /// normals.
     out: S::Vector,
-    /// [`Face::widest`](crate::body::Face::widest).
+    /// Copy of [`Face::widest`](crate::body::Face::widest).
     widest: S::Real,
     of_nodes: bool,
 }

@@ -12,23 +12,24 @@ pub(crate) enum Pairs {
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// The range of pairs of every two bodies that touch, in order.
+        /// For every two bodies that can touch, the range of their pairs, in order.
         couples: Vec<Couple>,
     },
-    /// The pairs of two bodies depend only on their kinds, so no list of all pairs is stored, whose length would be
-    /// quadratic in the number of bodies.
+    /// The pairs of two bodies depend only on the kinds of the bodies. So no list of all pairs is stored; its length
+    /// would be quadratic in the number of bodies.
     OfKinds {
         /// The kind of every body.
         kinds: Vec<usize>,
         /// The pairs of two bodies, indexed by the kind of the body with the lower ID and then by the kind of the other
-        /// body. In these pairs the former has the ID 0 and the latter the ID 1.
+        /// body. In these pairs, the body with the lower ID is number 0 and the other body is number 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
-        /// Number of pair numbers reserved for every two bodies.
+        /// Number of pair indices that are reserved for every two bodies.
         most: usize,
     },
 }
 
-/// Callback: a representative pair, its candidate contactors, and its candidate targets.
+/// Callback that receives a representative pair, all bodies that may be its contactor, and all bodies that may be its
+/// target.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
 /// The pairs of two bodies in the list.
@@ -36,7 +37,7 @@ pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 pub(crate) struct Couple {
     /// The two bodies, the lower ID first.
     bodies: [BodyId; 2],
-    /// Their pairs.
+    /// Range of the pairs of the two bodies.
     pairs: Range<usize>,
 }
 
@@ -134,8 +135,8 @@ impl Pairs {
         (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
     }
 
-    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all that may be its
-    /// target.
+    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all bodies that may be
+    /// its target.
     pub(crate) fn each(&self, report: &mut TellMeeting<'_>) {
         match self {
             Self::Listed { pairs, .. } => {

@@ -1,9 +1,10 @@
 //! The scalar of the physics: one `f64`, or many in lockstep.
 //!
 //! Every force, shape and integrator is written once, generic over [`Real`]. With `f64` it computes one run; with a
-//! bundle of lanes it computes as many runs of one topology side by side. To keep a lane equal to a single run, bit for
-//! bit, a branch on a number becomes a [`Mask`] and a [`Real::select`], a block may be skipped only when no lane needs
-//! it, and no operation may differ between the two (no fused multiply-add, no platform sine).
+//! bundle of lanes it computes as many runs of one topology side by side. The results of a lane must be bit-identical
+//! to those of a single run. So a branch on a number becomes a [`Mask`] and a [`Real::select`], a block may be skipped
+//! only if no lane needs it, and the operations on `f64` and on bundles must not differ (no fused multiply-add, no sine
+//! of the platform).
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
@@ -42,9 +43,9 @@ pub trait Real:
     fn lt(self, other: Self) -> Self::Mask;
     /// Returns `self <= other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Returns the number in one lane; lane 0 of an `f64` is itself.
+    /// Returns the number in one lane; an `f64` has only lane 0, which contains the number itself.
     fn lane(self, lane: usize) -> f64;
     /// Creates a number from the `value` of each lane.
     #[must_use]
@@ -54,7 +55,8 @@ pub trait Real:
 
     /// Runs `work`, compiled for the vector unit that computes these numbers.
     ///
-    /// All arithmetic on bundles should be inlined into such a scope; elsewhere it is correct but slow.
+    /// All arithmetic on bundles should be inlined into such a scope; outside of a scope, the results are the same but
+    /// the code is slow.
     #[inline(always)]
     fn scope<T>(work: impl FnOnce() -> T) -> T {
         work()
@@ -70,13 +72,13 @@ pub trait Real:
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
-    /// Returns the smaller of the two; `other` if they are equal or not comparable.
+    /// Returns the smaller one of the two numbers; `other` if they are equal or not comparable.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// Returns the larger of the two; `other` if they are equal or not comparable.
+    /// Returns the larger one of the two numbers; `other` if they are equal or not comparable.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
@@ -99,7 +101,7 @@ pub trait Real:
     fn with_lane(self, lane: usize, value: f64) -> Self {
         Self::from_lanes(|l| if l == lane { value } else { self.lane(l) })
     }
-    /// Returns the largest number over the lanes.
+    /// Returns the largest number in any lane.
     fn largest_lane(self) -> f64 {
         (0..Self::LANES).map(|lane| self.lane(lane)).fold(f64::NEG_INFINITY, f64::max)
     }

@@ -66,8 +66,8 @@ where
 pub struct Simulation {
     /// The method.
     pub method: Method,
-    /// Time step (s), divided during impacts if the model has [`Substepping`]; for an adaptive method, the first and
-    /// the maximum step.
+    /// Time step (s). It is divided during impacts if the model has [`Substepping`]. For an adaptive method, it is the
+    /// first step and the maximum step.
     pub time_step: f64,
     /// End time (s).
     pub end_time: f64,
@@ -85,7 +85,7 @@ pub enum Finish {
 /// Numerical failure of a run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
-    /// A number is not finite.
+    /// A number of the state is no longer finite.
     #[error(
         "the step failed at t = {time:.6} s: the motion of body \"{body}\" is no longer finite; try a \
          step below {time_step:.2e} s"
@@ -116,7 +116,8 @@ pub struct RunTotals<S: Space> {
 /// Runs `state` to the end time, or until the observer stops it.
 ///
 /// The observer also receives the initial state. With a fixed step, times are whole multiples of the step or of its
-/// substeps, counted from the start, so that rounding does not accumulate; the last step is shortened to end on time.
+/// substeps, counted from the start, so that rounding does not accumulate; the last step is shortened to end at the end
+/// time.
 ///
 /// # Errors
 /// If a pose or twist is not finite; `state` is then the failed state.
@@ -171,22 +172,22 @@ pub fn simulate<S: Space<Real = f64>>(
 pub(crate) struct StepTimes<R: Real> {
     /// Number of shortest steps since the start.
     count: R,
-    /// Number of shortest steps in a whole step and in an ordinary substep.
+    /// Numbers of shortest steps in a whole step (`whole`) and in an ordinary substep (`short`).
     whole: R,
     short: R,
     /// The shortest step (s).
     shortest: R,
     time_step: R,
     /// Lanes in which the current impact is hard. The step length changes only before and after an impact, since a
-    /// change during it would cause an error of energy.
+    /// change during an impact would cause an energy error.
     hard: R::Mask,
 }
 
-/// Lookahead for impacts, in steps: more than one, since velocities change within a step.
+/// Lookahead for impacts, in time steps. It exceeds one step because velocities change within a step.
 const LOOKAHEAD: f64 = 1.25;
 
 impl<R: Real> StepTimes<R> {
-    /// Creates the times of a model for a time step (s).
+    /// Creates the step times for a model with a time step (s).
     pub(crate) fn new<S: Space<Real = R>>(model: &Model<S>, time_step: R) -> Self {
         let Substepping { substeps, fast, .. } = &model.substepping;
         let short = R::splat(if fast.is_some() { 2.0 } else { 1.0 });
@@ -200,13 +201,13 @@ impl<R: Real> StepTimes<R> {
         (self.whole, self.short) = (R::splat(1.0), R::splat(1.0));
     }
 
-    /// Returns the time (s) ahead for which impacts are predicted; zero if no step is divided.
+    /// Returns the time span (s) over which impacts are predicted; zero if steps are never divided.
     pub(crate) fn lookahead(&self) -> R {
         let divided = self.short.lt(self.whole);
         R::select(divided, R::splat(LOOKAHEAD) * self.time_step, R::zero())
     }
 
-    /// Returns the time (s) since the start at which the next step ends, from the lanes that need substeps and the
+    /// Returns the time (s) since the start at which the next step ends, given the lanes that need substeps and the
     /// lanes with a hard impact.
     #[inline(always)]
     pub(crate) fn next(&mut self, needs_substeps: R::Mask, is_hard: R::Mask) -> R {
@@ -219,10 +220,10 @@ impl<R: Real> StepTimes<R> {
 
 lanewise!(struct StepTimes<R> { count, whole, short, shortest, time_step } masks { hard });
 
-/// Returns the error of a lane whose numbers are no longer finite.
+/// Returns the error for a lane in which a number is no longer finite.
 ///
-/// The error names the first body whose motion is not finite or, if there is none, the body that moves most, since its
-/// energy overflows first.
+/// The error names the first body whose motion is not finite or, if there is none, the body with the largest position
+/// or velocity, since its energy overflows first.
 pub(crate) fn lost_body<S: Space>(
     model: &Model<S>,
     state: &State<S>,

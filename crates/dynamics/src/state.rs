@@ -15,7 +15,7 @@ pub struct State<S: Space> {
     pub poses: Vec<Pose<S>>,
     /// Twist of every body.
     pub twists: Vec<Twist<S>>,
-    /// The contact elements within reach, with the memory of their sticks.
+    /// The contact elements within reach, with their stick memory.
     pub contact_elements: ContactElements<S>,
     /// Memory of the force elements.
     pub memory: Vec<Memory<S>>,

@@ -1,4 +1,5 @@
-//! Construction of a stack in space: racks of tubes, barrels of revolution, and contact pairs with their laws.
+//! Construction of a stack in space: racks made of tubes, barrels as bodies of revolution, and contact pairs with their
+//! laws.
 
 use barrelstack::assemble::{AssembleError, PartKind, law_in_space, laws_in_space};
 use barrelstack::device::{Isolators, Words};
@@ -14,7 +15,7 @@ use crate::part::{Part, Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, reach_along, tubes};
 use crate::stack::Stack;
 
-/// Tributary length (m) of a contact, where constants are stated per meter; as in the plane.
+/// Tributary length (m) of a contact for constants that are stated per meter; the same value as in the plane.
 pub(crate) const TRIBUTARY: f64 = 0.01;
 
 /// A stack under construction.
@@ -22,26 +23,26 @@ pub(crate) struct Builder<'a> {
     pub(crate) spec: &'a StackSpec,
     pub(crate) barrel: Barrel,
     pub(crate) bodies: Vec<Body<Spatial>>,
-    /// One part for every body, in the same order.
+    /// Description of every body, in the order of the body IDs.
     pub(crate) parts: Vec<Part>,
     pub(crate) laws: Laws,
     /// Elements that will be fitted to the stack at rest.
     pub(crate) loose: Vec<Loose>,
-    /// Elements that the stack needs to stand, each with its device.
+    /// Elements without which the stack would not stand, each with the description of its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
-    /// Contact pairs of the bearings of platforms on the ground.
+    /// Contact pairs of the ground with the bearings of platforms.
     pub(crate) bearings: Vec<ContactPair>,
-    /// Height (m) by which the stack was raised, such as by isolators.
+    /// Height (m) by which devices under the stack, such as isolators, raised it.
     pub(crate) raised: f64,
 }
 
 /// Contact laws, and the indices of the laws of devices.
 pub(crate) struct Laws {
-    /// All laws: those of [`StackPair::ALL`] at their indices, followed by those of devices.
+    /// All laws: those of [`StackPair::ALL`] at their indices, followed by the laws of devices.
     pub(crate) all: Vec<Interface<Spatial>>,
-    /// Law of barrels in their cradles.
+    /// Index of the law between a barrel and its cradle.
     cradle: InterfaceId,
-    /// Law of one bearing of a platform, which has one at each corner; `None` without platforms.
+    /// Index of the law of one bearing; a platform has a bearing at each corner. `None` without platforms.
     pub(crate) bearing: Option<InterfaceId>,
 }
 
@@ -76,7 +77,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the distance (m) of the outermost beams of a rack from its middle, along the barrels.
+    /// Returns the distance (m), along the barrels, of the outermost beams of a rack from the middle of the rack.
     pub(crate) fn reach_along(&self) -> f64 {
         reach_along(&self.spec.rack, self.spec.barrel.length + self.spec.gap)
     }
@@ -247,7 +248,7 @@ impl<'a> Builder<'a> {
         self.add(body, part)
     }
 
-    /// Returns a position (m), mirrored if the stack is mirrored.
+    /// Returns a position (m); in a mirrored stack, its mirror image.
     pub(crate) fn mirrored(&self, place: Vec3) -> Vec3 {
         let side = if self.spec.mirror { -1.0 } else { 1.0 };
         Vec3::new(side * place.x, place.y, place.z)
@@ -255,8 +256,8 @@ impl<'a> Builder<'a> {
 
     /// Returns all boundary pairs that can touch, each with its law.
     ///
-    /// Two bodies that rest on each other touch by the law of their seat. All other boundaries of these bodies, and all
-    /// other bodies, touch in impacts only.
+    /// Where one body rests on another, the law of the seat applies. All other boundaries of these bodies, and all
+    /// other bodies, touch only in impacts, with the laws for impacts.
     pub(crate) fn pairs(&self) -> Vec<ContactPair> {
         let mut list = Vec::new();
         let count = self.bodies.len();
@@ -287,13 +288,14 @@ impl<'a> Builder<'a> {
         list
     }
 
-    /// Returns the number of solids of a body that touch other bodies: its first surfaces and node sets.
+    /// Returns the number of solids of a body that touch other bodies. The surfaces and node sets of these solids come
+    /// first.
     fn solids(&self, body: BodyId) -> usize {
         // The other surfaces of the ground are dishes, which touch only bearings.
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// Adds the pairs of all solids of two bodies, each with the law of the contactor's solid.
+    /// Adds the contact pairs of all solids of two bodies; the law of a pair depends on the solid of the contactor.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,
@@ -319,7 +321,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the kind of contact of a rack with a platform; a rack stands on its own platform as on the ground.
+    /// Returns the kind of contact between a rack and a platform. A rack stands on its own platform in the same way as
+    /// on the ground.
     fn on_platform(&self, rack: BodyId, tube: usize, device: BodyId) -> StackPair {
         let part = &self.parts[rack];
         match part.seats.lies_on.get(tube) {

@@ -1,4 +1,4 @@
-//! Check of a scenario in space without shaking it: whether it is valid, and whether its stack stands.
+//! Check of a scenario in space without shaking: whether the scenario is valid, and whether its stack stands.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::check::{AtRest, Checked};
@@ -8,7 +8,7 @@ use barrelstack::{RunFailure, Scenario};
 use crate::ground::Ground;
 use crate::run::{Standing, affordable, stand};
 
-/// Checks a scenario: reads its motion, builds its stack and settles it, but does not shake it.
+/// Checks a scenario: reads its motion, builds its stack and settles the stack, but does not shake the stack.
 ///
 /// ```
 /// use barrelstack::Scenario;

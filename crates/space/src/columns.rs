@@ -1,4 +1,4 @@
-//! Additional columns of tables of cases in space, with the directions of falls.
+//! Additional columns, with the directions of falls, for tables of cases in space.
 
 use barrelstack::ensemble;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
@@ -6,33 +6,36 @@ use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Val
 use crate::fate::Heading;
 use crate::variants::Case;
 
-/// Name, kind and meaning of the columns: the direction of the first body, and the number of fallen barrels in each
-/// direction.
+/// Name, kind and meaning of each column: the direction in which the first body left its seat, and the numbers of
+/// barrels that fell in each direction.
 const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "heading",
         ValueKind::Text,
-        "direction in which the first body left its seat: right or left across the barrels, away or near along them",
+        "direction in which the first body left its seat: right or left across the barrels, away \
+         or near along the barrels",
     ),
     (
         "debris_right",
         ValueKind::Integer,
-        "fallen barrels that came to lie to the right of their place at rest, more than along the barrels",
+        "fallen barrels whose displacement from rest is mainly to the right",
     ),
     (
         "debris_left",
         ValueKind::Integer,
-        "fallen barrels that came to lie to the left of their place at rest, more than along the barrels",
+        "fallen barrels whose displacement from rest is mainly to the left",
     ),
     (
         "debris_away",
         ValueKind::Integer,
-        "fallen barrels that came to lie away along the barrels, more than across them",
+        "fallen barrels whose displacement from rest is mainly along the barrels, away from the \
+         viewer",
     ),
     (
         "debris_near",
         ValueKind::Integer,
-        "fallen barrels that came to lie near along the barrels, more than across them",
+        "fallen barrels whose displacement from rest is mainly along the barrels, toward the near \
+         side",
     ),
 ];
 
@@ -41,15 +44,15 @@ pub fn specs() -> impl Iterator<Item = ColumnSpec> {
     COLUMNS.iter().map(|(name, kind, _)| ColumnSpec::new(name, "", Role::Outcome, *kind))
 }
 
-/// Returns the meaning of a column; `None` if the column is not one of this module.
+/// Returns the meaning of a column; `None` if the column does not belong to this module.
 pub fn meaning(name: &str) -> Option<&'static str> {
     COLUMNS.iter().find(|(known, ..)| *known == name).map(|(.., meaning)| *meaning)
 }
 
 /// Returns the values of a case, in the order of [`specs`].
 ///
-/// `headings` has the direction of the first body, if one left its seat, and the directions of the fallen barrels; it
-/// is `None` for a case without a verdict.
+/// `headings` contains the direction in which the first body left its seat, if any body did, and the directions of the
+/// fallen barrels. It is `None` for a case without a verdict.
 pub fn values(
     headings: Option<(Option<Heading>, &[Heading])>,
 ) -> impl Iterator<Item = Option<Value>> {
@@ -62,8 +65,8 @@ pub fn values(
     std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
 }
 
-/// Returns the table of a stack as stated, number 0, and its variants, with the columns of a plane and those of this
-/// module. Interrupted cases have no row.
+/// Returns the table of the variants of a stack; variant 0 is the stack as stated. The table has the columns of a plane
+/// model and the columns of this module. Interrupted cases have no row.
 pub fn variants(cases: &[Case]) -> Vec<Column> {
     let mut all = ensemble::variants(cases.iter().map(|case| &case.result));
     let ended = cases.iter().filter(|case| !case.result.is_interrupted());

@@ -1,8 +1,8 @@
 //! Plane drawings of a run in space: across the barrels, along them, and from above.
 //!
 //! A plane scene has bodies with fixed outlines that move in its plane. The outline of a solid body depends only on the
-//! view direction in the body frame. So a body has one drawing for every direction that occurs, in steps of a few
-//! degrees, and each frame shows one of them.
+//! view direction in the body frame. So a body has one drawing for every view direction that occurs, rounded to steps
+//! of a few degrees, and each frame shows one of these drawings.
 
 mod deep;
 mod view;
@@ -44,7 +44,7 @@ impl Sight {
     /// All view directions.
     pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
 
-    /// Returns the view direction in words, such as "along the barrels".
+    /// Returns a description of the view direction, such as "along the barrels".
     pub fn words(self, stack: &Stack) -> &'static str {
         match self {
             Self::Across if stack.is_free() => "from the front",
@@ -55,7 +55,8 @@ impl Sight {
         }
     }
 
-    /// Returns `true` if events with a heading are labeled in this view; each event is labeled in one view.
+    /// Returns `true` if events in the direction `heading` are labeled in this view. Each event is labeled in exactly
+    /// one view.
     fn shows(self, heading: Heading) -> bool {
         match self {
             Self::Across => heading.is_across(),
@@ -64,7 +65,8 @@ impl Sight {
         }
     }
 
-    /// Returns the axes of the page to the right and up, which are right-handed with the direction toward the viewer.
+    /// Returns the axes of the page that point right and up. Together with the direction toward the viewer, they form a
+    /// right-handed system.
     fn page(self) -> [Vec3; 2] {
         let [x, y, z] =
             [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
@@ -143,15 +145,15 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     })
 }
 
-/// A strap or a tie, drawn between two invisible bodies at its ends, since the drawing of a solid body depends on its
-/// rotation and has no fixed position for a point of the body.
+/// A strap or a tie. It is drawn between two invisible bodies at its ends. It cannot be attached to the drawings of the
+/// joined bodies: these depend on the rotation of a body, so that no point of the body has a fixed position in them.
 struct Band<'a> {
     link: &'a Link<Spatial>,
     drawn: Tie,
 }
 
 impl Band<'_> {
-    /// Returns the positions of its ends on the page.
+    /// Returns the positions of the ends of the band on the page.
     fn ends(&self, run: &Run, frame: usize, page: [Vec3; 2]) -> [[f64; 3]; 2] {
         [0, 1].map(|end| {
             let (place, rotation) = placed(run.frames.poses[frame][self.link.bodies[end]]);
@@ -161,7 +163,7 @@ impl Band<'_> {
     }
 }
 
-/// Minimum distance (m) of the ends of a band on the page; a band in end view is not drawn.
+/// Minimum distance (m) between the ends of a band on the page; a shorter band is in end view and is not drawn.
 const END_ON: f64 = 0.01;
 
 /// Returns the straps and ties that are not in end view. The bodies at their ends follow the first `drawings` bodies.
@@ -193,7 +195,7 @@ fn is_barrel(body: &Body<Spatial>) -> bool {
     offset.y == 0.0 && offset.z == 0.0
 }
 
-/// Returns the frames of a run that a drawing shows.
+/// Returns the indices of the frames of a run that a drawing shows.
 fn shown(run: &Run) -> Vec<usize> {
     let mut next = 0.0;
     let mut shown = Vec::new();
@@ -221,7 +223,7 @@ fn slope(run: &Run) -> f64 {
 /// Returns the ground: the floor, as a line longer than any picture is wide, and the walls, ceilings and dishes of
 /// devices.
 ///
-/// The floor has no line in the view from above, nor in the view along the barrels if the ground slopes.
+/// The floor is not drawn in the view from above, nor in the view along the barrels if the ground slopes.
 fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
     let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
@@ -233,8 +235,8 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns invisible points that enlarge the picture: around a stack from above, where no floor bounds the picture, and
-/// around all paths of a free scene.
+/// Returns invisible points that enlarge the picture: around a stack seen from above, where the picture shows no floor,
+/// and around the paths of all bodies of a free scene.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
         bounds(run, sight)
@@ -246,7 +248,7 @@ fn yard(run: &Run, sight: Sight) -> SceneBody {
     SceneBody::new("", Role::Block, corners.into())
 }
 
-/// Returns the corners of the area that all bodies cover, relative to the ground.
+/// Returns two opposite corners of the area that all bodies cover, relative to the ground.
 fn bounds(run: &Run, sight: Sight) -> [Point; 2] {
     let page = sight.page();
     let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
@@ -304,7 +306,7 @@ fn moment(run: &Run, first: &[usize]) -> Option<Moment> {
     Some(Moment { time: *time, body: first[body], text, falls: true })
 }
 
-/// Returns the acceleration of the ground along each axis of the stack, over gravity.
+/// Returns the acceleration of the ground along each axis of the stack, as a multiple of gravity.
 pub fn ground_histories(run: &Run) -> Vec<History> {
     let Some(motion) = &run.ground.first.motion else { return Vec::new() };
     let step = motion.horizontal.natural_step();

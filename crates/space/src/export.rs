@@ -1,4 +1,4 @@
-//! Output files of an answer in space.
+//! Output files for the result of a scenario in space.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
 
-/// Returns the output files of an answer with their names.
+/// Returns the output files for a result, each with its name.
 pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
     let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),
@@ -52,7 +52,7 @@ fn frames_csv(run: &Run) -> String {
     text
 }
 
-/// Returns the table of the case as stated, number 0, and its variants, with one row each.
+/// Returns the table of variants, with one row for each; variant 0 is the case as stated.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "variant,outcome,mode,first_loss (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\

@@ -1,4 +1,4 @@
-//! Fate of every body in space: loss of seat with its direction, fall, slip and tilt.
+//! Fate of every body in space: loss of seat and its direction, fall, slip, and tilt.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::watch::{Loss, Thresholds};
@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::stack::Stack;
 
-/// Horizontal direction of a motion, for a viewer in front of the heads of the barrels: `x` is to the right and `y`
-/// away.
+/// Horizontal direction of a motion, as seen by a viewer in front of the heads of the barrels: `x` points to the right
+/// and `y` away from the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Heading {
@@ -40,12 +40,12 @@ impl Heading {
         }
     }
 
-    /// Returns `true` for a direction across the barrels, and `false` for one along them.
+    /// Returns `true` for a direction across the barrels, and `false` for a direction along the barrels.
     pub fn is_across(self) -> bool {
         matches!(self, Self::Right | Self::Left)
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the direction in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Right => "right",
@@ -63,7 +63,7 @@ pub struct Fate {
     pub rest: Vec3,
     /// Time (s), kind and direction of the loss of seat.
     pub left_seat: Option<(f64, Loss, Heading)>,
-    /// Time (s) at which the body had dropped by the threshold of a fall.
+    /// Time (s) at which the drop of the body reached the threshold that counts as a fall.
     pub fell_at: Option<f64>,
     /// Largest drop (m) below the position at rest.
     pub drop: f64,
@@ -71,13 +71,13 @@ pub struct Fate {
     pub fall_force: f64,
     /// Displacement (m) from the position at rest, relative to the ground.
     pub moved: Vec3,
-    /// Displacement (m) at the collapse; at the end of the run without a collapse.
+    /// Displacement (m) at the time of the collapse, or at the end of the run if there is no collapse.
     pub moved_at_collapse: Vec3,
-    /// Displacement (m) across and along the barrels relative to the supports, averaged over them, at the end of the
-    /// run.
+    /// Displacement (m) across and along the barrels at the end of the run, relative to the supports and averaged over
+    /// the supports.
     pub residual_slip: [f64; 2],
-    /// Largest displacements (m) across and along the barrels relative to the supports, averaged over them, before the
-    /// collapse; the two may be of different instants.
+    /// Largest displacements (m) across and along the barrels before the collapse, relative to the supports and
+    /// averaged over the supports. The two maxima may occur at different times.
     pub peak_slip: [f64; 2],
     /// Largest rise (m) above the position at rest before the collapse.
     pub peak_uplift: f64,
@@ -87,12 +87,12 @@ pub struct Fate {
     pub whole_run: PeakMotion,
 }
 
-/// Largest displacement, slip and tilt of a body in any step; displacements are horizontal, in any direction.
+/// Largest displacement, slip and tilt of a body over a span of time. Displacements are horizontal, in any direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion {
     /// Largest displacement (m) relative to the ground.
     pub displacement: f64,
-    /// Largest displacement (m) relative to the supports, averaged over them.
+    /// Largest displacement (m) relative to the supports, averaged over the supports.
     pub slip: f64,
     /// Largest tilt (rad) of a rack from its orientation at rest.
     pub tilt: f64,
@@ -113,14 +113,14 @@ pub struct Fates<'a> {
     thresholds: Thresholds,
     /// Rotations of all bodies at rest.
     upright: Vec<Rotation3>,
-    /// Direction in the frame of every body that points up at rest.
+    /// For every body, the direction in the body frame that points up at rest.
     upward: Vec<Vec3>,
     /// Rotations of all bodies in the current state.
     turned: Vec<Rotation3>,
     all: Vec<Fate>,
-    /// Time (s) of the first loss of seat, and the body.
+    /// Time (s) of the first loss of seat, and the body that lost its seat.
     collapse: Option<(f64, BodyId)>,
-    /// Time (s) at which the first barrel had fallen.
+    /// Time (s) at which the first barrel counted as fallen.
     first_fall: Option<f64>,
 }
 
@@ -150,12 +150,12 @@ impl<'a> Fates<'a> {
         &self.all
     }
 
-    /// Returns the time (s) of the first loss of seat, and the body.
+    /// Returns the time (s) of the first loss of seat, and the body that lost its seat.
     pub fn collapse(&self) -> Option<(f64, BodyId)> {
         self.collapse
     }
 
-    /// Returns the time (s) at which the first barrel had fallen.
+    /// Returns the time (s) at which the first barrel counted as fallen.
     pub fn first_fall(&self) -> Option<f64> {
         self.first_fall
     }
@@ -226,7 +226,7 @@ impl<'a> Fates<'a> {
         }
     }
 
-    /// Returns kind and direction of the loss of seat if a body has left its seat in the current state.
+    /// Returns the kind and the direction of the loss of seat, if a body has left its seat in the current state.
     fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
@@ -277,8 +277,8 @@ impl<'a> Fates<'a> {
 
     /// Computes the displacements (m) of a body relative to its supports, along the axes at rest.
     ///
-    /// A barrel has one displacement, in the frame of its rack. A rack has one for each barrel below, in the frame of
-    /// the rack. Other bodies have one, relative to the ground.
+    /// A barrel has one displacement, in the frame of its rack. A rack has one displacement for each barrel below, in
+    /// the frame of the rack. Any other body has one displacement, relative to the ground.
     fn slips(&self, state: &State<Spatial>, i: BodyId, slips: &mut Vec<Vec3>) {
         slips.clear();
         let part = &self.stack.parts[i];

@@ -76,7 +76,7 @@ fn is_unbounded(body: &Body<Spatial>) -> bool {
     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace)
 }
 
-/// Returns the interface of two bodies, and `true` if the interface names the second body first.
+/// Returns the index of the interface between two bodies, and `true` if the interface names the second body first.
 fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
     let label = |id: BodyId| match id.checked_sub(1) {
         Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),

@@ -1,22 +1,24 @@
-//! Ground motion in space: both horizontal components of a motion and the vertical one, rotated to the stack.
+//! Ground motion in space: both horizontal components and the vertical component of a motion, rotated into the axes of
+//! the stack.
 
 use barrelstack::ground::{GroundError, of_spec, other_component, turn_to_other};
 use barrelstack::scenario::{MotionSource, MotionSpec, Scenario};
 use barrelstack_dynamics::{Drive, Spatial, Vec3, math};
 
-/// Tolerance (degrees) of the right angle between two horizontal components.
+/// Maximum deviation (degrees) of the angle between two horizontal components from a right angle.
 const SQUARE: f64 = 5.0;
 
 /// Ground motion of a stack in space.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// The horizontal component of the scenario, and the vertical component if there is one.
+    /// The horizontal component that the scenario names, and the vertical component if there is one.
     pub first: barrelstack::Ground,
     /// The other horizontal component; `None` if the motion has only one.
     pub second: Option<barrelstack::Ground>,
     /// Cosine and sine of the angle by which the stack is rotated counterclockwise.
     turn: [f64; 2],
-    /// 1 if the second component points a quarter turn counterclockwise from the first, -1 if clockwise.
+    /// 1 if the second component points a quarter turn counterclockwise from the first; -1 if it points a quarter turn
+    /// clockwise.
     hand: f64,
     /// Warnings, one sentence each.
     pub warnings: Vec<String>,
@@ -24,7 +26,8 @@ pub struct Ground {
 
 impl Ground {
     /// Returns the ground motion of a scenario, rotated by the azimuth of its stack. At an azimuth of zero, the
-    /// component of the scenario acts across the barrels, and the other horizontal component along them.
+    /// component that the scenario names acts across the barrels, and the other horizontal component acts along the
+    /// barrels.
     ///
     /// # Errors
     /// If the motion cannot be read, or cannot be scaled as the scenario requires.
@@ -32,7 +35,7 @@ impl Ground {
         Ok(Self::of_spec(&scenario.motion, scenario.run.similitude)?.under(scenario))
     }
 
-    /// Returns a motion that is not rotated, for a stack built at the length scale `similitude`: the specified
+    /// Returns the ground motion without rotation, for a stack built at the length scale `similitude`. The specified
     /// component acts across the barrels.
     ///
     /// # Errors
@@ -65,7 +68,7 @@ impl Ground {
         Ok(Self { first, second, turn: [1.0, 0.0], hand, warnings })
     }
 
-    /// Returns the motion rotated by the azimuth of the stack of a scenario.
+    /// Returns the motion, rotated by the azimuth of the stack in a scenario.
     #[must_use]
     pub fn under(self, scenario: &Scenario) -> Self {
         let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
@@ -93,12 +96,12 @@ impl Ground {
         self.each(barrelstack::Ground::end)
     }
 
-    /// Returns the time (s) from which no acceleration exceeds a limit (m/s²).
+    /// Returns the time (s) after which no acceleration exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.each(|ground| ground.calm_from(limit))
     }
 
-    /// Returns source and processing of all components, one sentence each.
+    /// Returns the source and the processing of all components, in one sentence each.
     pub fn provenance(&self) -> Vec<String> {
         let grounds = [Some(&self.first), self.second.as_ref()];
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());
@@ -118,7 +121,7 @@ impl Ground {
     }
 }
 
-/// Uses a plane motion in space: its horizontal component acts across the barrels.
+/// Uses a motion of a plane model in space. The horizontal component of the motion acts across the barrels.
 impl From<barrelstack::Ground> for Ground {
     fn from(first: barrelstack::Ground) -> Self {
         let warnings = first.warnings.clone();

@@ -1,4 +1,5 @@
-//! Check that space supports all features of a stack; others are rejected with the name of their field.
+//! Check that all features of a stack are supported in space. The error for an unsupported feature names the field of
+//! the feature.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};

@@ -7,8 +7,8 @@
 //!               settle ─▶ simulate, watched ─▶ Run ─▶ Summary (JSON), files, page
 //! ```
 //!
-//! `x` is across the barrels, `y` along them, and `z` up; columns are counted along `x`, rows along `y`. A run in space
-//! differs from a run in the plane in geometry only: the laws, time steps, thresholds and words are the same.
+//! `x` is across the barrels, `y` along the barrels, and `z` up; columns are counted along `x`, rows along `y`. A run
+//! in space differs from a run in the plane in geometry only: the laws, time steps, thresholds and texts are the same.
 
 // Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
 // (`clippy.toml`).

@@ -13,10 +13,11 @@ use crate::run::Run;
 const FINE: u32 = 6;
 const COARSE: u32 = 3;
 
-/// Points of a surface (m) and its triangles, counterclockwise from outside.
+/// Points (m) of a surface, and its triangles. Seen from outside, the corners of a triangle are in counterclockwise
+/// order.
 type Mesh = (Vec<Vec3>, Vec<[usize; 3]>);
 
-/// Returns the bodies of a run as triangle meshes, with their frames between two times (s).
+/// Returns the bodies of a run as triangle meshes, with the poses of the bodies in all frames between two times (s).
 pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     let floor = floor(run);
     let parts = run.stack.parts.iter().zip(run.stack.model.bodies());
@@ -47,8 +48,8 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     }
 }
 
-/// Returns half the side (m) of the square that represents a half-space. It is kept small, since viewers fit their
-/// first picture to the whole square.
+/// Returns half the side (m) of the square that represents a half-space. The square is kept small, since viewers fit
+/// their first picture to it.
 fn floor(run: &Run) -> f64 {
     let far = |pose: &[f64; 7]| pose[..3].iter().fold(0.0_f64, |far, x| far.max(x.abs()));
     let sizes = run.stack.model.bodies().iter().map(Body::reach);
@@ -56,7 +57,8 @@ fn floor(run: &Run) -> f64 {
     run.frames.poses.iter().flatten().map(far).fold(0.0, f64::max) + 2.0 * reach
 }
 
-/// Returns the mesh of a body in its frame, with half-spaces as squares; `floor` is half their side (m).
+/// Returns the mesh of a body in the body frame. Half-spaces are drawn as squares; `floor` is half the side (m) of a
+/// square.
 fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for placed in &body.surfaces {
@@ -117,8 +119,8 @@ fn cuboid(half: Vec3) -> Mesh {
     ((0..8).map(corner).collect(), triangles.collect())
 }
 
-/// Returns the profile of a tube with round ends, from pole to pole, as positions along the axis and distances from it
-/// (m); `quarter` is the number of steps per quarter circle.
+/// Returns the profile of a tube with round ends, from pole to pole, as positions (m) along the axis and distances (m)
+/// from the axis; `quarter` is the number of steps per quarter circle.
 fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     let step = FRAC_PI_2 / f64::from(quarter);
     let end = |side: f64, at: u32| {
@@ -135,7 +137,7 @@ fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
 }
 
 /// Returns the mesh of the surface of revolution of a profile from pole to pole about `x`; `quarter` is the number of
-/// steps per quarter turn.
+/// steps per quarter circle.
 fn revolved(profile: &[[f64; 2]], quarter: u32) -> Mesh {
     debug_assert!(profile.len() >= 3, "a profile between two poles");
     let around = 4 * quarter as usize;

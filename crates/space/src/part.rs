@@ -8,37 +8,39 @@ use barrelstack_dynamics::{
 /// Description of a body in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Name in results, equal to that of the body: level, column, and row if there are several.
+    /// Name in results, equal to the name of the body. It states the level, the column and, if there are several rows,
+    /// the row.
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,
     /// Level, 1 at the bottom; 0 for a body outside of a stack.
     pub level: u32,
-    /// Column, 1 at the left; racks are counted separately from barrels.
+    /// Column, 1 at the left; racks and barrels are counted separately.
     pub column: u32,
-    /// Row, 1 nearest; racks are counted separately from barrels.
+    /// Row, 1 for the row nearest to the viewer; racks and barrels are counted separately.
     pub row: u32,
     /// For a barrel, the rack that carries it; for a rack on isolators, its platform; for a tuned mass, its rack.
     pub carrier: Option<BodyId>,
     /// For a rack above the first level, the barrels on which it lies.
     pub supports: Vec<BodyId>,
-    /// Characteristic size (m) of the body: for a barrel the radius above the beams, for a rack half its width.
+    /// Characteristic size (m) of the body: for a barrel, its radius at the position of the beams; for a rack, half its
+    /// width.
     pub size: f64,
     /// Volume (m³) of the wine in a barrel; 0 for all other bodies.
     pub wine: f64,
     /// Seats of the tubes of a rack.
     pub(crate) seats: Seats,
-    /// Lines (m) in the body frame that show the parts of devices fixed to it.
+    /// Lines (m), in the body frame, that show the parts of devices that are fixed to the body.
     pub(crate) lines: Vec<Vec<Vec3>>,
 }
 
 /// Seats of the tubes of a rack.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seats {
-    /// For every tube, the barrel that it carries.
+    /// For every tube, the barrel that the tube carries, if any.
     pub(crate) carries: Vec<Option<BodyId>>,
-    /// For every tube, the barrels on which it lies; empty for a tube on the ground, `None` for a tube that bears on
-    /// nothing.
+    /// For every tube, the barrels on which the tube lies; empty for a tube on the ground, `None` for a tube that rests
+    /// on nothing.
     pub(crate) lies_on: Vec<Option<Vec<BodyId>>>,
 }
 

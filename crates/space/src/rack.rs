@@ -1,4 +1,4 @@
-//! Racks as frames of tubes, with the origin in the middle of their underside.
+//! Racks as frames made of tubes, with the origin in the middle of the underside of the rack.
 //!
 //! ```text
 //!   along the barrels (y)                          across them (x)
@@ -8,9 +8,9 @@
 //!          o──────o      two beams, joined        ════╩═╩══════╩═╩════
 //! ```
 //!
-//! Beams, cradles and their heights are those of the plane model across the barrels, the positions of the beams those
-//! of the plane model along them; tubes are as wide as they are high. The connection of the beams is an assumption: two
-//! tubes on top of their ends, so that only the beams rest on the support.
+//! Beams, cradles and their heights are those of the plane model across the barrels; the positions of the beams are
+//! those of the plane model along the barrels. Tubes are as wide as they are high. How the beams are connected is an
+//! assumption: two tubes lie on top of the ends of the beams, so that only the beams rest on the support.
 
 use barrelstack::assemble::{BAR_RADIUS, TUBE_CORNER};
 use barrelstack::device::Chocks;
@@ -20,20 +20,19 @@ use barrelstack_dynamics::{Quaternion, Rotation3, Vec3, math};
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Tubes of a rack, and what each of them carries.
+/// Tubes of a rack, and the barrels that each tube carries.
 #[derive(Clone, Debug)]
 pub(crate) struct Tubes {
     /// The tubes, with masses (kg) that add up to the mass of the rack. Chocks come last and have no mass.
     pub(crate) parts: Vec<Part>,
-    /// For every beam, the position along the rack of the barrels that it carries and lies on, and the index of its
-    /// tube.
+    /// For every beam, the row in the rack of the barrels that the beam carries and lies on, and the index of the tube.
     pub(crate) beams: Vec<(u32, usize)>,
-    /// For every post, the column and the position along the rack of the barrel that it carries, and the index of its
+    /// For every post, the column and the row in the rack of the barrel that the post carries, and the index of the
     /// tube.
     pub(crate) posts: Vec<((u32, u32), usize)>,
 }
 
-/// Heights (m) that result from the dimensions of rack and barrel.
+/// Heights (m) that follow from the dimensions of the rack and the barrel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Heights {
     /// Height of the axis of a carried barrel above the underside of its rack.
@@ -42,8 +41,8 @@ pub(crate) struct Heights {
     pub(crate) underside: f64,
 }
 
-/// Returns the radius (m) of the surface at a distance (m) outside of the stave of a barrel, at a position (m) along
-/// its axis.
+/// Returns the radius (m), at a position (m) along the axis of a barrel, of the surface of revolution that lies at a
+/// given distance (m) outside of the stave.
 fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding + distance;
     (arc * arc - along * along).sqrt() - barrel.stave_offset
@@ -60,7 +59,7 @@ impl Heights {
 }
 
 /// Returns the tubes of a rack, with chocks last; `None` if its cradle is not a pair of supports. `apart` is the
-/// distance (m) of barrels that lie one behind the other.
+/// distance (m) between barrels that lie one behind the other.
 pub(crate) fn tubes(
     rack: &Rack,
     barrel: &Barrel,
@@ -114,12 +113,12 @@ pub(crate) fn tubes(
     Some(Tubes { parts, beams, posts })
 }
 
-/// Returns the distance (m) of the outermost beams of a rack from its middle, along the barrels.
+/// Returns the distance (m), along the barrels, of the outermost beams of a rack from the middle of the rack.
 pub(crate) fn reach_along(rack: &Rack, apart: f64) -> f64 {
     0.5 * f64::from(rack.barrels_deep - 1) * apart + rack.rail_half_spacing
 }
 
-/// A tube in place.
+/// A tube with its position and orientation in the rack.
 struct Tube {
     half_length: f64,
     radius: f64,
@@ -148,7 +147,7 @@ impl Tube {
     }
 }
 
-/// Returns the rotation of bodies that lie along the barrels.
+/// Returns the orientation of a body whose axis lies along the barrels.
 pub(crate) fn along_barrels() -> Quaternion {
     Quaternion::turn(Vec3::new(0.0, 0.0, FRAC_PI_2))
 }

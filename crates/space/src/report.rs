@@ -1,4 +1,4 @@
-//! Report of a run in space: the verdict, three synchronized views, the collapse sequence, and tables.
+//! Report of a run in space: verdict, synchronized views, collapse sequence, and tables.
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend, unknowns};
@@ -14,7 +14,7 @@ use crate::summary::Summary;
 use crate::variants::Answer;
 use crate::words::{headline, rows, sentences, tone};
 
-/// Returns the report of an answer as a document, independent of the output format.
+/// Returns the report on a result as a document that does not depend on the output format.
 pub fn document(answer: &Answer) -> Document {
     let Answer { run, summary, .. } = answer;
     let scenes = Sight::ALL.map(|sight| (sight, scene(run, sight)));
@@ -122,14 +122,14 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
-/// Returns the statistics of all variants as a table; `None` without variants.
+/// Returns a table with the statistics of all variants; `None` without variants.
 fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
             "Ranges cover 5 to 95 % of the variants. The direction of the first body is the one in \
-             which it left its seat. The direction of a barrel that fell{} leads from its place at rest to its place at the \
-             end of the variant.",
+             which it left its seat. The direction of a barrel that fell{} leads from its position \
+             at rest to its position at the end of the variant.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],
@@ -204,7 +204,8 @@ fn fates(run: &Run) -> Table {
     let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
     Table::of(
-        "Slips are relative to the supports of a body, before the first loss of seat; displacements are those at the end.",
+        "Slips are displacements relative to the supports of a body, before the first loss of \
+         seat. All other displacements are those at the end.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
             ("body", "", &|(part, _)| Cell::text(&part.name)),
@@ -228,7 +229,7 @@ fn ends(summary: &Summary) -> Table {
     let measured = |value: f64| Cell::Measured(value, 4);
     let length = |[x, y, z]: [f64; 3]| measured((x * x + y * y + z * z).sqrt());
     Table::of(
-        "Displacements are relative to the ground, from the position at the start.",
+        "Displacements are relative to the ground, measured from the initial position.",
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),

@@ -1,5 +1,5 @@
-//! Rest criterion in space, as in the plane: a run ends when the ground is still (or, after a collapse, calm) and no
-//! body is fast enough to change the outcome.
+//! Rest criterion in space, as in the plane. A run ends when no body is fast enough to change the outcome and the
+//! ground is still or, after a collapse, nearly still.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::Scenario;
@@ -12,12 +12,13 @@ use crate::stack::Stack;
 /// Detector of the rest of all bodies.
 pub(crate) struct Rest<'a> {
     stack: &'a Stack,
-    /// Times (s) from which the ground is still, and calm; infinite if the run does not end by rest.
+    /// Times (s) from which the ground is still (`still_from`) and nearly still (`calm_from`); infinite if the run does
+    /// not end by rest.
     still_from: f64,
     calm_from: f64,
-    /// Largest kinetic energy of a body at rest over its mass (m²/s²).
+    /// Kinetic energy per mass (m²/s²) below which a body counts as at rest.
     slow: f64,
-    /// Time (s) of the last motion.
+    /// Last time (s) at which a body was in motion.
     moved: f64,
 }
 

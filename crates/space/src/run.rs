@@ -32,13 +32,13 @@ pub struct Standing {
     pub stack: Stack,
     /// The state at rest.
     pub state: State<Spatial>,
-    /// The forces at rest.
+    /// Working memory with the forces at rest.
     pub scratch: Scratch<Spatial>,
     /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
 }
 
-/// Poses and twists of all bodies at the frames of a run.
+/// Poses and twists of all bodies in the frames of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     /// Times (s).
@@ -65,11 +65,11 @@ pub struct Run {
     pub heading: Option<Heading>,
     /// Fates of all bodies, in the order of the parts.
     pub fates: Vec<Fate>,
-    /// Time (s) at which the first barrel had fallen.
+    /// Time (s) at which the first barrel counted as fallen.
     pub first_fall: Option<f64>,
-    /// Fates of all elements of the devices, in the order of the model.
+    /// Fates of all elements of the devices, in the order of the elements in the model.
     pub elements: Vec<ElementFate>,
-    /// Forces of the seats.
+    /// Forces at the seats.
     pub seats: Seats,
     /// Recorded frames.
     pub frames: Frames,
@@ -134,7 +134,7 @@ fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure
     Ok(Standing { stack, state, scratch, settled })
 }
 
-/// Rejects a stack whose bodies overlap as built.
+/// Rejects a stack whose bodies overlap in their initial positions.
 fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), AssembleError> {
     let depth = |contact: &&Contact<Spatial>| contact.penetration;
     let deepest = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -146,7 +146,7 @@ fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), Assemb
     Err(AssembleError::Overlap { first, second, depth: contact.penetration })
 }
 
-/// Runs a scenario in space under its own motion.
+/// Runs a scenario in space under the ground motion of the scenario.
 ///
 /// ```
 /// use barrelstack::Scenario;
@@ -164,7 +164,7 @@ pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
     run_on(scenario, ground, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Returns the latest end (s) of a run; rejects a run that would not finish within a day, or not fit into memory.
+/// Returns the latest end (s) of a run; rejects a run that would not finish within a day or would not fit into memory.
 pub(crate) fn affordable(
     scenario: &Scenario,
     stack: &Stack,
@@ -254,7 +254,7 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Returns every element of the devices, with the words of its device and its fate.
+    /// Returns every element of the devices, with its fate and the description of its device.
     pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {
@@ -262,27 +262,28 @@ impl Run {
         elements.zip(self.stack.devices.iter().copied()).zip(&self.elements)
     }
 
-    /// Returns the barrels that fell, in order.
+    /// Returns the barrels that fell, in the order of the parts.
     pub fn fallen(&self) -> impl Iterator<Item = BodyId> + '_ {
         let fell = |body: &BodyId| self.fates[*body].fell_at.is_some();
         self.stack.of_kind(PartKind::Barrel).filter(fell)
     }
 
-    /// Returns the direction of the final position of each fallen barrel from its place at rest.
+    /// Returns, for each fallen barrel, the direction from its position at rest to its final position.
     pub fn debris(&self) -> impl Iterator<Item = Heading> + '_ {
         self.fallen().map(|body| Heading::of(self.fates[body].moved))
     }
 }
 
-/// Walk of a rack along the barrels before it tilts, as a fraction of its reach, above which it counts as sliding: a
-/// convention.
+/// Slip of a rack along the barrels before it tilts, as a fraction of its reach, above which the rack counts as having
+/// slid off. The value is a convention.
 const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 
-/// Returns the outcome of a run, which depends on the first body that left its seat, as in the plane; only sliding
-/// differs.
+/// Returns the outcome of a run. As in the plane, the outcome depends on the first body that left its seat; only the
+/// criterion for sliding differs.
 ///
-/// A rack slides off along the barrels if its beam has passed their ends, or if it tilts in that direction after a walk
-/// of more than half of its reach: a round beam comes down over the chime before the middle of the beam has passed it.
+/// A rack has slid off along the barrels if a beam has passed the ends of the barrels, or if the rack tilts in this
+/// direction after a slip of more than half of its reach: a round beam drops over the chime before the middle of the
+/// beam has passed the chime.
 fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
     let Some((time, first)) = fates.collapse() else {
         return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };

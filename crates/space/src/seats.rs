@@ -1,4 +1,4 @@
-//! Forces of seats and their contacts in space: at rest, and the largest during the run.
+//! Forces at the seats and their contacts in space: the forces at rest, and the largest forces during the run.
 
 use barrelstack::demand::Span;
 use barrelstack::watch::{Joint, Joints, leans_on};
@@ -6,7 +6,7 @@ use barrelstack_dynamics::{BodyId, Scratch, Spatial, Vec2, Vec3};
 
 use crate::stack::Stack;
 
-/// Normal force of one contact element.
+/// Normal force on one contact element.
 #[derive(Clone, Copy, Debug, Default)]
 struct Press {
     /// Force at rest (N).
@@ -29,12 +29,12 @@ impl Press {
 /// Recorder of the forces of joints and contacts of a run; must receive every accepted step.
 #[derive(Clone, Debug)]
 pub struct Seats {
-    /// Joints: every barrel on its rack, every rack on its supports, and other bodies that have touched; horizontal
-    /// forces are magnitudes.
+    /// Joints between every barrel and its rack, between every rack and its supports, and between other bodies that
+    /// have touched. Horizontal forces are magnitudes.
     pub joints: Joints,
     /// Forces (N) on the upper bodies of the joints in the current step.
     forces: Vec<Vec3>,
-    /// Forces of every contact element of every pair, pair after pair.
+    /// Forces on the contact elements of all pairs, pair after pair.
     presses: Vec<Press>,
     /// Contact pairs in the order of the model; empty for a free scene.
     pairs: Vec<Pair>,
@@ -46,7 +46,8 @@ struct Pair {
     bodies: [BodyId; 2],
     /// Index of the first contact element of the pair.
     first: usize,
-    /// Index of the joint of the two bodies, once they have touched, and `true` if the contactor is the upper body.
+    /// Index of the joint between the two bodies, and `true` if the contactor is the upper body; `None` until the
+    /// bodies have touched.
     joint: Option<(usize, bool)>,
 }
 
@@ -74,7 +75,7 @@ impl Seats {
         seats
     }
 
-    /// Records an accepted step at a time (s); `stands` is `true` if no seat had been lost before it.
+    /// Records an accepted step at a time (s); `stands` is `true` if no seat was lost before this step.
     pub fn observe(&mut self, time: f64, stands: bool, scratch: &Scratch<Spatial>) {
         if self.pairs.is_empty() {
             return;
@@ -115,18 +116,18 @@ impl Seats {
         own.flat_map(|(pair, end)| &self.presses[pair.first..end])
     }
 
-    /// Returns the largest contact force on a body in a span of the run over the largest at rest; `None` without load
-    /// at rest.
+    /// Returns the largest contact force on a body in a span of the run, divided by the largest contact force at rest;
+    /// `None` without load at rest.
     ///
-    /// This ratio is also that of the stresses, since every contact element has the same tributary length.
+    /// The stresses have the same ratio, since every contact element has the same tributary length.
     pub fn amplification(&self, body: BodyId, span: Span) -> Option<f64> {
         let most = |of: &dyn Fn(&Press) -> f64| self.of(body).map(of).fold(0.0, f64::max);
         let at_rest = most(&|press| press.at_rest);
         (at_rest > 0.0).then(|| most(&|press| press.peak_in(span)) / at_rest)
     }
 
-    /// Returns the sum of the largest contact forces on a body in a span of the run over the sum at rest, for the
-    /// contact elements loaded at rest; `None` without load at rest.
+    /// Returns the sum of the largest contact forces on a body in a span of the run, divided by the sum of the contact
+    /// forces at rest. Only contact elements that are loaded at rest count; `None` if there are none.
     pub fn mean_amplification(&self, body: BodyId, span: Span) -> Option<f64> {
         let sum = |of: &dyn Fn(&Press) -> f64| {
             self.of(body).filter(|press| press.at_rest > 0.0).map(of).sum::<f64>()

@@ -21,23 +21,23 @@ use crate::rack::Heights;
 pub struct Stack {
     /// The model.
     pub model: Model<Spatial>,
-    /// One part for every body, in the same order; the ground comes first.
+    /// Description of every body, in the order of the body IDs; the ground comes first.
     pub parts: Vec<Part>,
-    /// Time step (s), divided during impacts; for a stack, the smaller of the steps of its plane models across and
+    /// Time step (s), divided during impacts; for a stack, the smallest of the steps of its plane models across and
     /// along the barrels.
     pub step: f64,
     /// Height (m) from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
     /// Number of levels; zero for a free scene.
     pub levels: u32,
-    /// Radius (m) of a barrel at its widest, on which it lies on the ground; zero for a free scene.
+    /// Radius (m) of a barrel at its bilge, the widest part, on which it lies on the ground; zero for a free scene.
     pub bilge_radius: f64,
-    /// Displacements (m) of a rack on the barrels below, across and along them, beyond which it is no longer supported;
-    /// as in the respective plane.
+    /// Displacements (m) of a rack on the barrels below, across and along the barrels, beyond which the rack is no
+    /// longer supported. The values are those of the respective plane models.
     pub reach: [f64; 2],
     /// Vertical force (N) that the staves of a barrel can bear between two racks; zero for a free scene.
     pub stave_capacity: f64,
-    /// Elements of devices that will be fitted once the stack is at rest.
+    /// Elements of devices that will be fitted when the stack is at rest.
     pub(crate) loose: Vec<Loose>,
     /// The device of every element of the model.
     pub(crate) devices: Vec<&'static Words>,
@@ -112,7 +112,7 @@ impl Stack {
     }
 }
 
-/// Returns the specification of the stack of a scenario; fails if there is none in space.
+/// Returns the specification of the stack of a scenario; fails if the scenario has no stack in space.
 fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     match &scenario.scene {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
@@ -124,7 +124,7 @@ fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     }
 }
 
-/// Returns the scenario with its stack as a plane model in a view.
+/// Returns the scenario with its stack in a plane view.
 pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     let mut plane = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut plane.scene {
@@ -137,17 +137,17 @@ pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
 /// own barrels.
 const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 
-/// Time stepping of a stack and reach of its racks, from its plane models.
+/// Time stepping of a stack, and reach of its racks; both are taken from its plane models.
 struct Pace {
     /// The time step (s).
     step: f64,
     /// Number of substeps during impacts.
     substeps: f64,
-    /// Largest penetration (m) that whole steps resolve, by the name of the law.
+    /// Largest penetration (m) that whole steps resolve, for each law by its name.
     depths: BTreeMap<String, f64>,
-    /// [`Substepping::resting_allowance`]: the smallest of the plane models.
+    /// [`Substepping::resting_allowance`]: the smallest value of all plane models.
     resting_allowance: f64,
-    /// Reach (m) of a rack on the barrels below, across and along them.
+    /// Reach (m) of a rack on the barrels below, across and along the barrels.
     reach: [f64; 2],
 }
 
@@ -181,7 +181,7 @@ impl Pace {
         Ok(Self { step, substeps, depths, resting_allowance, reach })
     }
 
-    /// Returns the substepping of a model with given laws.
+    /// Returns the substepping for a model with the given laws.
     fn substepping(&self, laws: &[Interface<Spatial>]) -> Substepping<f64> {
         let depth = |law: &Interface<Spatial>| self.depths.get(&law.name).copied();
         let depths = laws.iter().map(|law| depth(law).unwrap_or(f64::INFINITY));
@@ -195,8 +195,9 @@ impl Pace {
     }
 }
 
-/// Returns plane models of a stack, each with the overrides of its section: across the barrels one for every row, along
-/// them one for every column. Without overrides of single columns or rows one model is enough.
+/// Returns plane models of a stack, each with the overrides that apply to its section: one for every row in the view
+/// across the barrels, or one for every column in the view along the barrels. Without overrides of single columns or
+/// rows, one model is enough.
 fn cuts(scenario: &Scenario, spec: &StackSpec, view: View) -> Vec<Scenario> {
     let rack = &spec.rack;
     let (count, per_rack) = match view {

@@ -1,4 +1,4 @@
-//! Time step of a free scene in space, from its contacts and initial spins.
+//! Time step of a free scene in space, derived from its contacts and initial spins.
 
 use barrelstack::RunFailure;
 use barrelstack::scenario::{Method, Scenario};
@@ -6,10 +6,10 @@ use barrelstack::step::round_down;
 use barrelstack_dynamics::solid::Hull;
 use barrelstack_dynamics::{Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Vec3};
 
-/// Fraction of the critical time step, as in the plane.
+/// Time step as a fraction of the critical time step, as in the plane.
 const SHARE: f64 = 0.3;
 
-/// Fraction of the time in which dampers stop a body, as in the plane.
+/// Time step as a fraction of the time in which dampers stop a body, as in the plane.
 const DAMPING_SHARE: f64 = 0.33;
 
 /// Penetration (m) at which nonlinear laws are linearized, as in the plane.
@@ -18,10 +18,11 @@ const REFERENCE: f64 = 0.01;
 /// Maximum step (s), used if nothing requires a shorter one.
 const LONGEST: f64 = 1e-3;
 
-/// Maximum rotation (rad) of a body in a step at its initial spin; a tumbling block then keeps its energy to 3e-9.
+/// Maximum rotation (rad) of a body in a step at its initial spin. With this limit, the relative error of the energy of
+/// a tumbling block stays below 3e-9.
 const TURN: f64 = 5e-3;
 
-/// Returns the time step (s) that a scenario states, or by default one that follows from its contacts and spins.
+/// Returns the time step (s) that a scenario states or, by default, a step derived from its contacts and initial spins.
 pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f64, RunFailure> {
     let rate = fastest(model, |pair| {
         let law = &model.interfaces()[pair.interface];
@@ -58,10 +59,11 @@ fn adapts(method: Method) -> bool {
     matches!(method, Method::BogackiShampine { .. })
 }
 
-/// Returns the largest ratio of a contact constant (stiffness or damping) to the mass that it acts on, over all pairs
-/// and their free bodies; the mass includes the rotation at the longest lever.
+/// Returns the largest ratio, over all pairs and their free bodies, of a contact constant (stiffness or damping) to the
+/// effective mass of the body. The effective mass accounts for rotation about the center of mass with the longest
+/// lever.
 ///
-/// A body may be held from below and above, so every constant counts twice.
+/// A body may have contacts both below and above, so every constant counts twice.
 fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f64 {
     let mut most = 0.0_f64;
     for pair in model.pairs() {
@@ -108,7 +110,7 @@ fn turned(body: &Body<Spatial>) -> f64 {
     x.max(y).max(z)
 }
 
-/// Returns half the bounding box (m) of a solid.
+/// Returns half the side lengths (m) of the bounding box of a solid.
 fn reach(hull: &Hull) -> Vec3 {
     match hull {
         Hull::Capsule(tube) => Vec3::new(tube.half_length + tube.radius, tube.radius, tube.radius),

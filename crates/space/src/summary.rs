@@ -17,7 +17,7 @@ use crate::variants::{Case, demands};
 
 described! {
     /// The summary of a run in space. Lengths are in m, times in s, angles in rad; `x` is across the barrels, `y` along
-    /// them, `z` up. A value is null where an event did not happen or does not apply.
+    /// the barrels, `z` up. A value is null where an event did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct Summary {
         /// Name and version of this layout.
@@ -30,9 +30,9 @@ described! {
         pub ensemble: Option<Spread>,
         /// Number of runs that finished; null unless the variants were stopped early.
         pub unfinished: Option<Unfinished>,
-        /// Changes that would have kept the stack up; null where it stands, or no change was searched for.
+        /// Changes that would have kept the stack up; null if the stack stands or if no change was searched for.
         pub remedy: Option<Remedy>,
-        /// Directions in which variants fall; null where no variants were run.
+        /// Numbers of variants and barrels that fall in each direction; null where no variants were run.
         pub directions: Option<Directions>,
         /// Outcome of the run.
         pub outcome: OutcomeInSpace,
@@ -42,16 +42,16 @@ described! {
         pub demands: Demands,
         /// Demands on the stack over the whole run, falls included.
         pub demands_whole_run: Demands,
-        /// Forces between all bodies that pressed on each other; empty where the run is invalid.
+        /// Forces between every two bodies that pressed on each other; empty where the run is invalid.
         pub interfaces: Vec<JointSummary>,
         /// Force of every element of the devices, if there are any.
         #[serde(flatten)]
         pub devices: Devices,
         /// The energy balance; null where the numbers are no longer finite.
         pub energy: Option<EnergyBalance>,
-        /// The horizontal component of the scenario, and the vertical component.
+        /// The horizontal component of the ground motion that the scenario names, and the vertical component.
         pub motion: Option<MotionSummary>,
-        /// The other horizontal component; null where the motion has only one.
+        /// The other horizontal component of the ground motion; null where the motion has only one.
         pub other_component: Option<MotionSummary>,
         /// Settings and work of the computation.
         pub run: RunInSpace,
@@ -61,25 +61,26 @@ described! {
         pub provenance: Provenance,
     }
 
-    /// Directions in which variants fall.
+    /// Numbers of variants and barrels that fall in each direction.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Directions of cases: &[Case] {
-        /// Variants whose first body leaves its seat to the right (positive x).
+        /// Number of variants whose first body leaves its seat to the right (positive x).
         pub first_right: u32 = first(cases, Heading::Right),
-        /// Variants whose first body leaves its seat to the left (negative x).
+        /// Number of variants whose first body leaves its seat to the left (negative x).
         pub first_left: u32 = first(cases, Heading::Left),
-        /// Variants whose first body leaves its seat away along the barrels (positive y).
+        /// Number of variants whose first body leaves its seat along the barrels, away from the viewer (positive y).
         pub first_away: u32 = first(cases, Heading::Away),
-        /// Variants whose first body leaves its seat toward the near side (negative y).
+        /// Number of variants whose first body leaves its seat along the barrels, toward the near side (negative y).
         pub first_near: u32 = first(cases, Heading::Near),
-        /// Fallen barrels of all variants that came to lie to the right of their place at rest, more than along the
-        /// barrels.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the right.
         pub debris_right: u32 = debris(cases, Heading::Right),
-        /// Fallen barrels that came to lie to the left, more than along the barrels.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the left.
         pub debris_left: u32 = debris(cases, Heading::Left),
-        /// Fallen barrels that came to lie away along the barrels, more than across them.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly along the barrels, away
+        /// from the viewer.
         pub debris_away: u32 = debris(cases, Heading::Away),
-        /// Fallen barrels that came to lie toward the near side, more than across the barrels.
+        /// Number of fallen barrels, in all variants, whose displacement from rest is mainly along the barrels, toward
+        /// the near side.
         pub debris_near: u32 = debris(cases, Heading::Near),
     }
 
@@ -100,9 +101,9 @@ described! {
         pub from_level: Option<u32>,
         /// Highest of the levels that collapse.
         pub to_level: Option<u32>,
-        /// Time at which the first barrel had fallen.
+        /// Time at which the first barrel counted as fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end; null where the run is invalid or was interrupted.
+        /// Number of barrels that had fallen at the end; null where the run is invalid or was interrupted.
         pub barrels_fallen: Option<usize>,
         /// Number of all barrels.
         pub barrels: usize,
@@ -119,27 +120,27 @@ described! {
         pub kind: &'static str ["barrel", "rack", "device", "body"],
         /// Level, 1 at the bottom; 0 in a free scene.
         pub level: u32,
-        /// Column, 1 at the left; 0 in a free scene.
+        /// Column, 1 for the leftmost; 0 in a free scene.
         pub column: u32,
-        /// Row along the barrels, 1 nearest; 0 in a free scene.
+        /// Row along the barrels, 1 for the nearest; 0 in a free scene.
         pub row: u32,
         /// Time at which the body left its seat.
         pub left_seat_at: Option<f64> as "s",
         /// Direction in which the body left its seat.
         pub left_seat_to: Option<&'static str> ["right", "left", "away", "near"],
-        /// Time at which the body had fallen.
+        /// Time at which the body counted as fallen.
         pub fell_at: Option<f64> as "s",
         /// Largest drop below the position at rest.
         pub drop: f64 as "m",
         /// Largest force on the body after its fall.
         pub fall_force: Option<f64> as "N",
-        /// Displacement x, y, z from the position at rest relative to the ground, at the end.
+        /// Displacement x, y, z at the end, relative to the ground and measured from the position at rest.
         pub moved: [f64; 3] as "m",
         /// Position x, y, z of the center of mass at the end, relative to the initial position of the ground.
         pub position: [f64; 3] as "m",
         /// Orientation of the principal axes at the end, as the quaternion w, x, y, z.
         pub orientation: [f64; 4] as "1",
-        /// Velocity x, y, z of the center of mass at the end, including that of the ground.
+        /// Velocity x, y, z of the center of mass at the end, including the velocity of the ground.
         pub velocity: [f64; 3] as "m/s",
         /// Spin about x, y, z at the end.
         pub spin: [f64; 3] as "rad/s",
@@ -149,16 +150,18 @@ described! {
         pub peak_slip: f64 as "m",
         /// Largest displacement across the barrels relative to the supports before the first loss of seat.
         pub peak_slip_across: f64 as "m",
-        /// Largest displacement along the barrels relative to the supports before the first loss of seat; may be of
-        /// another instant.
+        /// Largest displacement along the barrels relative to the supports before the first loss of seat; may occur at
+        /// another time than the largest displacement across the barrels.
         pub peak_slip_along: f64 as "m",
         /// Largest rise above the position at rest before the first loss of seat.
         pub peak_uplift: f64 as "m",
         /// Largest tilt before the first loss of seat; racks only.
         pub peak_tilt: Option<f64> as "rad",
-        /// Largest contact force on the body before the first loss of seat over the largest at rest.
+        /// Largest contact force on the body before the first loss of seat, divided by the largest contact force at
+        /// rest.
         pub stress_amplification: Option<f64> as "1",
-        /// Sum of the largest contact forces on the body before the first loss of seat over the sum at rest.
+        /// Sum of the largest contact forces on the body before the first loss of seat, divided by the sum of the
+        /// contact forces at rest.
         pub mean_stress_amplification: Option<f64> as "1",
     }
 
@@ -187,12 +190,12 @@ described! {
     }
 }
 
-/// Returns the number of cases whose first body falls in a direction.
+/// Returns the number of cases in which the first body leaves its seat in a given direction.
 fn first(cases: &[Case], heading: Heading) -> u32 {
     count(cases, |case| usize::from(case.first == Some(heading)))
 }
 
-/// Returns the number of fallen barrels of all cases in a direction.
+/// Returns the number of barrels, in all cases, that fell in a given direction.
 fn debris(cases: &[Case], heading: Heading) -> u32 {
     count(cases, |case| case.debris.iter().filter(|lies| **lies == heading).count())
 }
@@ -202,19 +205,20 @@ fn count(cases: &[Case], of: impl Fn(&Case) -> usize) -> u32 {
 }
 
 impl Directions {
-    /// Returns the number of variants whose first body leaves its seat across the barrels, and along them.
+    /// Returns the number of variants whose first body leaves its seat across the barrels, and the number of those
+    /// whose first body leaves it along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }
 
-    /// Returns the number of fallen barrels across the barrels, and along them.
+    /// Returns the number of barrels that fell across the barrels, and the number of those that fell along the barrels.
     pub fn debris(&self) -> [u32; 2] {
         [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
     }
 }
 
 impl Summary {
-    /// Summarizes a run of a scenario as stated.
+    /// Summarizes a run; `stated` is the scenario as stated, of which the run may be a variant.
     pub fn of(run: &Run, stated: &Scenario) -> Self {
         let sound = !matches!(run.outcome, Outcome::Invalid { .. });
         let motion = |ground: &barrelstack::Ground| ground.motion.as_ref().map(MotionSummary::of);

@@ -1,5 +1,5 @@
-//! Variants of a stack in space, which are sampled and evaluated as in a plane, with the directions of falls in
-//! addition.
+//! Variants of a stack in space. They are sampled and evaluated as in a plane, and the directions of falls are recorded
+//! in addition.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -28,11 +28,11 @@ use crate::summary::{Directions, Summary};
 /// Result of one variant in space.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Results as for a case in a plane, but without trails.
+    /// The same results as for a case in a plane, but without trails.
     pub result: CaseResult,
-    /// Direction in which the first body left its seat, if any did.
+    /// Direction in which the first body left its seat, if any body did.
     pub first: Option<Heading>,
-    /// Directions of the fallen barrels from their places at rest.
+    /// For each fallen barrel, the direction from its position at rest to its final position.
     pub debris: Vec<Heading>,
 }
 
@@ -43,9 +43,10 @@ pub struct Answer {
     pub scenario: Scenario,
     /// The run that is shown.
     pub run: Run,
-    /// Its summary, with the statistics of all variants.
+    /// Summary of the run, with the statistics of all variants.
     pub summary: Summary,
-    /// The case as stated and its variants, including interrupted ones; empty if no variants were run.
+    /// Results of the scenario as stated and of its variants, including interrupted cases; empty if no variants were
+    /// run.
     pub cases: Vec<Case>,
 }
 
@@ -91,15 +92,16 @@ impl Case {
         Self { result, first: run.heading, debris: run.debris().collect() }
     }
 
-    /// Creates the result of a scenario that could not be run: a collapse if the stack falls under its own weight, no
-    /// verdict otherwise.
+    /// Creates the result of a scenario that could not be run: a collapse if the stack falls under its own weight, and
+    /// otherwise no verdict.
     pub fn refused(scenario: &Scenario, failure: &RunFailure) -> Self {
         let result = fallen_at_rest(scenario, failure)
             .unwrap_or_else(|| CaseResult::failed(failure.to_string()));
         Self { result, first: None, debris: Vec::new() }
     }
 
-    /// Returns the directions of the first body and of fallen barrels; `None` without a verdict.
+    /// Returns the direction in which the first body left its seat, if any body did, and the directions of the fallen
+    /// barrels; `None` without a verdict.
     pub fn headings(&self) -> Option<(Option<Heading>, &[Heading])> {
         let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
         judged.then_some((self.first, self.debris.as_slice()))
@@ -123,7 +125,7 @@ fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResul
     Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }
 
-/// Returns the demands in a span of a run; displacements are horizontal, in any direction.
+/// Returns the demands in a span of a run. Displacements are horizontal and may have any direction.
 pub fn demands(run: &Run, span: Span) -> Demands {
     let Run { stack, fates, seats, .. } = run;
     let most = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> Option<f64>| {
@@ -162,13 +164,13 @@ pub fn demands(run: &Run, span: Span) -> Demands {
     }
 }
 
-/// Runs the case as stated and all its variants on all cores.
+/// Runs the scenario as stated and all its variants on all cores.
 ///
-/// The observer receives the number of finished cases and their total, and may stop the work; unfinished cases are
+/// The observer receives the number of finished cases and their total, and may stop the work. Unfinished cases are
 /// returned as interrupted.
 ///
-/// The first result is the case as stated, followed by the variants in the order of their numbers. Unlike in a plane,
-/// no variant exchanges the horizontal components: all keep the azimuth of the scenario.
+/// The first result is that of the scenario as stated, followed by those of the variants in the order of their numbers.
+/// Unlike in a plane, no variant exchanges the horizontal components: all variants keep the azimuth of the scenario.
 ///
 /// # Errors
 /// If the motion cannot be read, or the stack as stated cannot be built or does not stand.
@@ -232,7 +234,7 @@ fn run_some(
     pool::map(numbers, work, &|_| ())
 }
 
-/// A stack in space with a change that is tried as a remedy, and its variants.
+/// A stack in space to which a change is applied as a possible remedy, and its variants.
 struct InSpace {
     plane: Plane,
     ground: Ground,
@@ -254,9 +256,10 @@ impl Trial for InSpace {
     }
 }
 
-/// Searches for the smallest change that would have kept the stack up, with the rules and statistics of the planes.
+/// Searches for the smallest change that would have kept the stack up, with the same rules and statistics as for plane
+/// models.
 ///
-/// Returns `None` if the stack stands, has no variants, or if its runs end before the motion.
+/// Returns `None` if the stack stands or has no variants, or if its runs end before the motion does.
 ///
 /// # Errors
 /// If the motion cannot be read.

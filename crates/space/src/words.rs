@@ -1,4 +1,4 @@
-//! Sentences about a stack in space: those of a plane, with directions in addition.
+//! Sentences about a stack in space: the sentences of a plane model, with the addition of directions.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -12,7 +12,7 @@ use crate::fate::Heading;
 use crate::run::Run;
 use crate::summary::Summary;
 
-/// Returns the answer of a run as one sentence.
+/// Returns the result of a run as one sentence.
 pub fn headline(run: &Run, summary: &Summary) -> String {
     if let Some(spread) = &summary.ensemble {
         return headline_in_space(spread);
@@ -55,7 +55,7 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
     }
 }
 
-/// Returns the words for a direction, as they follow a verb.
+/// Returns the words for a direction, in the form that follows a verb.
 pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
@@ -82,15 +82,16 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.first();
         if across + along > 0 {
             sentences.push(format!(
-                "In the {} variants that fall, the first body leaves its seat across the barrels in {across}, along them in \
-                 {along}.",
+                "In the {} variants that fall, the first body leaves its seat across the barrels \
+                 in {across} and along the barrels in {along}.",
                 across + along
             ));
         }
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall{}, {} lie across the barrels from their place at rest, {} along them.",
+                "Of the barrels that fall{}, {} end up across the barrels from their position at \
+                 rest, and {} along the barrels.",
                 summary
                     .ensemble
                     .as_ref()
@@ -113,10 +114,11 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Maximum number of bodies of a free scene listed individually in the console; files list all.
+/// Maximum number of bodies of a free scene that the console output lists individually; the output files list all
+/// bodies.
 const MOST_LISTED: usize = 10;
 
-/// Demands shown in the console; the page shows all.
+/// Demands that the console output shows; the page shows all demands.
 const SHOWN: [&str; 5] = [
     "top_drift_ratio",
     "stress_amplification",
@@ -125,7 +127,7 @@ const SHOWN: [&str; 5] = [
     "rack_walk_peak",
 ];
 
-/// Returns the rows of the summary, each with name and value.
+/// Returns the rows of the summary, each with its name and value.
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
@@ -163,7 +165,10 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     if let Some(energy) = &summary.energy {
         row(
             "energy balance",
-            format!("residual {:.0e} of the energy that went through", energy.residual_ratio),
+            format!(
+                "residual {:.0e} of the energy that passed through the system",
+                energy.residual_ratio
+            ),
         );
     }
     let Summary { run: done, .. } = summary;

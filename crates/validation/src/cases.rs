@@ -1,5 +1,5 @@
-//! Problems in files: each is a free-scene scenario, followed by a table `[expect]` with the requested quantity and the
-//! exact answer.
+//! Problems from files. Each file is the scenario of a free scene, followed by a table `[expect]` with the requested
+//! quantity and the exact answer.
 //!
 //! ```toml
 //! [expect]
@@ -41,10 +41,10 @@ pub enum Quantity {
 impl Quantity {
     fn words(self) -> &'static str {
         match self {
-            Self::FirstUpright => "time to be upright",
-            Self::Displacement => "displacement on the ground",
-            Self::OverturningBorder => "least value that overturns the body",
-            Self::UpliftBorder => "least value that lifts a corner",
+            Self::FirstUpright => "time until the body is upright",
+            Self::Displacement => "displacement relative to the ground",
+            Self::OverturningBorder => "smallest value that overturns the body",
+            Self::UpliftBorder => "smallest value that lifts a corner",
         }
     }
 
@@ -141,8 +141,8 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: a border needs \"g\" or \"m/s\", a time or a displacement needs none; found {unit:?} \
-                 for {quantity:?}"
+                "expect.unit: a border needs \"g\" or \"m/s\", and a time or a displacement must \
+                 have no unit; found {unit:?} for {quantity:?}"
             )));
         }
     };

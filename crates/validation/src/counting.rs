@@ -1,4 +1,5 @@
-//! A number type that counts arithmetic operations, to compare the work of a step with that of earlier versions.
+//! A number type that counts arithmetic operations, so that the work of a time step can be compared with earlier
+//! versions of the program.
 //!
 //! Counts depend on the algorithm only, not on the machine, its load or the compiler.
 
@@ -16,11 +17,11 @@ thread_local! {
 /// Number of operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operations {
-    /// Additions, subtractions and multiplications.
+    /// Number of additions, subtractions and multiplications.
     pub plain: u64,
-    /// Divisions and square roots.
+    /// Number of divisions and square roots.
     pub divisions: u64,
-    /// Comparisons, selections and changes of sign.
+    /// Number of comparisons, selections and changes of sign.
     pub choices: u64,
 }
 
@@ -126,7 +127,7 @@ impl SubAssign for Counting {
 /// Counts of the work of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
     /// Number of touching nodes, summed over the steps.
     pub touching: u64,

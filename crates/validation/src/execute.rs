@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use crate::{Effort, Failure, Outcome, Problem};
 
-/// The answer to a problem with its assessment.
+/// The answer to a problem, and its assessment.
 #[derive(Debug)]
 pub struct Row {
     /// The answer, or the reason why there is none.
     pub answer: Result<Outcome, Failure>,
-    /// The error, relative or absolute like the tolerance; NaN without an answer.
+    /// The error, relative or absolute in accordance with the tolerance; NaN if there is no answer.
     pub error: f64,
     /// `true` if the answer is within the tolerance.
     pub passed: bool,

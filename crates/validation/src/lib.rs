@@ -1,7 +1,7 @@
 //! Problems with exact or published answers, against which the program is validated.
 //!
-//! A [`Problem`] holds the scene, the exact or published answer with its source, and the tolerance.
-//! The tests of this crate run all problems in a fast form, its program runs them in full:
+//! A [`Problem`] holds the scene, the exact or published answer with its source, and the tolerance. The tests of this
+//! crate run all problems in a fast form. The program of this crate runs them in full:
 //!
 //! ```sh
 //! cargo xtask validate
@@ -9,15 +9,15 @@
 //!
 //! # Order of convergence
 //!
-//! Penalty contact has two small parameters, the time step and the duration of a contact.
-//! A refinement halves both: it halves the step and makes the contact four times as stiff, with the same
-//! damping ratio. The limit is the rigid body of the closed form, and the order is that of the error
-//! against the exact answer. Thresholds found by bisection have no order.
+//! Penalty contact has two small parameters, the time step and the duration of a contact. A refinement halves both: the
+//! step is halved, and the contact is made four times as stiff, with the same damping ratio. In the limit the bodies
+//! are rigid, as in the closed-form solution, and the order is the order of convergence to the exact answer. Thresholds
+//! found by bisection have no order.
 //!
 //! # Adding a problem
 //!
-//! A problem that needs only bodies, a motion and one of the predefined quantities is a file in `cases/`
-//! (see [`cases`]); any other is a function in one of the [`problems`].
+//! A problem that needs only bodies, a motion and one of the predefined quantities is a file in `cases/` (see
+//! [`cases`]); any other problem is a function in one of the modules of [`problems`].
 
 pub mod cases;
 pub mod counting;

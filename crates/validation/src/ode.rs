@@ -1,7 +1,7 @@
 //! Solutions of ordinary differential equations by an independent library.
 //!
-//! The library locates events with an interpolant of low order, so it is used only for smooth motions
-//! between given times.
+//! The library locates events with an interpolant of low order, so the library is used only for smooth motions between
+//! given times.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP};
 

@@ -1,7 +1,9 @@
-//! Independent integrator for one rocking block: Housner's equation between impacts, a restitution at impacts.
+//! Independent integrator for one rocking block: Housner's equation of motion between impacts, and a given restitution
+//! at impacts.
 //!
-//! The integrator shares no code with the contact. It takes classical Runge–Kutta steps and finds the times of uplift
-//! and impact by bisection. The problems `ode/own-integrator-…` verify its smooth motions with an external library.
+//! The integrator shares no code with the contact model. It takes classical Runge–Kutta steps and finds the times of
+//! uplift and impact by bisection. The problems `ode/own-integrator-…` compare its smooth motions with those of an
+//! external library.
 
 use barrelstack_dynamics::math::{cos, sin, tan};
 
@@ -10,22 +12,22 @@ use crate::GRAVITY;
 /// A rigid rectangle that rocks about its lower corners without sliding or bouncing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rocker {
-    /// Slenderness angle α (rad), arctan of width over height.
+    /// Slenderness angle α (rad): the arctangent of width divided by height.
     pub alpha: f64,
     /// p = √(3g/4R) (rad/s).
     pub rate: f64,
-    /// Ratio η of angular velocities after and before an impact.
+    /// Ratio η of the angular velocities after and before an impact.
     pub restitution: f64,
-    /// `true` for equations that are linearized for small angles.
+    /// `true` to use equations that are linearized for small angles.
     pub slender: bool,
 }
 
 /// Outcome of the motion of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ride {
-    /// `true` if it overturned.
+    /// `true` if the block overturned.
     pub overturned: bool,
-    /// Largest rotation (rad), up to the angle that counts as overturned.
+    /// Largest rotation (rad), limited to the angle at which the block counts as overturned.
     pub peak: f64,
 }
 
@@ -36,21 +38,22 @@ pub const OVERTURNED: f64 = 1.2;
 const REST: f64 = 1e-6;
 
 impl Rocker {
-    /// Returns θ'' (rad/s²) at rotation `theta` (rad) on a side (±1), under the ground acceleration `push` (over g).
+    /// Returns θ'' (rad/s²) at rotation `theta` (rad) on a side (±1), under the ground acceleration `push` (as a
+    /// multiple of g).
     fn spin_rate(&self, theta: f64, side: f64, push: f64) -> f64 {
         let angle = self.alpha * side - theta;
         let moment = if self.slender { angle + push } else { sin(angle) + push * cos(angle) };
         -self.rate * self.rate * moment
     }
 
-    /// Returns the ground acceleration over g at uplift.
+    /// Returns the ground acceleration at uplift, as a multiple of g.
     pub fn uplift(&self) -> f64 {
         if self.slender { self.alpha } else { tan(self.alpha) }
     }
 
     /// Takes one Runge–Kutta step.
     ///
-    /// The push is evaluated slightly inside the ends of the step, since it may be discontinuous there.
+    /// The push is evaluated slightly inside the ends of the step, since it may be discontinuous at the ends.
     fn step(
         &self,
         (theta, spin): (f64, f64),
@@ -72,7 +75,7 @@ impl Rocker {
         )
     }
 
-    /// Returns rotation (rad) and angular velocity (rad/s) after a time (s) of rocking on one corner.
+    /// Returns the rotation (rad) and the angular velocity (rad/s) after a time (s) of rocking on one corner.
     ///
     /// Takes a number of equal steps from `start`, the state at time zero, whose rotation is positive.
     pub(crate) fn stretch(
@@ -87,7 +90,7 @@ impl Rocker {
         (0..steps).fold(start, |at, i| self.step(at, 1.0, (f64::from(i) * length, length), &push))
     }
 
-    /// Returns `true` if the block can no longer overturn unless it is pushed again.
+    /// Returns `true` if the block cannot overturn any more without another push.
     fn safe(&self, theta: f64, spin: f64) -> bool {
         let left = self.alpha - theta.abs();
         let barrier = if self.slender { 0.5 * left * left } else { 1.0 - cos(left) };
@@ -96,8 +99,8 @@ impl Rocker {
 
     /// Integrates the motion of the block under a ground acceleration (m/s²) that ends by `pushed_until` (s).
     ///
-    /// Steps are integer fractions of that time, and at most `longest` (s).
-    /// A block that is still undecided `patience` (s) later is judged by its rotation at that time.
+    /// Every step is an integer fraction of `pushed_until`, and at most `longest` (s). If the outcome is still open
+    /// `patience` (s) after `pushed_until`, the block is judged by its rotation at that time.
     pub fn ride(
         &self,
         acceleration: impl Fn(f64) -> f64,

@@ -1,4 +1,5 @@
-//! The report: every problem with the exact answer, our answer, the error, the tolerance and the order.
+//! The report: every problem, with the exact answer, the program's answer, the error, the tolerance and the order of
+//! convergence.
 
 use std::fmt::Write as _;
 
@@ -6,32 +7,38 @@ use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significan
 
 use crate::{Effort, Problem, Row, Tolerance};
 
-/// Known differences between rigid-block theory and penalty contact.
+/// Known differences between rigid-block theory and the penalty contact of the program.
 pub const LIMITS: [&str; 7] = [
-    "Housner's ratio of angular velocities is the least that a corner can reach, since his impact is \
-     perfectly plastic. Damping ratios from zero to ζ = 3 give any ratio from 1 down to his. Lower \
-     ratios, such as those measured on rubber or on stocky concrete blocks, cannot be reached.",
-    "With ζ = 3, which the problems of Housner use, the ratio of ever stiffer corners converges to a value \
-     0.0002 above his at α = 0.40 (0.0016 above with ζ = 1, 0.00004 with ζ = 12). So the error of \
-     impacts of stocky blocks does not vanish, and an order of convergence is meaningless for errors that small.",
-    "The calibrated damping holds for one stiffness, one slenderness and one mass; it hardly depends on \
-     the amplitude (see the notes of restitution/rocking-target).",
-    "Nodes between the corners change the impact: with three nodes on the base, a block of α = 0.25 \
-     has η between 0.92 and 0.96 instead of 0.908, with eleven nodes between 0.94 and 0.97, depending on the \
-     damping. Refining the nodes of a flat face does not converge to Housner, so the rocking problems use two.",
-    "Overturning borders hold for blocks that cannot slide and whose contact is stiff. Windows of \
-     overturning after many impacts under slow pulses (ω/p below 1.5) are too narrow to compare and are left out.",
+    "Housner's ratio of angular velocities is the smallest that contact at the corners can give, \
+     since his impact is perfectly plastic. Damping ratios from zero to ζ = 3 give any ratio from \
+     1 down to Housner's. Lower ratios, such as those measured on rubber or on stocky concrete \
+     blocks, cannot be reached.",
+    "With ζ = 3, which the problems of Housner use, the ratio converges, as the corners become \
+     stiffer, to a value 0.0002 above Housner's at α = 0.40 (0.0016 above with ζ = 1, 0.00004 with \
+     ζ = 12). So the error of impacts of stocky blocks does not vanish, and an order of \
+     convergence is meaningless for errors that small.",
+    "The calibrated damping is valid for one stiffness, one slenderness and one mass; it hardly \
+     depends on the amplitude (see the notes of restitution/rocking-target).",
+    "Nodes between the corners change the impact: with three nodes on the base, a block of α = \
+     0.25 has η between 0.92 and 0.96 instead of 0.908, with eleven nodes between 0.94 and 0.97, \
+     depending on the damping. More nodes on a flat face do not make the ratio converge to \
+     Housner's, so the rocking problems use two nodes.",
+    "Overturning borders are valid for blocks that cannot slide and whose contact is stiff. Ranges \
+     of strength that overturn a block after many impacts under slow pulses (ω/p below 1.5) are \
+     too narrow for a comparison and are left out.",
     "Fall times of stacks after the first seconds are chaotic; only verdicts and early falls are \
      compared.",
-    "It is not documented how the ground of the consensus scenes starts, and from which drop a barrel \
-     counts as fallen. Here the displacement is A sin ωt from the first instant, a sudden start, and the drop is one \
-     level. With a drop of 0.2 m the first fall of scene A is at 1.40 s, before that of the five codes. \
-     With ground that starts at the same velocity as the bodies it is at 2.8 s, and in scene C a \
-     barrel falls after 4.2 s, while none falls in the five codes. As a scenario, whose undersides are rows of \
-     nodes, scene A has its first fall at about 2.1 s, so only its verdict is compared.",
+    "It is not documented how the ground motion of the consensus scenes starts, and at which drop \
+     a barrel counts as fallen. Here the displacement is A sin ωt from the start, so the ground \
+     starts suddenly, and the drop is one level. With a drop of 0.2 m the first fall of scene A is \
+     at 1.40 s, before that of the five codes. With ground that starts at the same velocity as the \
+     bodies, the first fall is at 2.8 s, and in scene C a barrel falls after 4.2 s, while none \
+     falls in the five codes. Modeled as a scenario, in which the undersides of racks are rows of \
+     nodes, scene A has its first fall at about 2.1 s, so only the verdict of the scenario is \
+     compared.",
 ];
 
-/// Known problems that are not covered, with the reason.
+/// Known problems that are not covered, each with the reason.
 pub const ABSENT: [(&str, &str); 10] = [
     (
         "many-impact windows below ω/p = 1.5; double-impulse limit; Dimitrakopoulos and DeJong 2012",
@@ -57,20 +64,24 @@ pub const ABSENT: [(&str, &str); 10] = [
     ),
     (
         "thinnest semicircular arch (t/R = 0.1075)",
-        "no scene of voussoirs that comes to rest exists here yet.",
+        "there is no scene of a voussoir arch yet that comes to rest.",
     ),
     ("arch of 27 blocks with friction modes", "its published modes were not available."),
-    ("heavy top, Euler disc", "three-dimensional; the model is planar."),
+    (
+        "heavy top, Euler disc",
+        "only steady precession and steady rolling are covered, by the problems in space.",
+    ),
     (
         "contact suites of Kratos (9 cases) and of Chung and Ooi (8 tests)",
-        "their numbers were not available; rebound, slip and rolling are compared with closed forms instead.",
+        "their numerical results were not available; rebound, slip and rolling are compared with \
+         closed forms instead.",
     ),
 ];
 
-/// Returns the heading of the section for a theory.
+/// Returns the section heading for a theory.
 fn heading(theory: &str) -> &str {
     match theory {
-        "housner" => "Free rocking and one push",
+        "housner" => "Free rocking and single pushes",
         "pulses" => "Overturning by pulses",
         "regimes" => "Start of motion",
         "sliding" => "Sliding blocks",
@@ -79,8 +90,8 @@ fn heading(theory: &str) -> &str {
         "gravity" => "Gravity",
         "stacks" => "Stacked blocks",
         "measured" => "Measured blocks",
-        "intensity" => "Measures of ground motions",
-        "ode" => "Smooth motions by a library's integrator",
+        "intensity" => "Intensity measures of ground motions",
+        "ode" => "Smooth motions, compared with a library integrator",
         "invariances" => "Invariances and energy",
         "symmetry" => "Order of bodies",
         "statistics" => "Ensembles",
@@ -137,12 +148,13 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
         verdict: Verdict {
             headline,
             sentences: vec![
-                "Every problem has an exact answer, a published answer, or one by an integrator that shares \
-                 no code with the contact. Error and tolerance are relative where the tolerance is marked \
-                 as relative."
+                "Every problem has an exact answer, a published answer, or an answer by an \
+                 integrator that shares no code with the contact model. Error and tolerance are \
+                 relative where the tolerance is marked as relative."
                     .into(),
-                "The order is that of the error when time step and contact duration are halved together, or \
-                 the step alone where the exact equations contain the springs."
+                "The order is the order of convergence of the error when time step and contact \
+                 duration are halved together, or when the time step alone is halved where the \
+                 exact equations contain the contact springs."
                     .into(),
             ],
             tone: if failed == 0 { Tone::Neutral } else { Tone::Invalid },

@@ -1,17 +1,17 @@
-//! A problem: the requested quantity, the exact answer, and the computation of ours.
+//! A problem: the requested quantity, the exact answer, and the computation that gives the program's answer.
 
 use barrelstack_dynamics::{ModelError, RunError, SettleError};
 
 /// The computational effort of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// For the test suite: softer contacts, wider brackets, smaller ensembles.
+    /// Effort for the test suite: softer contacts, wider brackets, smaller ensembles.
     Fast,
-    /// For the report: converged answers, with the order of convergence.
+    /// Effort for the report: converged answers, with the order of convergence.
     Full,
 }
 
-/// The allowed deviation of an answer from the exact one.
+/// The allowed deviation of an answer from the exact answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
     /// Relative to the exact answer.
@@ -21,7 +21,7 @@ pub enum Tolerance {
 }
 
 impl Tolerance {
-    /// Returns the error of an answer, relative or absolute like this tolerance.
+    /// Returns the error of an answer, relative or absolute in accordance with this tolerance.
     pub fn error(self, value: f64, exact: f64) -> f64 {
         match self {
             Self::Relative(_) => (value - exact).abs() / exact.abs(),
@@ -36,13 +36,13 @@ impl Tolerance {
         }
     }
 
-    /// Returns `true` if an answer is within the tolerance; NaN never is.
+    /// Returns `true` if an answer is within the tolerance; NaN is never within.
     pub fn admits(self, value: f64, exact: f64) -> bool {
         self.error(value, exact) <= self.limit()
     }
 }
 
-/// Our answer to a problem.
+/// The program's answer to a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// The answer, in the unit of the problem.
@@ -76,7 +76,7 @@ impl From<f64> for Outcome {
 /// Reasons why a problem has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// The bodies make no valid model.
+    /// The bodies do not form a valid model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The run failed numerically.
@@ -96,7 +96,7 @@ pub enum Failure {
     Absent(String),
 }
 
-/// Converts an error of another library to a failure.
+/// Converts any error to a failure.
 #[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
 pub fn absent(reason: impl ToString) -> Failure {
     Failure::Absent(reason.to_string())
@@ -115,15 +115,15 @@ pub struct Problem {
     pub source: String,
     /// The requested quantity.
     pub quantity: &'static str,
-    /// Its unit; empty for pure numbers.
+    /// Unit of the quantity; empty for pure numbers.
     pub unit: &'static str,
     /// The exact or published answer.
     pub exact: f64,
     /// Tolerance at full effort.
     pub tolerance: Tolerance,
-    /// Tolerance at fast effort, if it is coarser.
+    /// Tolerance at fast effort, if it differs from the tolerance at full effort.
     pub fast: Option<Tolerance>,
-    /// The computation.
+    /// The computation of the answer.
     pub run: Run,
 }
 
@@ -184,7 +184,7 @@ pub fn absolute(exact: f64, limit: f64) -> Answer {
 }
 
 impl Answer {
-    /// Returns the answer with another limit of the same kind for fast effort.
+    /// Returns the answer with a second limit, of the same kind, that applies at fast effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -224,7 +224,8 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// Adds a bisection between brackets at a fraction of the exact answer to either side of it (see [`border`]).
+    /// Adds a bisection between two brackets (see [`border`]). The brackets lie on both sides of the exact answer;
+    /// their distance from the answer is a fraction of the answer.
     pub fn at_border(
         self,
         share: f64,
@@ -236,7 +237,7 @@ impl Question {
     }
 }
 
-/// Evaluates the refinements 0, 1 and 2 at full effort, and only the coarsest, 0, at fast effort.
+/// Evaluates the refinements 0, 1 and 2 at full effort, and only the coarsest refinement, 0, at fast effort.
 ///
 /// # Errors
 /// If `answer` fails.

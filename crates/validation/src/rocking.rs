@@ -1,4 +1,5 @@
-//! A rocking block on penalty corners, and the damping with which it reproduces a restitution such as Housner's.
+//! A rocking block with penalty contact at its corners, and the damping with which the block reproduces a restitution
+//! such as Housner's.
 
 use std::ops::ControlFlow;
 
@@ -16,13 +17,13 @@ const MASS: f64 = 100.0;
 /// The contact law of the corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Corner {
-    /// Damped on approach only, the element of Candia et al. (2008).
+    /// Damping on approach only: the element of Candia et al. (2008).
     SpeedGap,
-    /// Damped in both directions, without tension.
+    /// Damping in both directions, without tension.
     KelvinVoigt,
 }
 
-/// A block on two stiff corners that cannot slide.
+/// A block that stands on two stiff corners and cannot slide.
 #[derive(Clone, Copy, Debug)]
 pub struct RockingBlock {
     /// Half-diagonal R (m).
@@ -31,9 +32,9 @@ pub struct RockingBlock {
     pub alpha: f64,
     /// Contact law of the corners.
     pub corner: Corner,
-    /// ω = √(k/m) (rad/s): the stiffness of a corner, as a frequency with the whole mass.
+    /// ω = √(k/m) (rad/s): the stiffness of a corner, expressed as the natural frequency of the whole mass on it.
     pub contact_frequency: f64,
-    /// ζ = c/(2√(km)): the damping of a corner, as a ratio with the whole mass.
+    /// ζ = c/(2√(km)): the damping of a corner, expressed as the damping ratio of the whole mass on it.
     pub damping_ratio: f64,
 }
 
@@ -61,7 +62,7 @@ impl RockingBlock {
         theory::rocking_rate(self.radius)
     }
 
-    /// Returns the rigid block of this size, with a restitution.
+    /// Returns the rigid block of the same size, with a given restitution.
     pub fn rigid(&self, restitution: f64) -> Rocker {
         Rocker { alpha: self.alpha, rate: self.rate(), restitution, slender: false }
     }
@@ -79,7 +80,8 @@ impl RockingBlock {
         MASS * self.contact_frequency * self.contact_frequency
     }
 
-    /// Creates the block at a rotation (rad, clockwise positive) on its loaded corners, at its static penetration.
+    /// Creates the block at a rotation (rad, clockwise positive); the corners that carry the block are at their static
+    /// penetration.
     ///
     /// # Errors
     /// If the dimensions do not make a valid body.
@@ -111,7 +113,7 @@ impl RockingBlock {
         Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
     }
 
-    /// Returns p times the time from a rotation of `share · α` to upright.
+    /// Returns `p` multiplied by the time that the block takes from a rotation of `share · α` to the upright position.
     ///
     /// # Errors
     /// If the block does not come down.
@@ -124,7 +126,7 @@ impl RockingBlock {
 
     /// Releases the block at a rotation of `share · α` and follows its impacts.
     ///
-    /// Returns for each impact the time (s) at which the block is upright, and the next peak rotation over α.
+    /// Returns, for each impact, the time (s) at which the block is upright and the next peak rotation divided by α.
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -188,7 +190,7 @@ impl RockingBlock {
     }
 
     /// Returns the block with the damping ratio that gives the target ratio of angular velocities at the first impact
-    /// from `φ = ½`; `None` if no damping ratio up to 12 does.
+    /// after a release at `φ = ½`; `None` if no damping ratio up to 12 gives this ratio.
     ///
     /// # Errors
     /// If a block does not rock.
@@ -248,7 +250,7 @@ impl RockingBlock {
         Ok(fell)
     }
 
-    /// Computes the outcome of the motion of the block on moving ground.
+    /// Returns the outcome of the motion of the block on moving ground.
     ///
     /// # Errors
     /// If the run fails numerically.

@@ -7,7 +7,7 @@ use barrelstack_dynamics::{Space, State, Still};
 use crate::Failure;
 use crate::scene::Scene;
 
-/// Returns the time (s) of the zero between two pairs of time and value, by linear interpolation.
+/// Returns the time (s) of the zero crossing between two pairs of time and value, by linear interpolation.
 pub fn crossing(before: (f64, f64), now: (f64, f64)) -> f64 {
     before.0 + before.1 / (before.1 - now.1) * (now.0 - before.0)
 }
@@ -18,7 +18,7 @@ pub fn crossings(values: &[(f64, f64)]) -> Vec<f64> {
     changes.map(|pair| crossing(pair[0], pair[1])).collect()
 }
 
-/// Returns the times (s) of the zero crossings of a quantity of a scene on ground at rest, up to a time (s).
+/// Runs a scene on ground at rest up to a time (s), and returns the times (s) of the zero crossings of a quantity.
 ///
 /// # Errors
 /// If the run fails numerically.
@@ -36,7 +36,7 @@ pub fn run_crossings<S: Space<Real = f64>>(
     Ok(crossings(&values))
 }
 
-/// Returns the mean interval (s) between successive instants; `None` if there are fewer than `least` instants.
+/// Returns the mean interval (s) between successive times; `None` if there are fewer than `least` times.
 pub fn mean_time(instants: &[f64], least: usize) -> Option<f64> {
     match instants {
         [first, .., last] if instants.len() >= least => {

@@ -5,12 +5,12 @@ use crate::space::{Linear, Space};
 
 /// Friction law of one node.
 ///
-/// The returned force has the sign of the slip; the contact loop applies it to the contactor with a minus.
+/// The returned force has the sign of the slip; the contact loop applies the opposite force to the contactor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionLaw<R = f64> {
     /// No friction.
     Frictionless,
-    /// Coulomb's dry friction with an elastic stick.
+    /// Coulomb friction with an elastic stick: a tangential spring that deforms before the contact slides.
     ///
     /// ```text
     /// spring  = k_t s            held within ± μ fₙ
@@ -23,13 +23,14 @@ pub enum FrictionLaw<R = f64> {
     /// static coefficient until the force exceeds the static limit, and then the kinetic coefficient until the slip
     /// reverses.
     Coulomb {
-        /// `μ_s` (1), at least the kinetic one.
+        /// `μ_s` (1), not smaller than the kinetic coefficient.
         static_coefficient: R,
         /// `μ_k` (1).
         kinetic_coefficient: R,
         /// `k_t` (N/m).
         tangential_stiffness: R,
-        /// `c_t` (N·s/m); without this damping a stopped body would vibrate on its stick without end.
+        /// `c_t` (N·s/m); without this damping, a body that has stopped sliding would vibrate on the tangential spring
+        /// indefinitely.
         tangential_damping: R,
     },
     /// Smoothed Coulomb friction: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
@@ -49,17 +50,17 @@ pub enum FrictionLaw<R = f64> {
 pub struct Stick<S: Space> {
     /// Elastic tangential displacement of the contactor relative to the target (m), in the inertial frame.
     pub displacement: S::Tangent,
-    /// Tangent plane of the displacement when the last step was accepted; it turns as the contact travels over a round
-    /// target.
+    /// Tangent plane that contained the displacement when the last step was accepted. The plane turns as the contact
+    /// moves over a round target.
     pub tangent_plane: S::TangentPlane,
     /// `true` if the node was slipping when the last step was accepted.
     pub slipping: <S::Real as Real>::Mask,
 }
 
-/// A friction force and its recoverable energy.
+/// A friction force, and the recoverable energy of its spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<S: Space> {
-    /// Force (N) along the slip; the opposite acts on the contactor.
+    /// Force (N) in the direction of the slip; the opposite force acts on the contactor.
     pub force: S::Tangent,
     /// Energy stored in the stick (J).
     pub energy: S::Real,
@@ -135,10 +136,9 @@ impl<S: Space> Stick<S> {
         Self { displacement, tangent_plane: to, ..self }
     }
 
-    /// Returns the stick memory after an accepted step: the displacement, limited by friction, and whether the node
-    /// slips.
-    ///
-    /// `self` has the displacement at the end of the step; `weight` is as in [`FrictionLaw::force`].
+    /// Returns the stick memory after an accepted step: the displacement, limited to the friction capacity, and whether
+    /// the node slips. `self` contains the displacement at the end of the step; `weight` is as in
+    /// [`FrictionLaw::force`].
     #[inline(always)]
     #[must_use]
     pub fn commit(

@@ -10,29 +10,29 @@ use crate::space::Space;
 pub use friction::{Friction, FrictionLaw, Stick};
 pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 
-/// Basis of the stiffness and damping of an interface.
+/// Basis of the stiffness and damping constants of an interface: per node, per length or per seat.
 ///
-/// With constants per node, refining the nodes of a boundary stiffens the interface, so the number of nodes is part
-/// of the physics (the paper states its constants per node). With constants per length, each node acts for its
-/// tributary length and refinement converges. With constants per seat, the touching nodes of a row share one set of
-/// constants, so their number affects the location of the force but not the stiffness.
+/// With constants per node, a boundary with more nodes makes the interface stiffer, so the number of nodes is part of
+/// the physics. The paper states constants per node. With constants per length, each node acts for its tributary length
+/// and refinement converges. With constants per seat, the touching nodes of a row share one set of constants, so their
+/// number affects the location of the force but not the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
-    /// Constants of one node (N/m, N·s/m).
+    /// Constants per node (N/m, N·s/m).
     Node,
-    /// Constants of one meter of boundary (N/m², N·s/m²).
+    /// Constants per meter of boundary (N/m², N·s/m²).
     Length,
-    /// Constants of one seat (N/m, N·s/m). A seat is a place where two bodies touch, or a whole row of nodes on one
+    /// Constants per seat (N/m, N·s/m). A seat is a place where two bodies touch, or a whole row of nodes on one
     /// surface.
     ///
-    /// The depth of a row is that of its deepest node, and its force is divided among its nodes in proportion to
-    /// their depths.
+    /// The depth of a row is the depth of its deepest node, and the force of the row is divided among the nodes in
+    /// proportion to their depths.
     Seat,
 }
 
 impl Basis {
-    /// Returns the factor of the constants for a node with a tributary length (m), or for a whole row of nodes on the
-    /// basis of a seat.
+    /// Returns the factor by which the constants are multiplied for a node with a tributary length (m) or, if the basis
+    /// is a seat, for a whole row of nodes.
     #[inline(always)]
     pub fn weight<R: Real>(self, tributary_length: R) -> R {
         match self {
@@ -41,7 +41,7 @@ impl Basis {
         }
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the basis in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Node => "node",
@@ -53,7 +53,7 @@ impl Basis {
 
 /// Rolling resistance: a moment that opposes the relative spin ω of two bodies.
 ///
-/// The moment is the normal force times a lever times `ω / √(ω² + ω₀²)`.
+/// The moment is the product of the normal force, a lever and `ω / √(ω² + ω₀²)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling<R = f64> {
     /// The lever (m).
@@ -69,7 +69,7 @@ pub struct Interface<S: Space> {
     pub name: String,
     /// Normal law: compressive force from penetration and its rate.
     pub normal: NormalLaw<S::Real>,
-    /// Second law beyond the stroke of the normal law; `None` for an unlimited stroke.
+    /// Additional law that acts beyond the stroke of the normal law; `None` for an unlimited stroke.
     pub stop: Option<Stop<S::Real>>,
     /// Rolling resistance, if any.
     pub rolling: Option<Rolling<S::Real>>,

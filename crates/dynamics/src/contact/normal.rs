@@ -2,8 +2,8 @@
 
 use crate::real::{Mask, Real};
 
-/// Law of the compressive force of one node with penetration δ (m) and penetration rate δ̇ (m/s, positive while
-/// approaching). No law ever pulls.
+/// Normal contact law: the compressive force on one node as a function of its penetration δ (m) and penetration rate δ̇
+/// (m/s, positive while approaching). The force is never tensile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NormalLaw<R = f64> {
     /// Linear spring in parallel with a damper that acts only while the penetration grows:
@@ -13,25 +13,24 @@ pub enum NormalLaw<R = f64> {
     /// fₙ = k δ         if δ̇ ≤ 0
     /// ```
     ///
-    /// The rebound is elastic, so all dissipation happens on approach
-    /// (Candia, de la Llera and Almazán 2008, eq. 2.6).
-    /// At touch-down the force jumps to `c δ̇`.
+    /// The rebound is elastic, so all dissipation happens on approach (Candia, de la Llera and Almazán 2008, eq. 2.6).
+    /// When contact begins, the force jumps to `c δ̇`.
     SpeedGap {
         /// `k` (N/m).
         stiffness: R,
         /// `c` (N·s/m).
         damping: R,
     },
-    /// Linear spring and damper in both directions, cut where it would pull:
-    /// `fₙ = max(0, k δ + c δ̇)`.
+    /// Linear spring and damper, both on approach and on separation; the force is zero where it would otherwise be
+    /// tensile: `fₙ = max(0, k δ + c δ̇)`.
     KelvinVoigt {
         /// `k` (N/m).
         stiffness: R,
         /// `c` (N·s/m).
         damping: R,
     },
-    /// `fₙ = max(0, k δⁿ (1 + d δ̇))`: the force starts and ends at zero
-    /// (Hunt and Crossley 1975).
+    /// `fₙ = max(0, k δⁿ (1 + d δ̇))`: the force is zero at the start and at the end of contact (Hunt and Crossley
+    /// 1975).
     HuntCrossley {
         /// `k` (N/mⁿ).
         stiffness: R,
@@ -40,21 +39,21 @@ pub enum NormalLaw<R = f64> {
         /// `n`.
         exponent: Exponent,
     },
-    /// An impact that returns a given share of its speed, for any mass and speed:
+    /// Law with a prescribed coefficient of restitution `e`, independent of the mass and, well above `v`, of the speed:
     ///
     /// ```text
     /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)
     /// ```
     ///
-    /// On approach the force is that of the spring, on separation e² times that, so the share e² of the energy is
-    /// returned. These are the loading and unloading branches of Walton and Braun (1986), joined without memory over
-    /// speeds of about `v`. At lower speeds the force is that of a spring and a damper, so bodies come to rest. The
-    /// spring stiffens as between round bodies (Hertz), so that a light body rests softly and a heavy one is stopped
-    /// within millimeters.
+    /// On approach the force is that of the spring. On separation the force is e² times that of the spring, so the
+    /// fraction e² of the energy is returned. These are the loading and unloading branches of Walton and Braun (1986),
+    /// with a smooth transition at penetration rates of about `v` that needs no memory. At lower speeds the force is
+    /// that of a spring and a damper, so bodies come to rest. The spring stiffens as between round bodies (Hertz), so
+    /// the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
     Rebound {
         /// `k` (N/m^1.5).
         stiffness: R,
-        /// `e`, speed after over speed before.
+        /// `e`: speed after the impact divided by speed before the impact.
         restitution: R,
         /// `v` (m/s).
         speed: R,
@@ -66,7 +65,7 @@ pub enum NormalLaw<R = f64> {
     },
 }
 
-/// End of the stroke of a soft law: beyond a depth (m) a second law acts as well, on the excess penetration.
+/// End of the stroke of a soft law. Beyond a penetration (m), a second law acts in addition, on the excess penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop<R = f64> {
     /// Penetration (m) beyond which the stop acts.
@@ -76,8 +75,8 @@ pub struct Stop<R = f64> {
 }
 
 impl<R: Real> Stop<R> {
-    /// Adds the force of the stop, in lanes that reach it, to the force of the soft law; `step` (s) is as in
-    /// [`NormalForce::within_step`].
+    /// Adds the force of the stop to the force of the soft law, in lanes whose penetration reaches the stop; `step` (s)
+    /// is as in [`NormalForce::within_step`].
     #[inline(always)]
     pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R, step: R) -> NormalForce<R> {
         let beyond = depth - self.depth;
@@ -97,39 +96,41 @@ impl<R: Real> Stop<R> {
 /// Exponent of an elastic force as a function of penetration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Exponent {
-    /// Proportional, `n = 1`.
+    /// Force proportional to the penetration, `n = 1`.
     Linear,
-    /// As between spheres, `n = 3/2`.
+    /// Force as between two spheres, `n = 3/2`.
     Hertzian,
 }
 
-/// A normal force and its recoverable part.
+/// A normal force, its recoverable part, and the stored energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalForce<R> {
     /// Compressive force (N), never negative.
     pub total: R,
-    /// The part that does not depend on the rate (N); the rest is dissipated.
+    /// Part of the force (N) that does not depend on the penetration rate; the work of the remaining part is
+    /// dissipated.
     pub elastic: R,
     /// Energy stored in the spring (J).
     pub energy: R,
 }
 
 impl<R: Real> NormalForce<R> {
-    /// Returns the effective force of a whole step (s) of central differences.
+    /// Returns the effective force over a whole time step (s) of the central difference method.
     ///
-    /// The method takes a force as constant for half a step before and after its instant. But a spring that engaged at
-    /// a rate δ̇ acted only for the time `δ/δ̇` of the half step before, and a spring that releases will act only for
-    /// the time `δ/|δ̇|` of the half step after, in both cases with half its force on average. Moreover, the force of a
-    /// stiffening spring exceeds its average over the displacement. With both corrections the elastic force is:
+    /// The method treats a force as constant from half a step before to half a step after the time at which it is
+    /// evaluated. But a spring that engaged at a rate δ̇ acted only for the time `δ/δ̇` of the preceding half step, and
+    /// a spring that releases will act only for the time `δ/|δ̇|` of the following half step. In both cases, its
+    /// average force during that time is half of its current force. Moreover, the force of a stiffening spring exceeds
+    /// its average over the displacement. With both corrections the elastic force is:
     ///
     /// ```text
     /// elastic · (½ + (½ − b) δ/w)   where δ < w = |δ̇| Δt
     /// elastic · (1 − b (w/δ)²)      elsewhere, with the bend b = n (n − 1) / 12 of elastic ∝ δⁿ
     /// ```
     ///
-    /// So a linear spring that engages at a steady rate absorbs exactly the energy that it stores, wherever in the step
-    /// it engages, and the energy error of a bounce decreases by orders of magnitude. A step of zero leaves the force
-    /// unchanged.
+    /// So a linear spring that engages at a steady rate absorbs exactly the energy that it stores, at whatever time
+    /// within the step it engages, and the energy error of a rebound decreases by orders of magnitude. With a step of
+    /// zero, the force is unchanged.
     #[inline(always)]
     #[must_use]
     pub fn within_step(self, bend: f64, depth: R, rate: R, step: R) -> Self {
@@ -205,7 +206,7 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
-    /// Returns the effective force of a whole step (s): see [`NormalForce::within_step`].
+    /// Returns the effective force over a whole time step (s): see [`NormalForce::within_step`].
     #[inline(always)]
     pub(crate) fn force_of_step(&self, depth: R, rate: R, step: R) -> NormalForce<R> {
         self.force(depth, rate).within_step(self.bend(), depth, rate, step)
@@ -224,7 +225,8 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
-    /// Returns the tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), without the rate.
+    /// Returns the tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), without the part that depends on the
+    /// penetration rate.
     #[inline(always)]
     pub fn tangent_stiffness(&self, depth: R) -> R {
         match *self {

@@ -1,7 +1,7 @@
-//! Restitution of a contact from its damping, and the inverse.
+//! Coefficient of restitution of a contact as a function of its damping, and the inverse function.
 //!
 //! For a mass `m` that strikes a node of stiffness `k` and damping `c` without gravity, ζ = c / (2 √(k m)) is the
-//! damping ratio and e the ratio of the speeds after and before.
+//! damping ratio, and the restitution e is the ratio of the speeds after and before the impact.
 
 use crate::math;
 
@@ -16,7 +16,7 @@ pub fn damping(stiffness: f64, damping_ratio: f64, mass: f64) -> f64 {
 }
 
 /// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`, with
-/// `arcosh` and `√(ζ² − 1)` above ζ = 1.
+/// `arcosh ζ` and `√(ζ² − 1)` instead for ζ > 1.
 pub fn speed_gap(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let exponent = if (zeta - 1.0).abs() < 1e-7 {
@@ -32,8 +32,9 @@ pub fn speed_gap(damping_ratio: f64) -> f64 {
 
 /// Returns the restitution of the Kelvin–Voigt law without tension at a damping ratio ζ ≥ 0.
 ///
-/// Contact ends when the force returns to zero, before the penetration does: with `ω_d t = 2 arccos ζ` for ζ < 1, `e
-/// = exp(−2 ζ arccos ζ / √(1 − ζ²))`, the square of the speed-gap law's; above ζ = 1 arccos becomes arcosh.
+/// Contact ends when the force returns to zero, before the penetration does. For ζ < 1 this is at `ω_d t = 2 arccos ζ`,
+/// so `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, the square of the restitution of the speed-gap law. For ζ > 1, arcosh
+/// replaces arccos.
 pub fn kelvin_voigt(damping_ratio: f64) -> f64 {
     let e = speed_gap(damping_ratio);
     e * e
@@ -51,7 +52,7 @@ pub fn kelvin_voigt_damping_ratio(restitution: f64) -> Option<f64> {
     invert(restitution, kelvin_voigt)
 }
 
-/// Solves `law(ζ) = e` by bisection; the laws decrease monotonically from 1.
+/// Solves `law(ζ) = e` by bisection; `law` decreases monotonically from 1 at ζ = 0.
 fn invert(restitution: f64, law: impl Fn(f64) -> f64) -> Option<f64> {
     if !(restitution > 0.0 && restitution <= 1.0) {
         return None;
@@ -77,7 +78,7 @@ fn invert(restitution: f64, law: impl Fn(f64) -> f64) -> Option<f64> {
 ///
 /// During the whole contact `u − ln(1 + u)`, with `u = d δ̇`, is a function of the penetration alone, so the speeds
 /// before and after satisfy `u₀ − ln(1 + u₀) = −e u₀ − ln(1 − e u₀)`. The restitution depends on the speed; this is a
-/// property of the law and not an error of the solution.
+/// property of the law, not a numerical error.
 pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     let before = dissipation * speed;
     if before <= 0.0 {
@@ -95,7 +96,7 @@ pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns `u − ln(1 + u)`, evaluated by its series for small `u`, where the difference would cancel.
+/// Returns `u − ln(1 + u)`, evaluated by a series for small `u`, where the subtraction would lose precision.
 fn excess(u: f64) -> f64 {
     if u.abs() < 1e-3 {
         u * u * (1.0 / 2.0 - u * (1.0 / 3.0 - u * (1.0 / 4.0 - u * (1.0 / 5.0 - u / 6.0))))

@@ -1,4 +1,4 @@
-//! Guides: a spring, a damper and stops along an axis of the body they are fixed to.
+//! Guides: a spring, a damper and stops that act along an axis of the body to which the guide is fixed.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -6,10 +6,10 @@ use crate::real::Real;
 use crate::space::{Linear, Space};
 use crate::state::State;
 
-/// A guide on its first body, along which a point of the second body moves.
+/// A guide that is fixed to its first body; a point of the second body moves along the guide.
 ///
-/// With the displacement `e` (m) of the point from its place at rest, along an axis that turns with the first body, the
-/// force is
+/// Let `e` (m) be the displacement of the point from its position at rest, along an axis that turns with the first
+/// body. The force is
 ///
 /// ```text
 /// f = k e + c ė                          everywhere
@@ -17,20 +17,20 @@ use crate::state::State;
 /// ```
 ///
 /// The force acts on both bodies at the point of the second body, so momentum is conserved. The guide releases the
-/// point permanently once the point is farther than `reach` (m) from the axis, or the force exceeds the strength.
+/// point permanently as soon as the point is farther than `reach` (m) from the axis, or the force exceeds the strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Axis: a unit vector in the frame of the first body.
+    /// Axis of the guide: a unit vector in the frame of the first body.
     pub axis: S::Vector,
-    /// Vector from the first point to the second at rest (m), in the frame of the first body.
+    /// Vector (m) from the first point to the second point at rest, in the frame of the first body.
     pub place: S::Vector,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
-    /// Displacement δ (m) to either side at which the point meets a stop; infinite without stops.
+    /// Displacement δ (m) to either side at which the point reaches a stop; infinite for a guide without stops.
     pub gap: S::Real,
     /// Stiffness kₛ of the stops (N/m).
     pub stop_stiffness: S::Real,
@@ -38,10 +38,11 @@ pub struct Guide<S: Space> {
     pub stop_damping: S::Real,
     /// Force (N) above which the guide breaks; infinite if it never breaks.
     pub strength: S::Real,
-    /// Distance (m) from the axis beyond which the guide releases the point; infinite if it never does.
+    /// Distance (m) from the axis beyond which the guide releases the point; infinite if the guide never releases the
+    /// point.
     pub reach: S::Real,
-    /// Direction in which the distance from the axis is not limited: a unit vector in the frame of the first body, or
-    /// zero for none.
+    /// Direction in which the distance from the axis is not limited: a unit vector in the frame of the first body. Zero
+    /// if the distance is limited in every direction.
     pub free: S::Vector,
 }
 
@@ -50,7 +51,7 @@ lanewise!(struct Guide<Planar<R>> {
 });
 
 impl<S: Space> Guide<S> {
-    /// Creates a guide with a spring and a damper only, whose points coincide at rest.
+    /// Creates a guide with a spring and a damper but without stops; its two points coincide at rest.
     pub fn spring(link: Link<S>, axis: S::Vector, stiffness: S::Real, damping: S::Real) -> Self {
         let (never, none) = (S::Real::splat(f64::INFINITY), S::Real::zero());
         Self {
@@ -68,8 +69,9 @@ impl<S: Space> Guide<S> {
         }
     }
 
-    /// Converts a fitted guide for a first body that turns about the axis: only the displacement along the axis counts,
-    /// and the guide holds the point up to `reach` beyond its current distance from the axis.
+    /// Adapts a fitted guide to a first body that turns about the axis. The rest position then fixes only the position
+    /// along the axis, and the guide releases the point when its distance from the axis exceeds the current distance by
+    /// more than `reach`.
     #[must_use]
     pub fn about_axis(self) -> Self {
         let along = self.axis * self.axis.dot(self.place);
@@ -77,7 +79,7 @@ impl<S: Space> Guide<S> {
         Self { place: along, reach: self.reach + away.dot(away).sqrt(), ..self }
     }
 
-    /// Adds the constant of the stops if the point can reach them.
+    /// Adds the constant of the stops to that of the guide, if the point can reach the stops.
     fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
         free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
     }

@@ -6,14 +6,14 @@ use crate::real::Real;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-/// Name of an element, and the points that it joins.
+/// Name of a force element, and the two points that the element joins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<S: Space> {
     /// Name in results.
     pub name: String,
     /// The joined bodies.
     pub bodies: [BodyId; 2],
-    /// Attachment points (m), each in the frame of its body.
+    /// Attachment points (m), each in the frame of the body to which it is fixed.
     pub points: [S::Vector; 2],
 }
 
@@ -22,11 +22,11 @@ lanewise!(struct Link<Planar<R>> { name, bodies, points });
 /// Geometry of a link at a state.
 pub(super) struct Line<S: Space> {
     bodies: [BodyId; 2],
-    /// Vectors (m) from the centers of mass to the points, in the inertial frame.
+    /// Vectors (m) from the centers of mass of the bodies to their attachment points, in the inertial frame.
     pub(super) arms: [S::Vector; 2],
-    /// Vector (m) from the first point to the second.
+    /// Vector (m) from the first attachment point to the second.
     apart: S::Vector,
-    /// Distance (m) of the points.
+    /// Distance (m) between the points.
     pub(super) distance: S::Real,
 }
 
@@ -42,7 +42,7 @@ impl<S: Space> Link<S> {
         }
     }
 
-    /// Returns the distance (m) of the points at a state.
+    /// Returns the distance (m) between the points at a state.
     pub fn span(&self, state: &State<S>) -> S::Real {
         let [first, second] = [0, 1].map(|at| {
             let pose = state.poses[self.bodies[at]];
@@ -64,7 +64,8 @@ impl<S: Space> Link<S> {
         Line { bodies: self.bodies, arms, apart, distance: apart.dot(apart).sqrt() }
     }
 
-    /// Returns the line with both ends at the second point, which moves with either body.
+    /// Returns a line of zero length whose ends both lie at the second point: one end moves with the first body, the
+    /// other end with the second.
     #[inline(always)]
     pub(super) fn at_second(&self, state: &State<S>, rotations: &[S::Rotation]) -> Line<S> {
         let [first, second] = self.bodies;
@@ -100,8 +101,8 @@ impl<S: Space> Line<S> {
         self.velocity(state).dot(along)
     }
 
-    /// Returns, for each body, the wrench of a tensile force (N) along the line, and the part of it that is due to a
-    /// damper with the force `damped` (N).
+    /// Returns, for each body, the wrench of a tensile force (N) along the line, and the part of this wrench that is
+    /// due to a damper whose force is `damped` (N).
     #[inline(always)]
     pub(super) fn pull(
         &self,

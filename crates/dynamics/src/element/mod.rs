@@ -1,8 +1,8 @@
 //! Force elements: forces between points of two bodies, without contact.
 //!
 //! Each kind of element has a file of its own, which defines its forces and its failure at a state ([`Load`]). This
-//! module has what all kinds share: the memory of plastic elongation and failure, the contributions to forces and
-//! energy balance, and the support of lanes.
+//! module contains the parts common to all kinds: the memory of plastic elongation and failure, the contributions to
+//! the forces and to the energy balance, and the support for lanes.
 
 mod guide;
 mod link;
@@ -20,12 +20,12 @@ pub use link::Link;
 pub use rod::Rod;
 pub use strap::Strap;
 
-/// Memory of an element, which only accepted steps change.
+/// Memory of an element; changed only when a step is accepted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<S: Space> {
     /// Plastic elongation (m).
     pub plastic: S::Real,
-    /// `true` once the element is broken; from then on it exerts no force.
+    /// `true` if the element is broken. A broken element exerts no force.
     pub broken: <S::Real as Real>::Mask,
 }
 
@@ -34,13 +34,13 @@ lanewise!(struct Memory<Planar<R>> { plastic } masks { broken });
 /// Force and energy of an element at a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load<R: Real> {
-    /// Force (N) along the element, positive where it pulls its bodies together.
+    /// Force (N) along the element, positive in tension.
     pub force: R,
-    /// Energy stored in the element (J); lost when it breaks.
+    /// Energy stored in the element (J), which is lost when the element breaks.
     pub energy: R,
-    /// Part of the force (N) that is due to the spring and stores the energy.
+    /// Part of the force (N) that is due to the spring, which stores the energy.
     pub elastic: R,
-    /// Plastic elongation (m) once the state is accepted.
+    /// Plastic elongation (m) of the element if the state is accepted.
     pub plastic: R,
     /// `true` if the element fails at this state.
     pub breaks: R::Mask,
@@ -49,11 +49,11 @@ pub struct Load<R: Real> {
 /// Load and wrenches of an element at a state.
 pub(crate) struct Action<S: Space> {
     pub(crate) load: Load<S::Real>,
-    /// For each body, the total wrench about its center of mass, and the part of it that is due to dampers.
+    /// For each body, the total wrench about its center of mass, and the part of this wrench that is due to dampers.
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
-/// Declares the kinds of elements, each a struct with a `link` and the functions called here.
+/// Declares the kinds of elements. Each kind is a struct with a field `link` and the functions that are called here.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident),*) => {
         /// A force element.
@@ -76,27 +76,28 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => &element.link),* }
             }
 
-            /// Returns the largest stiffness (N/m) between the points.
+            /// Returns the largest stiffness (N/m) of the element between its two points.
             pub fn stiffness(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.stiffness()),* }
             }
 
-            /// Returns the largest damping (N·s/m) between the points.
+            /// Returns the largest damping (N·s/m) of the element between its two points.
             pub fn damping(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
 
-            /// Sets the natural length to the distance of the points at a state, plus an excess (m).
+            /// Sets the unloaded length to the distance between the points at a state, plus an excess (m).
             pub fn fit(&mut self, state: &State<S>, give: S::Real) {
                 match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }
 
-            /// Returns what is wrong with the constants, if anything.
+            /// Returns a description of the error in the constants, if there is one.
             fn flaw(&self) -> Option<&'static str> {
                 match self { $(Self::$kind(element) => element.flaw()),* }
             }
 
-            /// Returns load and wrenches at a state; zero in lanes where the element is broken.
+            /// Returns the load and the wrenches of the element at a state; they are zero in lanes where the element is
+            /// broken.
             #[inline(always)]
             pub(crate) fn act(
                 &self,
@@ -113,14 +114,15 @@ macro_rules! kinds {
 kinds!(
     /// A strap, which acts in tension only and may yield.
     Strap,
-    /// A rod, which keeps two points at a distance.
+    /// A rod, which holds two points at a given distance.
     Rod,
     /// A guide: a spring, a damper and stops along an axis of a body.
     Guide
 );
 
 impl<S: Space> Element<S> {
-    /// Returns what is wrong with the element in a model with a number of bodies, if anything.
+    /// Returns a description of the error in the element, if there is one; `bodies` is the number of bodies of the
+    /// model.
     pub(crate) fn problem(&self, bodies: usize) -> Option<&'static str> {
         self.link().flaw(bodies).or_else(|| self.flaw())
     }
@@ -146,7 +148,7 @@ impl<S: Space> Element<S> {
     }
 }
 
-/// Returns `true` if a number is valid in every lane.
+/// Returns `true` if `sound` accepts the number in every lane.
 fn all<R: Real>(number: R, sound: fn(f64) -> bool) -> bool {
     (0..R::LANES).all(|lane| sound(number.lane(lane)))
 }

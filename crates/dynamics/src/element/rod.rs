@@ -1,4 +1,4 @@
-//! Rods, which keep two points at a distance, in tension and compression.
+//! Rods, which hold two points at a given distance and act in tension and compression.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -8,14 +8,14 @@ use crate::state::State;
 
 /// A rod that is hinged to a point of one body and to a point of another.
 ///
-/// The force along the rod is `f = k (d − l) + c ḋ`, with the distance `d` (m) of the points and the length `l` of the
-/// rod. Across the rod a damper acts on the velocity of the second point relative to the first body, which is the
-/// damping of a pendulum.
+/// The force along the rod is `f = k (d − l) + c ḋ`, with the distance `d` (m) between the points and the length `l` of
+/// the rod. A second damper acts across the rod, on the velocity of the second point relative to the first body; it
+/// models the damping of a pendulum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rod<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Distance of the points (m) at which the rod is unloaded.
+    /// Distance (m) between the points at which the rod is unloaded.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,

@@ -8,21 +8,21 @@ use crate::state::State;
 
 /// A strap between a point of one body and a point of another.
 ///
-/// Its tension is `T = max(0, k e + c ė)` while its elongation `e` (m), the distance of the two points less `length`,
-/// is positive, and zero while it is slack. If the force of the spring would exceed the yield force, the strap
-/// elongates plastically until the two are equal; only the elastic elongation causes tension. The strap has no mass,
-/// and touches nothing between its ends.
+/// Its tension is `T = max(0, k e + c ė)` while its elongation `e` (m), the distance between the two points less
+/// `length`, is positive, and zero while it is slack. If the spring force would exceed the yield force, the strap
+/// elongates plastically until the spring force equals the yield force; only the elastic elongation causes tension. The
+/// strap has no mass, and touches nothing between its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strap<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Distance of the points (m) beyond which the strap is taut.
+    /// Distance (m) between the points beyond which the strap is taut.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
-    /// Force (N) of the spring at which the strap yields; infinite if it never yields.
+    /// Spring force (N) at which the strap yields; infinite if it never yields.
     pub yields_at: S::Real,
     /// Tension (N) above which the strap tears; infinite if it never tears.
     pub strength: S::Real,

@@ -14,7 +14,7 @@ use crate::state::State;
 
 use press::{PairKinematics, touch};
 
-/// One contact element that touches.
+/// A contact element that touches.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<S: Space> {
     /// Index of the element in [`ContactElements`].
@@ -28,7 +28,7 @@ pub struct Contact<S: Space> {
     /// Point (m) at which the force acts on both bodies, in the frame of the target's surface: the companion point of a
     /// fixed node, or the middle of the overlap.
     pub point: S::Vector,
-    /// Unit normal in the same frame, out of the target.
+    /// Unit normal that points out of the target, in the same frame.
     pub normal: S::Vector,
     /// Penetration (m), never negative.
     pub penetration: S::Real,
@@ -38,7 +38,7 @@ pub struct Contact<S: Space> {
     pub normal_force: S::Real,
     /// Tangential velocity of the contactor relative to the target (m/s).
     pub slip_rate: S::Tangent,
-    /// Friction force (N) along the slip; the opposite acts on the contactor.
+    /// Friction force (N) in the direction of the slip; the opposite force acts on the contactor.
     pub friction_force: S::Tangent,
 }
 
@@ -53,12 +53,12 @@ pub struct ContactTotals<R> {
 
 /// Dissipative forces on one body, with their moments about its center of mass.
 ///
-/// The energy ledger multiplies them by the motion of the body.
+/// The energy ledger multiplies these forces by the displacement of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
     /// Dampers of contacts and elements.
     pub damped: Wrench<S>,
-    /// Friction, sticks included.
+    /// Friction, including the damping of sticks.
     pub friction: Wrench<S>,
 }
 
@@ -72,8 +72,8 @@ impl<S: Space> Default for Losses<S> {
 
 /// Total contact force of one pair.
 ///
-/// Where two corners share one contact, the total includes a force along the side, which closes the energy balance as
-/// the shares change. So the total may differ from the sum of the contacts.
+/// Where two corners share one contact, the total includes an additional force along the side, which closes the energy
+/// balance as the shares of the corners change. So the total may differ from the sum of the contact forces.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
     /// Index of the pair in the model.
@@ -89,12 +89,12 @@ pub struct PairForce<S: Space> {
 /// Working memory: data that can be recomputed from a state, and may be dropped at any time.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Space> {
-    /// Contacts of the last evaluation, in the order of their elements, without the force along a side of
-    /// [`PairForce`]; empty unless [`Scratch::keeps_contacts`].
+    /// Contacts of the last evaluation, in the order of their elements; empty unless [`Scratch::keeps_contacts`]. The
+    /// contacts do not include the additional force along a side; see [`PairForce`].
     pub contacts: Vec<Contact<S>>,
-    /// `true` to store `contacts`, which observers of contacts need, but the computation of forces does not.
+    /// `true` to store `contacts`. Observers of contacts need them; the computation of forces does not.
     pub keeps_contacts: bool,
-    /// Total forces of every touching pair, in the order of the pairs.
+    /// Total contact force of every touching pair, in the order of the pairs.
     pub pair_forces: Vec<PairForce<S>>,
     /// Total energies of the contacts.
     pub totals: ContactTotals<S::Real>,
@@ -104,32 +104,34 @@ pub struct Scratch<S: Space> {
     pub wrenches: Vec<Wrench<S>>,
     /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,
-    /// Viscous damping forces on every body; empty if no body has any.
+    /// Viscous damping force on every body; empty if no body has viscous damping.
     pub viscous: Vec<Wrench<S>>,
-    /// Acceleration of every body due to forces and moments; zero for prescribed ones.
+    /// Acceleration of every body due to forces and moments; zero for prescribed bodies.
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Rate of every stick (m/s): its slip rate, and its rotation with the bodies; zero without contact.
+    /// Rate of change (m/s) of every stick displacement: the slip rate, plus the effect of the rotation of the bodies
+    /// on the stick; zero without contact.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
     /// Number of contact elements tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Lanes that need substepping: within [`Scratch::lookahead`] some contact is predicted to exceed
-    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) at its current speed.
+    /// Lanes that need substepping: at its current speed, some contact is predicted to exceed
+    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) within [`Scratch::lookahead`].
     pub(crate) needs_substeps: <S::Real as Real>::Mask,
-    /// Lanes in which such an impact is [hard](crate::model::Fast::hard).
+    /// Lanes in which a predicted impact is [hard](crate::model::Fast::hard).
     pub(crate) is_hard: <S::Real as Real>::Mask,
-    /// Time (s) for which impacts are predicted; zero where steps are never divided.
+    /// Time (s) over which impacts are predicted; zero in lanes whose steps are never divided.
     pub(crate) lookahead: S::Real,
-    /// Relative kinematics of the last pair, reused for further node sets of its contactor at the same surface.
+    /// Relative kinematics of the last pair, reused for other node sets of the same contactor at the same surface.
     kinematics: Option<PairKinematics<S>>,
-    /// Accelerations at the start of the step, for methods with a correction.
+    /// Accelerations at the start of the step, for methods that correct their predictions.
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates at the start of the step.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// Normal forces, and the data that sticks need once the step is accepted, of all touching elements in order.
+    /// All touching elements, in order, with their normal forces and the data that their sticks need when the step is
+    /// accepted.
     pub pressed: Vec<Pressed<S>>,
     /// Groups of contact elements that are tested in the current evaluation.
     awake: Vec<usize>,
@@ -143,15 +145,15 @@ pub struct Pressed<S: Space> {
     pub pair: usize,
     /// Index of the node in the contactor's node set.
     pub node: u32,
-    /// The lanes in which it touches.
+    /// The lanes in which the element touches.
     pub touching: <S::Real as Real>::Mask,
     /// Point (m) at which the force acts, in the frame of the target's surface.
     pub point: S::Vector,
-    /// Tangent plane, which the stick stores with its displacement.
+    /// Tangent plane, which is stored in the stick together with the displacement.
     tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero in lanes without contact.
     pub normal_force: S::Real,
-    /// Factor of the constants of the laws.
+    /// Factor by which the constants of the laws are multiplied.
     pub weight: S::Real,
 }
 
@@ -191,7 +193,8 @@ impl<S: Space> Scratch<S> {
         self.pressed.len()
     }
 
-    /// Updates the element numbers to a new list; `origins` has the index of every new element in the old list.
+    /// Renumbers the elements for a new list; `origins` contains, for every element of the new list, its index in the
+    /// old list.
     ///
     /// No contact is lost, since touching elements are within the margin of every list.
     pub(crate) fn renumber(&mut self, origins: &[Option<usize>]) {
@@ -215,8 +218,8 @@ pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scra
     evaluate_within(model, state, S::Real::zero(), scratch);
 }
 
-/// Evaluates as [`evaluate`], with the effective forces of a whole step (s), for an integrator that takes them as
-/// constant for half a step before and after
+/// Evaluates as [`evaluate`] does, but with the effective forces over a whole time step (s), for an integrator that
+/// treats forces as constant for half a step before and after their evaluation
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
 pub(crate) fn evaluate_within<S: Space>(
     model: &Model<S>,
@@ -257,7 +260,7 @@ fn wipe<T: Default>(all: &mut [T]) {
 
 /// Collects the groups of elements that may touch in the current step, or whose impacts are to be predicted.
 ///
-/// Most groups need no test, so all are filtered before any force is computed.
+/// Most groups need no test, so the groups are filtered before any force is computed.
 #[inline(always)]
 fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut Vec<usize>) {
     awake.clear();
@@ -307,7 +310,8 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.evaluations += 1;
 }
 
-/// Solves Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
+/// Computes the acceleration of every free body from contact forces, element forces, gravity and viscous damping (eq.
+/// 2.8).
 #[inline(always)]
 fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     for (i, body) in model.inert.iter().enumerate() {
@@ -344,8 +348,8 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
     );
 }
 
-/// Accepts the state as [`commit`] does, with corrected stick displacements: `corrected` returns the displacement (m)
-/// to accept from an element and its displacement (m).
+/// Accepts the state as [`commit`] does, with corrected stick displacements: `corrected` maps the index of an element
+/// and its stick displacement (m) to the displacement (m) that is accepted.
 pub(crate) fn commit_corrected<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -447,7 +451,7 @@ pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: us
     }
 }
 
-/// Returns the rotation from the frame of the target's surface of a contact to the inertial frame.
+/// Returns, for a contact, the rotation from the frame of the target's surface to the inertial frame.
 #[inline(always)]
 pub(crate) fn frame_of<S: Space>(
     model: &Model<S>,
@@ -459,7 +463,8 @@ pub(crate) fn frame_of<S: Space>(
     S::compose(scratch.rotations[pair.target], placed.rotation)
 }
 
-/// Returns the force (N) of a contact on its contactor and its point of action (m), in the inertial frame.
+/// Returns the force (N) of a contact on its contactor and the point (m) at which the force acts, in the inertial
+/// frame.
 pub fn contact_force<S: Space>(
     model: &Model<S>,
     state: &State<S>,

@@ -23,8 +23,8 @@ use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// In lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact; single
-/// numbers would gain nothing.
+/// For bundles of lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact.
+/// For single numbers, such a loop would not be faster.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -86,7 +86,7 @@ struct Laws<R> {
     friction: FrictionLaw<R>,
 }
 
-/// Adds the contacts of one pair for its laws.
+/// Adds the contacts of one pair, evaluated with the given laws.
 #[inline(always)]
 fn touch_by<S: Space>(
     pair: &ContactPair,
@@ -179,35 +179,37 @@ fn leads<S: Space>(model: &Model<S>, pair: &ContactPair) -> <S::Real as Real>::M
 
 /// Accumulator for the nodes of a pair that press into a surface.
 struct Press<'a, S: Space, L> {
-    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; `None` if
-    /// infinite.
+    /// Copy of [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) for the interface; `None`
+    /// if it is infinite.
     whole_step_depth: Option<S::Real>,
-    /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
+    /// Copy of [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
     resting_allowance: S::Real,
-    /// [`Substepping::foreseen_gap`](crate::model::Substepping::foreseen_gap).
+    /// Copy of [`Substepping::foreseen_gap`](crate::model::Substepping::foreseen_gap).
     foreseen_gap: S::Real,
-    /// [`Substepping::fast`](crate::model::Substepping::fast).
+    /// Copy of [`Substepping::fast`](crate::model::Substepping::fast).
     fast: Option<Fast<S::Real>>,
-    /// [`Scratch::lookahead`].
+    /// Copy of [`Scratch::lookahead`].
     lookahead: S::Real,
-    /// [`Scratch::needs_substeps`].
+    /// Accumulates [`Scratch::needs_substeps`].
     needs_substeps: <S::Real as Real>::Mask,
-    /// [`Scratch::is_hard`].
+    /// Accumulates [`Scratch::is_hard`].
     is_hard: <S::Real as Real>::Mask,
     /// Rolling resistance of the pair, if any.
     rolling: Option<RollingPair<S::Real>>,
     stop: Option<Stop<S::Real>>,
     /// Contact filter of the pair; `None` if all contacts count.
     counted: Option<AtFace<S>>,
-    /// Called once per contact, so that the compiler can specialize the loop for the laws where they are known.
+    /// Returns the laws of the pair. It is called once per contact, so that the compiler can specialize the loop for
+    /// laws that are known at compile time.
     laws: L,
-    /// Step (s) of the effective forces.
+    /// Time step (s) over which the effective forces are taken.
     step: S::Real,
     frame: &'a PairFrame<S>,
-    /// Kinematics of the pair: computed before the first node, to avoid a test at every node.
+    /// Relative kinematics of the pair, computed before the first node; computing them on demand would need a test at
+    /// every node.
     meeting: Meeting<'a, S>,
-    /// Lanes in which this pair, and not the pair with exchanged bodies, counts a contact of two round pieces: the
-    /// contactor is the heavier body or, of two equal ones, the first.
+    /// Lanes in which this pair, and not the pair with exchanged bodies, counts a contact of two round pieces. In these
+    /// lanes the contactor is the heavier body or, if both are equally heavy, the first body.
     leads: <S::Real as Real>::Mask,
     pair: usize,
     elements: &'a ContactElements<S>,
@@ -218,7 +220,7 @@ struct Press<'a, S: Space, L> {
     contacts: Option<&'a mut Vec<Contact<S>>>,
 }
 
-/// A contact is at rest if its depth changes by less than this share of
+/// A contact counts as at rest if its depth changes by less than this share of
 /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance) within [`Scratch::lookahead`].
 const RESTING_SHARE: f64 = 0.01;
 
@@ -301,8 +303,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Requests substeps in lanes where a node at `node` (m) is predicted to exceed the depth that whole time steps
-    /// resolve.
+    /// Requests substeps in lanes where the penetration of a node at `node` (m) is predicted to exceed the penetration
+    /// that whole time steps resolve.
     #[inline(always)]
     fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(whole_step_depth) = self.whole_step_depth else { return };
@@ -322,7 +324,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.needs_substeps = self.needs_substeps | (near & deep);
     }
 
-    /// Adds the moment of rolling resistance under a normal force (N).
+    /// Adds the moment of the rolling resistance that is due to a normal force (N).
     #[inline(always)]
     fn resist_rolling(&mut self, normal_force: S::Real) {
         let Some(rolling) = &self.rolling else { return };
@@ -334,16 +336,17 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the forces of a node at `node` (m, in the frame of the target's surface), which penetrates in at least one
     /// lane.
     ///
-    /// Returns the energy (J) that the spring of the node would store at a share of 1.
+    /// Returns the energy (J) that the spring of the node would store if its share were 1.
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
         self.press(element, node, gap, share, None)
     }
 
-    /// Adds the forces of a node at `node` (m) whose gap the contact filter accepts.
+    /// Adds the forces of a node at `node` (m) whose contact the filter accepts.
     ///
-    /// The laws are evaluated at the depth `shared` (m) of a row of nodes, or at the depth of the node itself.
+    /// The laws are evaluated at the depth `shared` (m) of the row of nodes, if given, and otherwise at the depth of
+    /// the node itself.
     #[inline(always)]
     fn press(
         &mut self,
@@ -394,10 +397,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Returns the friction force (N) and the tangent plane of an element under a normal force (N) with a weight; adds
-    /// the energy and the rate of its stick.
+    /// Returns the friction force (N) and the tangent plane of an element, given its normal force (N) and weight. Also
+    /// stores the energy and the rate of its stick.
     ///
-    /// Sticks are kept in the inertial frame, which favors neither body.
+    /// Sticks are stored in the inertial frame, so both bodies are treated alike.
     #[inline(always)]
     fn friction(
         &mut self,
@@ -419,8 +422,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Returns the node (m) of a round piece about `center`, placed so that the force acts midway between the boundaries
-/// and exchanging the bodies changes nothing.
+/// Returns the node (m) of a round piece about `center`, placed so that the force acts midway between the two
+/// boundaries. So the result does not change if the bodies are exchanged.
 #[inline(always)]
 fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vector {
     center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))
@@ -428,14 +431,15 @@ fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vecto
 
 /// Rolling resistance of the contacts of a pair.
 struct RollingPair<R> {
-    /// [`Rolling::lever`].
+    /// Copy of [`Rolling::lever`].
     lever: R,
-    /// `√(ω² + ω₀²)` (rad/s), by which the spin is divided.
+    /// `√(ω² + ω₀²)` (rad/s): the divisor of the spin in the rolling resistance.
     scale: R,
 }
 
 impl<R: Real> RollingPair<R> {
-    /// Creates the resistance at a relative spin; called only for pairs that need it, since it takes a square root.
+    /// Creates the rolling resistance at a relative spin. Called only for pairs with rolling resistance, since it
+    /// computes a square root.
     #[inline(always)]
     fn new(rolling: Rolling<R>, spin: impl Linear<R>) -> Self {
         let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
@@ -448,7 +452,7 @@ impl<R: Real> RollingPair<R> {
 #[derive(Clone, Copy, Default)]
 struct PairWrench<S: Space> {
     normal: Wrench<S>,
-    /// The part of the normal forces due to dampers.
+    /// The part of the normal forces that is due to dampers.
     damped: Wrench<S>,
     friction: Wrench<S>,
 }

@@ -1,8 +1,8 @@
 //! Time integration: from one accepted state to the next.
 //!
 //! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
-//! there. Sticks are advanced by their rates like every other coordinate; their memory is committed only with the
-//! accepted state.
+//! there. Stick displacements are advanced by their rates like every other coordinate; the stick memory is committed
+//! only when a state is accepted.
 
 mod runge_kutta;
 mod verlet;
@@ -48,13 +48,13 @@ pub enum Method {
     RungeKutta4,
     /// Bogacki–Shampine 3(2) with step control: three evaluations per step.
     BogackiShampine {
-        /// Largest local error (m) of a position, and of a velocity times the step.
+        /// Largest local error (m) of a position, and of a velocity multiplied by the step.
         tolerance: f64,
     },
 }
 
 impl Method {
-    /// Returns the name used in files and reports.
+    /// Returns the name of the method in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::SemiImplicitEuler => "semi-implicit-euler",
@@ -70,7 +70,7 @@ impl Method {
     }
 }
 
-/// Advances states by an integration method; contains only working memory.
+/// Advances states by an integration method. Apart from the method, it contains only working memory.
 #[derive(Debug)]
 pub struct Integrator<S: Space> {
     method: Method,
@@ -96,7 +96,8 @@ impl<S: Space> Integrator<S> {
         evaluate(model, state, scratch);
     }
 
-    /// Advances `state` to the time `until` (s) in one step, or by less if an adaptive method requires it.
+    /// Advances `state` by one step: to the time `until` (s), or to an earlier time if an adaptive method requires a
+    /// shorter step.
     ///
     /// Returns the step (s) to try next.
     pub fn step(
@@ -135,8 +136,8 @@ impl<S: Space> Integrator<S> {
 
 /// Updates the element list; if it changed, renumbers the elements in `scratch`.
 ///
-/// The forces in `scratch` are kept. Evaluating them again, with corrected velocities and committed sticks, would
-/// change them, so the list would affect more than speed.
+/// The forces in `scratch` are kept. If the forces were evaluated again, with corrected velocities and committed
+/// sticks, they would change, and so the list would affect the results and not only the speed.
 fn refresh<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

@@ -1,4 +1,4 @@
-//! Explicit Runge–Kutta methods: their tableaus, and one stepper for all of them.
+//! Explicit Runge–Kutta methods: their tableaus, and one stepper for all tableaus.
 
 use super::{Drive, accept, free, place_prescribed};
 use crate::contact::Stick;
@@ -13,11 +13,11 @@ use crate::state::State;
 pub(super) struct Tableau {
     /// Times of the stages as fractions of the step; the first is zero.
     times: &'static [f64],
-    /// Weights of the earlier stages in a stage, row by row from the second stage.
+    /// Row by row, from the second stage on: weights of the earlier stages in this stage.
     rows: &'static [&'static [f64]],
     /// Weights of the stages in the step.
     weights: &'static [f64],
-    /// Weights of the embedded result, with the new state as one more stage.
+    /// Weights of the stages in the embedded result; the rates at the new state count as one additional stage.
     embedded: Option<&'static [f64]>,
 }
 
@@ -29,7 +29,7 @@ pub(super) static CLASSICAL: Tableau = Tableau {
     embedded: None,
 };
 
-/// Third order with an embedded second order (Bogacki and Shampine 1989).
+/// The third-order method with an embedded second-order result (Bogacki and Shampine 1989).
 pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
     times: &[0.0, 0.5, 0.75],
     rows: &[&[0.5], &[0.0, 0.75]],
@@ -56,7 +56,7 @@ pub(super) struct Stages<S: Space> {
     /// Velocity of every body, and its [`Space::momentum`].
     momenta: Vec<Twist<S>>,
     sticks: Vec<Stick<S>>,
-    /// Rotation vector of every body from the start to the current stage.
+    /// Rotation vector of every body from the start of the step to the current stage.
     turned: Vec<S::Spin>,
 }
 
@@ -88,7 +88,7 @@ impl<S: Space> Stages<S> {
         accept(model, state, scratch);
     }
 
-    /// Takes one step that is as long as the tolerance allows, and ends at `until` at the latest.
+    /// Takes one step that is as long as the tolerance allows and does not extend beyond `until` (s).
     ///
     /// Returns the step (s) to try next. All lanes take the shortest step that any of them requires.
     #[expect(clippy::too_many_arguments, reason = "the method, its tolerance, and what it acts on")]
@@ -193,7 +193,8 @@ impl<S: Space> Stages<S> {
         self.rates.push(rates);
     }
 
-    /// Returns the rates of a body at a stage: those of position and rotation, and those of velocity and momentum.
+    /// Returns, for a body at a stage, the rates of its position and rotation, and the rates of its velocity and
+    /// momentum.
     fn rates_of(
         &self,
         model: &Model<S>,
@@ -206,7 +207,8 @@ impl<S: Space> Stages<S> {
         (velocity, momentum(model, scratch, body, scratch.accelerations[body]))
     }
 
-    /// Sets the state to the start plus a weighted sum of the rates.
+    /// Sets the state to the initial state of the step plus the weighted sum of the rates multiplied by the step `dt`
+    /// (s).
     fn combine(&mut self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: S::Real) {
         for i in free(model) {
             let mut velocity = Twist::default();
@@ -229,8 +231,8 @@ impl<S: Space> Stages<S> {
         }
     }
 
-    /// Returns the largest difference (m) between the result of a step and its embedded result; velocities are
-    /// multiplied by the step.
+    /// Returns the largest difference (m) between the result of a step and its embedded result; differences of
+    /// velocities are multiplied by the step (s).
     fn error(
         &self,
         tableau: &Tableau,
@@ -275,8 +277,8 @@ impl<S: Space> Stages<S> {
     }
 }
 
-/// Replaces the spin of a twist by its [`Space::momentum`]. Methods add momenta, since a spin may change even without a
-/// moment.
+/// Replaces the spin of a twist by its [`Space::momentum`]. The methods add momenta instead of spins, since a spin may
+/// change even without a moment.
 fn momentum<S: Space>(
     model: &Model<S>,
     scratch: &Scratch<S>,

@@ -11,8 +11,8 @@ use crate::state::State;
 /// velocity.
 ///
 /// The new slip rates are known only after the evaluation, so sticks are predicted with the old rates and then
-/// corrected. A stick advanced by old rates alone would gain energy in every step, by a fraction of ω² dt² for a
-/// tangential frequency ω.
+/// corrected. If the sticks were advanced by the old rates alone, their energy would grow in every step, by a fraction
+/// of ω² dt² for a tangential angular frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -37,8 +37,9 @@ pub(super) fn semi_implicit_euler<S: Space>(
 /// Takes a step of velocity Verlet: half a kick, a drift without forces ([`Space::coast`]), and half a kick with the
 /// forces at the new position.
 ///
-/// Forces that depend on the velocity use a prediction from the old acceleration, which is corrected afterwards; sticks
-/// likewise use the old slip rate. Springs that engage or release within the step act for a part of the step only
+/// Forces that depend on the velocity use a velocity predicted with the old acceleration, which is corrected
+/// afterwards. Sticks are likewise predicted with the old slip rate and then corrected. Springs that engage or release
+/// within the step act for a part of the step only
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)). Prediction errors are of second order and
 /// do not accumulate, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
@@ -85,7 +86,7 @@ fn predict<S: Space>(
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
 }
 
-/// Replaces half of the old accelerations by the new ones.
+/// Corrects the velocities: replaces the old acceleration by the new one for half of the step.
 #[inline(always)]
 fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, step: S::Real) {
     let half = S::Real::splat(0.5) * step;

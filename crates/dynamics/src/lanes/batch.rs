@@ -44,10 +44,11 @@ pub trait Batch<'a, R: Real> {
     /// Ground motion of a case.
     type Drive: Drive<Planar>;
 
-    /// Returns the next case for a lane; all cases of a batch have one [`Topology`](super::Topology).
+    /// Returns the next case for a lane; all cases of a batch must have the same [`Topology`](super::Topology).
     fn next(&mut self, lane: usize) -> Option<Case<'a, Self::Drive>>;
 
-    /// Called with the initial state of a case, moved to the position of its ground, and with its forces.
+    /// Called with the initial state of a case, after its prescribed bodies have been moved with the ground, and with
+    /// the forces of this state.
     fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>);
 
     /// Called after each accepted step of all lanes; returns the lanes to stop.
@@ -61,9 +62,9 @@ pub trait Batch<'a, R: Real> {
 
 /// Runs all cases of a batch, as many side by side as a bundle has lanes.
 ///
-/// A lane gets the next case as soon as its own has ended. Every case takes the same steps, with the same bits, as a
-/// single run by [`simulate`](crate::simulate()): lanes share only the order of work and the list of contact elements,
-/// which affects speed alone. Only methods with a fixed step are supported.
+/// A lane gets the next case as soon as its current case has ended. Every case takes the same steps, with bit-identical
+/// results, as a single run by [`simulate`](crate::simulate()): the lanes share only the order of the computations and
+/// the list of contact elements, which affects only the speed. Only methods with a fixed step are supported.
 pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
     let Some(first) = batch.next(0) else { return };
     let mut lanes = Lanes::<R, C::Drive>::of(&first);
@@ -109,7 +110,7 @@ struct Lanes<R: Real, D> {
     end_time: R,
 }
 
-/// Ground motion of every lane; at rest for a lane without a case.
+/// Ground motion of every lane; the ground is at rest in a lane without a case.
 struct Drives<D>(Vec<Option<D>>);
 
 impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
@@ -134,7 +135,7 @@ impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
 }
 
 impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
-    /// Creates lanes that all have the state of one case; none of them is busy.
+    /// Creates lanes that all contain the state of one case; none of the lanes is busy.
     fn of(case: &Case<'_, D>) -> Self {
         let model = Model::<Planar<R>>::in_all(case.model);
         let mut state = State::initial(&model);
@@ -184,7 +185,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.busy = R::Mask::from_lanes(|l| l == lane || self.busy.lane(l));
     }
 
-    /// Freezes a lane in the state of a running lane, so that it needs no additional contact elements.
+    /// Freezes a lane in the state of a running lane, so that the frozen lane needs no additional contact elements.
     fn retire(&mut self, lane: usize) {
         self.busy = R::Mask::from_lanes(|l| l != lane && self.busy.lane(l));
         self.drives.0[lane] = None;

@@ -1,4 +1,4 @@
-//! Conversion between values of single numbers and values of bundles, lane by lane.
+//! Conversion, lane by lane, between values made of single numbers and values made of bundles.
 
 use crate::body::{Body, Face, Inert, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
@@ -11,8 +11,8 @@ use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
 /// A value made of bundles; each of its lanes is the corresponding value made of single numbers.
 ///
 /// Everything that determines memory layout and control flow, such as the number of nodes or the kind of a law, must be
-/// equal in all lanes; [`Topology`](super::Topology) compares it beforehand. [`lanewise!`](crate::lanewise) implements
-/// this trait for structs and enums from the names of their fields.
+/// equal in all lanes; [`Topology`](super::Topology) compares these properties beforehand.
+/// [`lanewise!`](crate::lanewise) implements this trait for structs and enums from the names of their fields.
 pub trait Lanewise {
     /// The value made of single numbers.
     type Single;
@@ -102,7 +102,7 @@ impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
     }
 }
 
-/// One value per lane that takes no part in arithmetic; a single run has one lane.
+/// One value for each lane, not used in arithmetic; a single run has one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerLane<T>(Vec<T>);
 

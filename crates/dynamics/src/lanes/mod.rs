@@ -1,13 +1,13 @@
 //! Runs of many cases side by side, in the lanes of a vector register.
 //!
-//! A lane computes the same bits as a single run, with the same source code: laws, shapes, methods and the energy
-//! balance are generic over [`Real`], which the bundles of this module implement. The vector unit is detected at run
-//! time.
+//! The results of a lane are bit-identical to those of a single run, and the source code is the same: laws, shapes,
+//! methods and the energy balance are generic over [`Real`], which the bundles of this module implement. The vector
+//! unit is detected at run time.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
-//! - [`Topology`]: properties that cases must share to run in one bundle.
+//! - [`Topology`]: properties that must be equal for cases that run in one bundle.
 //! - [`Lanewise`]: insertion and extraction of single lanes.
-//! - [`run_batch`]: the run loop of all lanes, which refills the lane of a case that has ended.
+//! - [`run_batch`]: the run loop of all lanes. When a case has ended, its lane gets the next case.
 
 mod batch;
 #[cfg(target_arch = "x86_64")]
@@ -26,7 +26,8 @@ pub use topology::Topology;
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
-/// Vector unit that computes bundles of numbers, or single numbers without one.
+/// Kind of vector unit used for the computation: single numbers are computed without a vector unit, bundles of numbers
+/// with one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
     /// No vector unit: single numbers.
@@ -37,7 +38,7 @@ pub enum Width {
     Avx512,
 }
 
-/// Work that is generic over the scalar, and can run with the bundles of any width.
+/// Work that is generic over the scalar, so that it can run with bundles of any width.
 pub trait Task {
     /// Result of the work.
     type Output;
@@ -63,7 +64,7 @@ impl Width {
         }
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the width in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
@@ -77,7 +78,7 @@ impl Width {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }
 
-    /// Runs a task with the bundles of this width; `None` if this machine does not support it.
+    /// Runs a task with the bundles of this width; `None` if this machine does not support the width.
     pub fn run<T: Task>(self, task: T) -> Option<T::Output> {
         if !self.is_here() {
             return None;
@@ -89,10 +90,11 @@ impl Width {
     }
 }
 
-/// Vector units of this processor architecture.
+/// The vector units supported on this processor architecture.
 ///
-/// A token proves that the machine has a vector unit. Bundles need the token in every operation, so it is a constant.
-/// Code that uses it is accessible only through the functions of this module, which check the machine first.
+/// A token proves that the machine has a vector unit. Bundles need the token in every operation, so the token is a
+/// constant. Code that uses the token is accessible only through the functions of this module, which first check that
+/// the machine has the unit.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "tokens as constants; every path to them checks the machine first")]
 pub(crate) mod units {
@@ -120,9 +122,9 @@ pub(crate) mod units {
         Level::new().as_avx512().is_some()
     }
 
-    /// Runs scalar work with the instructions of a vector unit, if the machine has one. These instructions preserve
-    /// their operands, which saves a tenth of all instructions. None of them fuses a product and a sum, so the bits are
-    /// the same.
+    /// Runs scalar work with the instructions of a vector unit, if the machine has one. The vector instructions do not
+    /// overwrite their operands, which saves a tenth of all instructions. None of these instructions fuses a product
+    /// and a sum, so the results are bit-identical.
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());

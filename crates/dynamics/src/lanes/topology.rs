@@ -10,7 +10,8 @@ use crate::pairs::Pairs;
 use crate::shape::Shape;
 use crate::space::Planar;
 
-/// Properties that models must share to run in one bundle: kinds and numbers of bodies, boundaries, laws and pairs.
+/// Properties that must be equal for models that run in one bundle: kinds and numbers of bodies, boundaries, laws and
+/// pairs.
 ///
 /// Masses, positions, sizes and constants may differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -18,7 +19,7 @@ pub struct Topology {
     bodies: Vec<BodyKind>,
     interfaces: Vec<InterfaceKind>,
     pairs: Pairs,
-    /// Kind and joined bodies of every force element.
+    /// Kind of every force element, and the bodies that it joins.
     elements: Vec<(Discriminant<Element<Planar>>, [BodyId; 2])>,
 }
 
@@ -28,9 +29,9 @@ struct BodyKind {
     motion: Motion,
     damped: bool,
     faces: usize,
-    /// Kind and number of sides of every surface.
+    /// Kind of every surface, and the number of its sides.
     surfaces: Vec<(Discriminant<Shape>, usize)>,
-    /// Kind and number of nodes of every node set.
+    /// Kind of every node set, and the number of its nodes.
     nodes: Vec<(Discriminant<Nodes<Planar>>, usize)>,
     /// For every round piece, `takes_limit`, and which limits and sides are present.
     rounds: Vec<(bool, [bool; 2], [bool; 2])>,

@@ -1,4 +1,4 @@
-//! Settling of many stacks side by side, each with the same bits as if settled alone.
+//! Settling of many stacks side by side, with results that are bit-identical to settling each stack alone.
 
 use crate::contact_elements::ContactElements;
 use crate::forces::{Scratch, evaluate};
@@ -20,16 +20,16 @@ pub struct Stack<'a> {
     pub model: &'a Model<Planar>,
     /// Initial state; at rest on return.
     pub state: &'a mut State<Planar>,
-    /// Has the forces at rest on return, including contacts.
+    /// Working memory; on return, contains the forces at rest, including the contacts.
     pub scratch: &'a mut Scratch<Planar>,
 }
 
 /// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes; returns
 /// the result of [`settle`] for each, in their order, or `None` when stopped.
 ///
-/// A lane gets the next stack as soon as its own is at rest. Lanes share only the list of contact elements, so every
-/// stack takes the same steps as alone. A stack that does not come to rest on the first try is settled alone, where the
-/// cause is diagnosed.
+/// A lane gets the next stack as soon as its current stack is at rest. The lanes share only the list of contact
+/// elements, so every stack takes the same steps as if it were settled alone. A stack that does not come to rest on the
+/// first try is settled alone, where the cause is diagnosed.
 pub fn settle_all<R: Real>(
     stacks: &mut [Stack<'_>],
     tolerance: f64,
@@ -89,7 +89,7 @@ struct Try {
 }
 
 impl<R: Real> Lanes<R> {
-    /// Creates lanes that all hold one model, without stacks.
+    /// Creates lanes that all contain the same model and no stack.
     fn of(model: &Model<Planar>) -> Self {
         let model = Model::<Planar<R>>::in_all(model);
         let state = State::initial(&model);
@@ -102,7 +102,7 @@ impl<R: Real> Lanes<R> {
         Self { model, state, scratch, relaxation, tries: (0..R::LANES).map(|_| None).collect() }
     }
 
-    /// Loads a stack at its start into a lane; the list of contact elements is not updated yet.
+    /// Loads a stack in its initial state into a lane; the list of contact elements is not updated yet.
     fn load(&mut self, lane: usize, index: usize, stack: &mut Stack<'_>) {
         let Stack { model, state, .. } = stack;
         stop(model, state);
@@ -115,7 +115,7 @@ impl<R: Real> Lanes<R> {
         self.tries[lane] = Some(Try { stack: index, departure, steps: 0 });
     }
 
-    /// Leaves a lane without a stack, at the initial poses of its last stack.
+    /// Empties a lane; its bodies return to the initial poses of its last stack.
     fn retire(&mut self, lane: usize) {
         let start: Vec<Pose<Planar>> =
             self.model.bodies.iter().map(|body| body.pose.of_lane(lane)).collect();
@@ -131,8 +131,8 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// Rebuilds the list of contact elements of all lanes; elements of lanes that begin a stack get the memory of that
-    /// stack.
+    /// Rebuilds the list of contact elements of all lanes; in lanes where a new stack begins, the elements get the
+    /// memory of that stack.
     fn list(&mut self, begin: &[usize], stacks: &[Stack<'_>]) {
         let State { contact_elements, poses, twists, .. } = &mut self.state;
         let origins = contact_elements.rebuild(&self.model, poses, twists);

@@ -23,7 +23,7 @@ use relax::Relaxation;
 /// Result of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Number of steps of the successful try; each has one force evaluation.
+    /// Number of steps of the successful try; each step has one force evaluation.
     pub steps: u64,
     /// Largest residual acceleration, as a fraction of gravity.
     pub unbalanced: f64,
@@ -31,46 +31,47 @@ pub struct Settled {
     pub locked: Locked,
 }
 
-/// Friction at rest: forces that equilibrium alone does not determine, since they depend on the path to it.
+/// Friction at rest: forces that equilibrium alone does not determine, since they depend on how equilibrium was
+/// reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Locked {
     /// Number of contacts whose stick holds.
     pub holding: usize,
     /// Number of contacts at the friction limit.
     pub slipping: usize,
-    /// Sum of the friction forces of all contacts over the sum of their normal forces.
+    /// Sum of the friction forces of all contacts, divided by the sum of their normal forces.
     pub friction: f64,
 }
 
 /// Maximum number of steps of a try.
 const MOST_STEPS: u64 = 40_000;
 
-/// Retry schedule: fictitious-mass factor, and number of initial steps without momentum. Heavier masses converge more
-/// slowly, with less overshoot.
+/// Retry schedule: for each try, the factor of the fictitious masses and the number of initial steps without momentum.
+/// With heavier masses, convergence is slower and overshoots less.
 const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
-/// Number of steps between two checks for bodies that have left their place.
+/// Number of steps between two checks for bodies that have moved out of place.
 const LOOK: u64 = 20;
 
 /// Relative error of a body's position at which its contact forces count as balanced: a few units in the last place.
-/// Where springs are stiff for their load, no representable position balances the forces better.
+/// Where springs are very stiff in comparison with their load, no representable position balances the forces better.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Lets the bodies sink into their contacts until all forces balance.
 ///
-/// Gravity acts on all bodies at once, and friction acts throughout. So friction forces that are locked in as the stack
-/// sinks remain, as they would after stacking; [`Settled::locked`] reports them.
+/// Gravity acts on all bodies at once, and friction acts throughout. So friction forces that build up as the stack
+/// sinks stay locked in, as they would after real stacking; [`Settled::locked`] reports them.
 ///
-/// The method is relaxation with momentum: every step repeats a growing share of the displacement of the step before,
-/// and all bodies are stopped whenever the power of the forces becomes negative. If relaxation fails, it is retried
-/// with heavier masses before an error is returned. The mass of a body is the stiffness of its contacts times a factor,
-/// and velocities are too small for dampers to act, so neither damping constants nor the time step affect the
+/// The method is relaxation with momentum: every step repeats a growing share of the displacement of the preceding
+/// step, and all bodies are stopped whenever the power of the forces becomes negative. If relaxation fails, it is
+/// retried with heavier masses before an error is returned. The mass of a body is the stiffness of its contacts times a
+/// factor, and velocities are too small for dampers to act, so neither damping constants nor the time step affect the
 /// equilibrium or the number of steps.
 ///
 /// On return, `state` is at rest at its original time; prescribed bodies do not move.
 ///
 /// # Errors
-/// If a body leaves its place, or the forces do not balance to `tolerance` (a fraction of gravity).
+/// If a body moves out of place, or the remaining accelerations exceed `tolerance` (a fraction of gravity).
 pub fn settle<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -100,7 +101,8 @@ pub fn settle<S: Space>(
     result.map(|(steps, unbalanced)| Settled { steps, unbalanced, locked })
 }
 
-/// Relaxes until every lane is at rest, with one entry of [`TRIES`]; returns the number of steps and the residual.
+/// Relaxes until every lane is at rest, with the parameters of one entry of [`TRIES`]; returns the number of steps and
+/// the residual.
 fn sink<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -166,7 +168,7 @@ impl Locked {
     }
 }
 
-/// Returns the magnitude of gravity (m/s²), bounded below so that it can be a divisor.
+/// Returns the magnitude of gravity (m/s²), with a lower bound, so that it can be used as a divisor.
 fn gravity<S: Space>(model: &Model<S>) -> S::Real {
     model.gravity.dot(model.gravity).sqrt().max(S::Real::splat(1e-12))
 }

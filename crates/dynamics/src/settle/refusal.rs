@@ -10,28 +10,29 @@ use crate::state::State;
 
 use super::gravity;
 
-/// Displacement of a body, as a fraction of its reach, at which the cause is diagnosed: more than any body settles, but
-/// early enough that the body has not yet disturbed others.
+/// Displacement of a body, as a fraction of its reach, at which the cause is diagnosed: more than any body moves while
+/// it settles, but little enough that the body has not yet disturbed others.
 const GOING: f64 = 0.1;
 
-/// Displacement of a body, as a fraction of its reach, beyond which it has left its place.
+/// Displacement of a body, as a fraction of its reach, beyond which it counts as out of place.
 const LEFT: f64 = 0.5;
 
-/// Displacement of a body, as a fraction of the largest of all bodies, above which it is classed as moving, too.
+/// Displacement of a body, as a fraction of the largest displacement of any body, above which the body is classed as
+/// moving, too.
 const WITH_IT: f64 = 0.25;
 
 /// Ratio of penetration to displacement above which a body is classed as sinking.
 const SINKS: f64 = 0.5;
 
-/// Ratio of boundary rotation to center-of-mass displacement above which a body is classed as tipping: 1 if it rolls,
-/// or tips over its corner.
+/// Ratio of boundary rotation to center-of-mass displacement above which a body is classed as tipping: the ratio is 1
+/// if the body rolls, or tips over its corner.
 const TURNS: f64 = 0.7;
 
 /// A body that does not come to rest under gravity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("body \"{body}\" does not come to rest under gravity (it moved {moved:.3} m): {lack}")]
 pub struct SettleError {
-    /// Name of the lowest moving body, since bodies above it lose their support with it.
+    /// Name of the lowest body that moves. Bodies above it may move only because they lose their support.
     pub body: String,
     /// Displacement of the body (m).
     pub moved: f64,
@@ -51,7 +52,7 @@ pub enum Lack {
          on them"
     )]
     Stiffness {
-        /// Name of the body on which it lies.
+        /// Name of the supporting body.
         on: String,
         /// Name of the interface between the two bodies.
         interface: String,
@@ -61,7 +62,7 @@ pub enum Lack {
     /// All contacts of the body slip.
     #[error("it slides on \"{on}\": the friction of {interface} is too low to hold it")]
     Friction {
-        /// Name of the body on which it lies.
+        /// Name of the supporting body.
         on: String,
         /// Name of the interface between the two bodies.
         interface: String,
@@ -72,7 +73,7 @@ pub enum Lack {
          hold a body at rest"
     )]
     Stick {
-        /// Name of the body on which it lies.
+        /// Name of the supporting body.
         on: String,
         /// Name of the interface between the two bodies.
         interface: String,
@@ -82,13 +83,13 @@ pub enum Lack {
         "it tips or rolls over on \"{on}\", which does not keep it and the bodies on it upright"
     )]
     Balance {
-        /// Name of the body on which it lies.
+        /// Name of the supporting body.
         on: String,
     },
     /// The body leaves its support.
-    #[error("it is pushed out of its place")]
+    #[error("it is pushed out of place")]
     Place,
-    /// The forces do not balance, but the body does not leave its place.
+    /// The forces do not balance, but the body stays in place.
     #[error(
         "after {steps} steps its forces are still out of balance by {unbalanced:.0e} of gravity"
     )]
@@ -100,12 +101,12 @@ pub enum Lack {
     },
 }
 
-/// Detector of bodies that leave their place.
+/// Detector of bodies that move out of place.
 pub(super) struct Departure<S: Space> {
     start: Vec<Pose<S>>,
     /// The bodies, the lowest first.
     upward: Vec<BodyId>,
-    /// The lowest body that moved when the first did, and the cause at that time.
+    /// The lowest body that was moving when the first body began to move, and the cause diagnosed at that time.
     first: Option<(BodyId, Lack)>,
 }
 
@@ -117,8 +118,8 @@ impl<S: Space> Departure<S> {
         Self { start, upward, first: None }
     }
 
-    /// Returns the displacement (m) of every body from its place: sideways, up, or down by more than any body below it.
-    /// Sinking together with the bodies below on soft contacts does not count.
+    /// Returns the displacement (m) of every body from its initial position: sideways, upward, or downward by more than
+    /// any body below. A body that sinks on soft contacts together with the bodies below is not counted as displaced.
     fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];
@@ -135,10 +136,10 @@ impl<S: Space> Departure<S> {
         strayed
     }
 
-    /// Detects bodies that leave their place: diagnoses the first body that moves farther than bodies settle, and
-    /// returns the error once a body has left.
+    /// Detects bodies that move out of place. Diagnoses the first body that moves farther than bodies do while they
+    /// settle, and returns the error as soon as a body is out of place.
     ///
-    /// The diagnosis is early, since a body that has left may already have pushed others away.
+    /// The diagnosis is made early, since a body that is out of place may already have pushed other bodies away.
     pub(super) fn watch(
         &mut self,
         model: &Model<S>,
@@ -167,13 +168,13 @@ impl<S: Space> Departure<S> {
         Err(self.refusal(model, state, first, lack))
     }
 
-    /// Returns `true` if [`Departure::watch`] would report that a body has left.
+    /// Returns `true` if [`Departure::watch`] would report that a body is out of place.
     pub(super) fn has_left(&self, model: &Model<S>, poses: &[Pose<S>]) -> bool {
         most(model, &self.strayed(model, poses)) >= LEFT
     }
 
-    /// Returns the error if no body has left, but the forces do not balance: for the first body that moved or, if none
-    /// did, the body with the largest residual.
+    /// Returns the error for a stack in which no body is out of place, but the forces do not balance. The error names
+    /// the first body that moved or, if no body moved, the body with the largest residual.
     pub(super) fn unbalanced(
         &mut self,
         model: &Model<S>,
@@ -195,7 +196,7 @@ impl<S: Space> Departure<S> {
         displacement.dot(displacement).sqrt().largest_lane()
     }
 
-    /// Diagnoses a moving body; `going` has the bodies that move.
+    /// Diagnoses a moving body; `going` contains all bodies that move.
     fn lack(
         &self,
         body: BodyId,
@@ -253,13 +254,14 @@ impl<S: Space> Departure<S> {
     }
 }
 
-/// Returns the largest ratio of the displacement of a body to its extent.
+/// Returns the largest ratio, over all bodies, of the displacement of a body to its extent.
 fn most<S: Space>(model: &Model<S>, strayed: &[f64]) -> f64 {
     let shares = strayed.iter().enumerate().map(|(body, far)| far / extent(model, body));
     shares.fold(0.0, f64::max)
 }
 
-/// Returns the extent of a body from its center of mass (m); 1 m if it has no boundary.
+/// Returns the largest distance (m) of the boundary of a body from its center of mass; 1 m for a body without a
+/// boundary.
 fn extent<S: Space>(model: &Model<S>, body: usize) -> f64 {
     let reach = model.reach[body];
     if reach > 0.0 { reach } else { 1.0 }

@@ -15,25 +15,26 @@ use super::{ROUNDING, gravity};
 /// Displacement of a body in free fall in its first step, as a fraction of its reach.
 const FIRST_FALL: f64 = 1e-4;
 
-/// Maximum displacement of a body in a step, as a fraction of its reach; limited since nonlinear contacts are soft at
-/// first touch.
+/// Maximum displacement of a body in a step, as a fraction of its reach; limited because nonlinear contacts are soft at
+/// small penetrations.
 const LONGEST_WAY: f64 = 2e-3;
 
-/// Factor from displacements per step of relaxation to the velocities in the force laws. It is a power of two, so no
-/// bits are lost, and so small that dampers vanish and smoothed friction laws keep only their static part.
+/// Factor from displacements per step of relaxation to the velocities in the force laws. The factor is a power of two,
+/// so that no bits are lost. It is so small that damping forces vanish and smoothed friction laws keep only their
+/// static part.
 const SLOWLY: f64 = 1.0 / (1_u128 << 100) as f64;
 
-/// A contact with the geometry of both of its bodies.
+/// A contact, and its position relative to both bodies.
 struct Touch<S: Space> {
     element: usize,
     touching: <S::Real as Real>::Mask,
     /// Contactor and target.
     bodies: [usize; 2],
-    /// Vectors (m) from their centers of mass to the contact, in the inertial frame.
+    /// Vectors (m) from the centers of mass of the two bodies to the contact, in the inertial frame.
     arms: [S::Vector; 2],
     /// Rotation from the frame of the target's surface to the inertial frame.
     rotation: S::Rotation,
-    /// Unit normal out of the target, in the surface's frame.
+    /// Unit normal that points out of the target, in the frame of the target's surface.
     normal: S::Vector,
 }
 
@@ -45,7 +46,7 @@ struct Held<R> {
 }
 
 impl<R: Real> Held<R> {
-    /// Adds a spring (N/m) at an arm (m).
+    /// Adds the stiffness of a spring (N/m) that acts at a vector (m) from the center of mass.
     #[inline(always)]
     fn by(&mut self, stiffness: R, arm: impl Linear<R>) {
         self.translation += stiffness;
@@ -57,20 +58,21 @@ impl<R: Real> Held<R> {
 pub(super) struct Relaxation<S: Space> {
     /// Ratio of the fictitious mass of a body to the total stiffness of its contacts.
     ///
-    /// In the displacements and rotations of two bodies, a contact of stiffness k is bounded by a diagonal stiffness of
-    /// 4 k, and central differences with a step of 1 are stable if a mass is at least a quarter of its stiffness. So a
-    /// ratio of 1 is just stable for springs; the excess is for friction that slips.
+    /// For the displacements and rotations of two bodies, the stiffness matrix of a contact of stiffness k is bounded
+    /// by a diagonal matrix with entries 4 k. Central differences with a step of 1 are stable if every mass is at least
+    /// a quarter of the corresponding diagonal entry. So a ratio of 1 is just stable for springs; larger ratios leave a
+    /// margin for slipping friction.
     margin: f64,
     /// The lanes at rest.
     pub(super) resting: <S::Real as Real>::Mask,
     /// `true` for every body that has had a contact or a loaded force element.
     pub(super) met: Vec<bool>,
-    /// Extent of every body from its center of mass (m).
+    /// Largest distance (m) of the boundary of every body from its center of mass.
     pub(super) reach: Vec<S::Real>,
-    /// Displacements and rotations of the last step.
+    /// Displacements and rotations of the bodies in the last step.
     displacements: Vec<Twist<S>>,
-    /// Largest stiffness of the supports of every body so far, since a body that leaves its contacts for a moment must
-    /// not become light while others lie on it.
+    /// Largest stiffness so far of the supports of every body. The largest value is kept because a body that briefly
+    /// loses its contacts must not become light while other bodies lie on it.
     held: Vec<Held<S::Real>>,
     touches: Vec<Touch<S>>,
     /// The lanes in which each element of the list touched.
@@ -101,14 +103,16 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Returns the extent of a body from its center of mass (m); 1 m if it has no boundary.
+    /// Returns the largest distance (m) of the boundary of a body from its center of mass; 1 m for a body without a
+    /// boundary.
     #[inline(always)]
     fn extent(&self, body: usize) -> S::Real {
         let reach = self.reach[body];
         S::Real::select(S::Real::zero().lt(reach), reach, S::Real::splat(1.0))
     }
 
-    /// Returns the residual acceleration (m/s²) of a body; that of rotation is taken at the distance of its reach.
+    /// Returns the residual acceleration (m/s²) of a body; the angular acceleration is multiplied by the reach of the
+    /// body.
     #[inline(always)]
     pub(super) fn acceleration(&self, scratch: &Scratch<S>, body: usize) -> S::Real {
         let Twist { linear, angular } = scratch.accelerations[body];
@@ -147,7 +151,7 @@ impl<S: Space> Relaxation<S> {
         )
     }
 
-    /// Updates the contacts of the last evaluation, and the stiffness that supports each body.
+    /// Updates the list of contacts from the last evaluation, and the stiffness of the supports of each body.
     pub(super) fn weigh(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -203,7 +207,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Takes one step from the forces at a state to a state nearer to rest, and computes its forces.
+    /// Takes one step, driven by the forces at a state, to a state nearer to rest, and computes the forces of the new
+    /// state.
     pub(super) fn advance(
         &mut self,
         model: &Model<S>,
@@ -260,7 +265,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Updates the element numbers to a new list.
+    /// Renumbers the elements for a new list.
     pub(super) fn renumber(&mut self, origins: &[Option<usize>], scratch: &mut Scratch<S>) {
         scratch.renumber(origins);
         let touched =
@@ -283,7 +288,7 @@ impl<S: Space> Relaxation<S> {
     }
 
     /// Computes the displacements of the next step: the response of the fictitious masses to the forces, plus a share
-    /// of the last displacements that grows until the power of the forces is negative.
+    /// of the last displacements. This share grows until the power of the forces becomes negative.
     #[inline(always)]
     fn choose_ways(&mut self, model: &Model<S>, scratch: &Scratch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -324,7 +329,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Moves every stick with its contact.
+    /// Adds to every stick the tangential displacement of its contact.
     #[inline(always)]
     fn slide(&self, sticks: &mut [Stick<S>]) {
         for touch in &self.touches {
@@ -346,7 +351,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Moves the sticks of new contacts by the share of the step in which they touched.
+    /// Adds to the sticks of new contacts the tangential displacement during the part of the step in which they
+    /// touched.
     #[inline(always)]
     fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);
@@ -384,7 +390,7 @@ fn length<S: Space>(vector: S::Vector) -> S::Real {
     vector.dot(vector).sqrt()
 }
 
-/// Returns the force on every body including gravity, and its moment about the center of mass.
+/// Returns the force on every body, including gravity, and the moment of the force about the center of mass.
 #[inline(always)]
 fn each<'a, S: Space>(
     model: &'a Model<S>,

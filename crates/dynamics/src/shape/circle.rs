@@ -1,4 +1,4 @@
-//! A circle about the origin: a barrel in transverse section (eq. 2.3), a disc.
+//! A circle about the origin: a barrel in transverse section (eq. 2.3) or a disc.
 
 use std::f64::consts::{PI, TAU};
 
@@ -21,7 +21,7 @@ impl<R: Real> Circle<R> {
         self.gap_from(point, point.dot(point))
     }
 
-    /// Returns the gap of a point from its squared distance (m²) from the center.
+    /// Returns the gap at a point, given its squared distance (m²) from the center.
     #[inline(always)]
     pub(super) fn gap_from(&self, point: Vec2<R>, squared: R) -> Gap<Planar<R>> {
         let length = squared.sqrt();
@@ -31,7 +31,7 @@ impl<R: Real> Circle<R> {
         Gap { distance: length - self.radius, normal: Vec2::select(at_center, up, point * inverse) }
     }
 
-    /// Returns the squared distance (m²) from the center below which a point may penetrate.
+    /// Returns the squared distance (m²) from the center below which a point may penetrate the circle.
     #[inline(always)]
     pub(super) fn within(&self) -> R {
         // Includes a slack for rounding, so that no node is missed that the exact gap would find.

@@ -7,7 +7,7 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// An arc about the origin that is open upward, with matter outside the circle.
+/// An arc about the origin that is open upward; the solid material is outside the circle.
 ///
 /// Within the opening angle, a point is free inside the circle and penetrates outside of it. Beyond the opening angle,
 /// only the two tips of the arc can be touched.
@@ -80,7 +80,7 @@ impl Cradle {
             .collect()
     }
 
-    /// Returns the section of a thin uniform arc along the boundary.
+    /// Returns the mass distribution of a thin uniform arc along the boundary.
     pub(super) fn section(&self) -> Section {
         let half = self.half_angle();
         let centroid = Vec2::new(0.0, -self.radius * self.sin / half);

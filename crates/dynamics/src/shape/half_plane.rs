@@ -4,7 +4,7 @@ use super::Gap;
 use crate::real::Real;
 use crate::space::{Planar, Vec2};
 
-/// A half-plane: matter everywhere below `z = 0` in the frame of the shape.
+/// A half-plane that is solid everywhere below `z = 0` in the frame of the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HalfPlane;
 

@@ -1,8 +1,8 @@
 //! Boundaries: the surface Φ = 0 of a target, and the nodes of a contactor.
 //!
-//! A shape computes in its own frame: the distance of a point from its surface and the normal ([`Surface::gap`]), its
-//! boundary nodes, its outline for drawing, and the mass distribution of its section.
-//! Each file has one shape; [`Shape`] lists them.
+//! A shape computes, in its own frame, the distance of a point from its surface and the normal ([`Surface::gap`]), its
+//! boundary nodes, its outline for drawing, and the mass distribution of its section. Each file has one shape;
+//! [`Shape`] lists them.
 
 mod circle;
 mod cradle;
@@ -26,32 +26,32 @@ pub use whole::{
     Axes, Bearing, MOST_POINTS, NoWhole, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
 };
 
-/// Distance of a point from a surface, and the normal there.
+/// Distance of a point from a surface, and the normal of the surface at the companion point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<S: Space> {
     /// Distance (m) from the surface to the point along `normal`; **negative when penetrating**.
     pub distance: S::Real,
-    /// Unit normal at the companion point, out of the target.
+    /// Unit normal at the companion point; points out of the target.
     pub normal: S::Vector,
 }
 
-/// Distance of a point from a surface, and the nearest piece of it.
+/// Distance of a point from a surface, and the nearest piece of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest<S: Space> {
     /// Distance and normal.
     pub gap: Gap<S>,
     /// `true` if the piece is round: a corner or an arc.
     pub round: <S::Real as Real>::Mask,
-    /// Distance (m) from the companion point to the nearer end of a straight piece; infinite elsewhere.
+    /// Distance (m) from the companion point to the nearer end of a straight piece; infinite for a piece without ends.
     pub to_end: S::Real,
-    /// Unit vector along that piece toward that end.
+    /// Unit vector along the straight piece toward its nearer end.
     pub toward_end: S::Vector,
     /// Distance (m) to the core, which is the shape without its rounding.
     pub core: S::Real,
 }
 
 impl<S: Space> Nearest<S> {
-    /// Creates the result for a piece without ends; `round` has the lanes in which the piece is round.
+    /// Creates the result for a piece without ends; `round` contains the lanes in which the piece is round.
     #[inline(always)]
     pub(crate) fn endless(gap: Gap<S>, round: <S::Real as Real>::Mask) -> Self {
         let to_end = S::Real::splat(f64::INFINITY);
@@ -59,21 +59,21 @@ impl<S: Space> Nearest<S> {
     }
 }
 
-/// Directions in which the boundary of a body faces at a point.
+/// Range of directions in which the boundary of a body faces at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
-    /// Unit vectors in the frame of the other surface, as [`Round::limits`].
+    /// Unit vectors with the meaning of [`Round::limits`], in the frame of the other body's surface.
     pub limits: [S::Vector; 2],
-    /// Maximum component, along a limit, of the direction toward a piece of the other surface on which the point can
-    /// bear.
+    /// Maximum component, along either limit, of the direction toward a piece of the other surface; the point cannot
+    /// bear on pieces with a larger component.
     pub most: f64,
-    /// Maximum distance (m) of the point past the pieces that it does not face.
+    /// Maximum distance (m) by which the point may lie outside of the sides that it does not face.
     pub slack: f64,
 }
 
 impl<S: Space> Facing<S> {
     /// Creates the directions for a point with an outward unit normal, which is the mean of both sides at a corner. The
-    /// point bears on pieces within 70° of facing the normal, which includes both sides of a right corner.
+    /// point bears on pieces that face the normal to within 70°, which includes both sides of a right-angled corner.
     #[inline(always)]
     pub(crate) fn outward(normal: S::Vector) -> Self {
         Self { limits: [-normal; 2], most: -0.35, slack: FLUSH }
@@ -92,7 +92,7 @@ impl<S: Space> Facing<S> {
 }
 
 impl<R: Real> Nearest<Planar<R>> {
-    /// Selects `self` in lanes of the mask, and `other` elsewhere.
+    /// Returns `self` in lanes where `holds` is set, and `other` in all other lanes.
     #[inline(always)]
     fn where_it(self, holds: R::Mask, other: Self) -> Self {
         Self {
@@ -115,29 +115,31 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 
     /// Returns the gap and the nearest piece of the boundary.
     ///
-    /// A straight side is extended at both ends by `slack` (m). Where the corners of two bodies lie one above the
-    /// other, `slack` decides independently of rounding which corner has a side in front of it.
+    /// A straight side is extended at both ends by `slack` (m). Where the corners of two bodies coincide, the sign of
+    /// `slack` decides, independently of rounding errors, which of the corners lies in front of a side.
     fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
     /// Returns, for a point inside the core, the nearest piece on which the point can bear as part of another body's
     /// boundary; elsewhere returns `nearest`.
     ///
-    /// The nearest piece is not always the one that a point inside presses into: a corner of a box that stands flush on
-    /// an equal box lies on a side of the lower box and below its top. The directions in which the boundary of the
-    /// other body faces at that point decide.
+    /// A point inside does not always press into the nearest piece: a corner of a box that stands flush on an equal box
+    /// lies on a side of the lower box, but presses on its top. So the directions in which the boundary of the other
+    /// body faces at this point decide.
     #[inline(always)]
     fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
         nearest
     }
 
-    /// Returns `true` wherever `gap(point).distance < 0`, and possibly elsewhere; cheaper than the gap.
+    /// Returns `true` wherever `gap(point).distance < 0`, and possibly elsewhere. This test is cheaper than computing
+    /// the gap.
     #[inline(always)]
     fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
         self.gap(point).distance.lt(S::Real::zero())
     }
 
-    /// Visits those of `count` points (m) that penetrate in at least one lane, in order, with index, position and gap.
-    /// `facing` returns the directions in which their boundary faces at a point, if known.
+    /// Visits, in order, those of `count` points (m) that penetrate in at least one lane; passes the index, the
+    /// position and the gap of each. `facing` returns the directions in which the boundary of the points faces at a
+    /// point, if known.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -166,14 +168,14 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 pub struct BoundaryNode {
     /// Position (m) in the frame of the shape.
     pub position: Vec2,
-    /// Tributary length of boundary (m).
+    /// Length (m) of boundary that is tributary to the node.
     pub tributary_length: f64,
 }
 
 /// Mass distribution of a uniform section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
-    /// Area (m²) of a solid section, or length (m) of a thin one.
+    /// Area (m²) of a solid section, or length (m) of a thin section.
     pub measure: f64,
     /// Centroid (m) in the frame of the shape.
     pub centroid: Vec2,
@@ -245,7 +247,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
         }
     }
 
-    /// Dispatches on the shape once, not at every point.
+    /// Dispatches on the shape once instead of at every point.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -313,7 +315,8 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
 }
 
 impl<R: Real> Shape<R> {
-    /// Returns the gap of a point of another body, given the directions in which its boundary faces there.
+    /// Returns the gap of a point of another body, given the directions in which the boundary of that body faces at the
+    /// point.
     #[inline(always)]
     fn gap_facing(&self, point: Vec2<R>, facing: Option<Facing<Planar<R>>>) -> Gap<Planar<R>> {
         let gap = self.gap(point);
@@ -327,8 +330,8 @@ impl<R: Real> Shape<R> {
 }
 
 impl Shape {
-    /// Returns the unit outward normal at a point (m) of the boundary, at a corner the mean of both sides; `None` for a
-    /// point off the boundary, and for a cradle, which touches only the body that it carries.
+    /// Returns the unit outward normal at a point (m) of the boundary; at a corner, the mean of the normals of both
+    /// sides; `None` for a point off the boundary, and for a cradle, which touches only the body that it carries.
     pub fn outward(&self, point: Vec2) -> Option<Vec2> {
         let near = 1e-9 * self.reach();
         let on_it = self.gap(point).distance.abs() < near;
@@ -343,7 +346,7 @@ impl Shape {
     }
 
     /// Returns nodes along the whole boundary, at most `spacing` (m) apart. Their tributary lengths add up to the
-    /// length of the boundary; a half-plane has none.
+    /// length of the boundary; a half-plane has no nodes.
     pub fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         match self {
             Self::Circle(shape) => shape.nodes(spacing),
@@ -376,8 +379,8 @@ impl Shape {
         }
     }
 
-    /// Returns the uniform section inside the boundary (along it, for a cradle); `None` for a half-plane, which is
-    /// unbounded.
+    /// Returns the mass distribution of a uniform section inside the boundary or, for a cradle, of a thin section along
+    /// the boundary; `None` for a half-plane, which is unbounded.
     pub fn section(&self) -> Option<Section> {
         match self {
             Self::Circle(shape) => Some(shape.section()),
@@ -394,7 +397,7 @@ impl Shape {
 pub(crate) enum Piece {
     /// A straight side between two points (m).
     Side(Vec2, Vec2),
-    /// An arc, counterclockwise.
+    /// An arc that runs counterclockwise.
     Arc {
         /// Center (m).
         center: Vec2,
@@ -415,7 +418,7 @@ impl Piece {
         }
     }
 
-    /// Returns the point (m) at a share of the length.
+    /// Returns the point (m) at the given fraction of the length of the piece.
     fn at(self, share: f64) -> Vec2 {
         match self {
             Self::Side(from, to) => from + (to - from) * share,
@@ -428,7 +431,7 @@ impl Piece {
 }
 
 /// Returns nodes along an open or closed boundary. Each piece is divided into equal parts no longer than `spacing` (m),
-/// which turn by no more than `most_turn` (rad).
+/// and the direction changes by no more than `most_turn` (rad) within a part.
 pub(crate) fn nodes_along(
     pieces: &[Piece],
     closed: bool,
@@ -462,7 +465,7 @@ pub(crate) fn nodes_along(
     nodes
 }
 
-/// Returns the number of equal parts of a length that are no longer than `spacing`.
+/// Returns the smallest number of equal parts of a length such that no part is longer than `spacing`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
 pub(crate) fn parts_of(length: f64, spacing: f64) -> usize {
     ((length / spacing - 1e-9).ceil().clamp(1.0, 1e6) as usize).max(1)

@@ -1,4 +1,4 @@
-//! A convex polygon with sharp or rounded corners: a rack beam, a block, a brick.
+//! A convex polygon with sharp or rounded corners, such as a rack beam, a block or a brick.
 
 use std::f64::consts::TAU;
 
@@ -9,11 +9,11 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// Distance (m) outside of a side at which a node of a flush body still touches: about a nanometer, and not a round
-/// decimal number, at which nodes of a scene would touch or not by rounding.
+/// Distance (m) outside of a side at which a node of a flush body still touches: about a nanometer. The value is not a
+/// round decimal number, since at such a distance rounding errors would decide whether the nodes of a scene touch.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Maximum angle of a part of a rounded corner (rad).
+/// Maximum angle (rad) of one part of a rounded corner that is divided into parts.
 const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
@@ -24,7 +24,7 @@ const CORNER_STEP: f64 = TAU / 24.0;
 pub struct Polygon<R = f64> {
     /// Sides of the core, counterclockwise (from `x` toward `z`).
     sides: Vec<Side<R>>,
-    /// Radius of the corners (m); zero for sharp ones.
+    /// Radius (m) of the corners; zero for sharp corners.
     corner_radius: R,
 }
 
@@ -33,8 +33,8 @@ pub struct Polygon<R = f64> {
 struct Side<R> {
     /// Start point (m).
     start: Vec2<R>,
-    /// Midpoint (m). Distances are measured from it and not from an end, since mirroring exchanges the ends: so a
-    /// mirrored polygon has the same rounding errors.
+    /// Midpoint (m). Distances are measured from the midpoint and not from an end, since mirroring exchanges the ends.
+    /// So a mirrored polygon has the same rounding errors.
     middle: Vec2<R>,
     /// Unit vector along the side.
     along: Vec2<R>,
@@ -53,7 +53,7 @@ pub enum PolygonError {
         /// Number of corners given.
         found: usize,
     },
-    /// A corner turns inward, or three corners are in line.
+    /// A corner turns inward, or three successive corners are in line.
     #[error(
         "corner {corner} at ({x:.6} m, {z:.6} m) does not turn left: give the corners of a convex \
          polygon counterclockwise, none of them in line with its neighbors"
@@ -66,13 +66,13 @@ pub enum PolygonError {
         /// Height of the corner (m).
         z: f64,
     },
-    /// The corners go around more than once.
+    /// The corners go around the polygon more than once.
     #[error(
         "the corners go around more than once at corner {corner}: give each corner of a convex \
          polygon once"
     )]
     Overlapping {
-        /// The corner at which the first turn is complete, counted from 1.
+        /// Number of the corner, counted from 1, at which the first full turn is complete.
         corner: usize,
     },
     /// The corner radius is too large for the polygon.
@@ -89,7 +89,7 @@ impl<R: Real> Polygon<R> {
         self.nearest(point, R::zero()).gap
     }
 
-    /// Returns the gap and the nearest piece; sides are longer by `slack` (m) at both ends.
+    /// Returns the gap and the nearest piece; every side is extended at both ends by `slack` (m).
     #[inline(always)]
     pub(super) fn nearest(&self, point: Vec2<R>, slack: R) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -192,7 +192,8 @@ impl Polygon {
         self.sides.len()
     }
 
-    /// Creates a convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
+    /// Creates a convex polygon from the positions (m) of its corners before rounding, in counterclockwise order, and a
+    /// corner radius (m).
     ///
     /// # Errors
     /// If there are fewer than three corners, if they do not all turn left or go around twice, or if the radius leaves
@@ -240,7 +241,7 @@ impl Polygon {
         Ok(Self::grown(&core, corner_radius))
     }
 
-    /// Creates a bar with round ends: all points within a radius (m) of the line between two points (m).
+    /// Creates a bar with round ends: all points within a radius (m) of the line segment between two points (m).
     ///
     /// # Errors
     /// If the points coincide or the radius is not positive.
@@ -301,7 +302,7 @@ impl Polygon {
         )
     }
 
-    /// Returns the boundary as a chain of points, corners rounded with steps of at most 15 degrees.
+    /// Returns the boundary as a chain of points; rounded corners are divided into steps of at most 15 degrees.
     pub(super) fn outline(&self) -> Vec<Vec2> {
         if self.corner_radius == 0.0 {
             return self.sides.iter().map(|side| side.start).collect();
@@ -318,14 +319,14 @@ impl Polygon {
         chain
     }
 
-    /// Returns start and angle (rad) of the arc of a rounded corner.
+    /// Returns the start direction (rad) and the angle (rad) of the arc of a rounded corner.
     fn corner(&self, i: usize) -> (f64, f64) {
         let count = self.sides.len();
         let (a, b) = (self.sides[(i + count - 1) % count].along, self.sides[i].along);
         (math::atan2(-a.x, a.z), math::atan2(a.x * b.z - a.z * b.x, a.dot(b)))
     }
 
-    /// Returns the arcs of the corners and the sides in turn; only the sides if the corners are sharp.
+    /// Returns, alternating, the arcs of the corners and the sides; only the sides if the corners are sharp.
     fn pieces(&self) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for (i, side) in self.sides.iter().enumerate() {
@@ -344,7 +345,8 @@ impl Polygon {
         nodes_along(&self.pieces(), true, spacing, CORNER_STEP)
     }
 
-    /// Returns the outward unit normal at a point (m) of the boundary, at a sharp corner the mean of both sides.
+    /// Returns the outward unit normal at a point (m) of the boundary; at a sharp corner, the mean of the normals of
+    /// both sides.
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         if self.corner_radius > 0.0 {
             return self.gap(point).normal;
@@ -357,13 +359,13 @@ impl Polygon {
         unit(touching)
     }
 
-    /// Returns the corners as nodes, each with half of both adjoining sides as tributary length; a rounded corner is
-    /// divided into parts that turn by at most 15 degrees.
+    /// Returns the corners as nodes; the tributary length of a corner is half the total length of its two adjacent
+    /// sides. A rounded corner is divided into parts that turn by at most 15 degrees.
     pub fn corner_nodes(&self) -> Vec<BoundaryNode> {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
-    /// Returns nodes at the ends of every side, and between `parts` equal parts of it.
+    /// Divides every side into `parts` equal parts, and returns nodes at the ends of all parts.
     pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
         let longest = self.sides.iter().map(|side| 2.0 * side.half_length).fold(0.0, f64::max);
         if self.corner_radius > 0.0 {

@@ -1,4 +1,4 @@
-//! A barrel in longitudinal section: two bulged staves closed by the two heads.
+//! A barrel in longitudinal section: two curved staves and the two heads that close it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -8,7 +8,7 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Planar, Vec2};
 
-/// The longitudinal outline of a barrel about its center, its axis along `x`.
+/// The longitudinal outline of a barrel, centered at the origin, with the axis of the barrel along `x`.
 ///
 /// The staves are circular arcs through the bilge and both heads; a parabola would differ by less
 /// than 0.15 % in volume.
@@ -20,7 +20,8 @@ pub struct BarrelProfile<R = f64> {
     pub head_radius: R,
     /// Radius at the bilge (m).
     pub bilge_radius: R,
-    /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s` with `s` the bulge.
+    /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s` where `s` is the bilge radius less the head radius and `L`
+    /// the length.
     pub stave_radius: R,
     /// Radius of the rounded edges (m) between staves and heads.
     pub rounding: R,
@@ -28,7 +29,7 @@ pub struct BarrelProfile<R = f64> {
     pub corner_height: R,
 }
 
-/// Number of parts of a rounded edge for drawing.
+/// Number of parts into which a rounded edge is divided for drawing.
 const EDGE_STEPS: usize = 6;
 
 impl<R: Real> BarrelProfile<R> {
@@ -89,8 +90,8 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// Returns the nearer of stave and head on which a point of another body inside the core can bear; see
-    /// [`Surface::bearing`](super::Surface::bearing).
+    /// Returns the stave or the head on which a point of another body inside the core can bear, whichever is nearer;
+    /// see [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,
@@ -164,7 +165,7 @@ impl BarrelProfile {
         sound.then_some(Self { rounding, corner_height, ..self })
     }
 
-    /// Returns the radius (m) of the barrel at a distance (m) along its axis from the bilge.
+    /// Returns the radius (m) of the barrel at a position along its axis, given as the distance (m) from the bilge.
     pub fn radius_at(&self, x: f64) -> f64 {
         self.bilge_radius - self.stave_radius
             + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
@@ -207,7 +208,7 @@ impl BarrelProfile {
         edges.chain([1.0, -1.0].map(stave)).collect()
     }
 
-    /// Returns the outward normal at a point (m) of the boundary; at a sharp edge the mean of those of head and
+    /// Returns the outward normal at a point (m) of the boundary; at a sharp edge, the mean of the normals of head and
     /// stave.
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         let normal = self.gap(point).normal;
@@ -224,7 +225,7 @@ impl BarrelProfile {
         sum * (1.0 / sum.length())
     }
 
-    /// Returns half the angle (rad) of the arc of a stave.
+    /// Returns half of the angle (rad) that the arc of a stave spans.
     fn half_stave(&self) -> f64 {
         math::atan2(
             self.half_length - self.rounding,
@@ -232,7 +233,8 @@ impl BarrelProfile {
         )
     }
 
-    /// Returns the outline as a chain of points, from the right head over the top, the left head and the bottom.
+    /// Returns the outline as a chain of points that starts at the right head and runs over the top, the left head and
+    /// the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
         let half = self.half_stave();
         let direction = |angle: f64| {
@@ -264,7 +266,7 @@ impl BarrelProfile {
         self.chain(24)
     }
 
-    /// Returns nodes of the profile with sharp edges.
+    /// Returns nodes along the profile, without regard to the rounding of the edges.
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         let half =
             math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius);
@@ -285,7 +287,7 @@ impl BarrelProfile {
         nodes_along(&pieces, true, spacing, f64::INFINITY)
     }
 
-    /// Returns the section of a flat plate inside the outline, whose inertia is not that of a barrel.
+    /// Returns the mass distribution of a flat plate with this outline. Its moment of inertia is not that of a barrel.
     pub(super) fn section(&self) -> Section {
         super::polygon::section_of(&self.chain(2000))
     }

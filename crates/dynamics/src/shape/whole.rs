@@ -1,16 +1,16 @@
-//! Convex solids that touch over a point, a line or a face, and their contact patches.
+//! Convex solids that touch at a point, along a line or over a face, and their contact patches.
 
 use super::{Gap, Shape};
 use crate::real::Real;
 use crate::space::{Planar, Rotation2, Space, Vec2, Wrench};
 
-/// A convex solid that touches with its deepest point, or with a whole line or face where it lies flat.
+/// A convex solid that touches at its deepest point or, where it lies flat on a surface, along a whole line or face.
 pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Visits the contact patches with a surface, some of which may be open, in the order of their sticks; all in the
-    /// frame of the surface.
+    /// Visits the contact patches with a surface, in the order of their sticks and in the frame of the surface. Some of
+    /// the patches may be open.
     ///
-    /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to
-    /// that of the surface.
+    /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to the
+    /// frame of the surface.
     fn meet(
         &self,
         surface: &S::Surface,
@@ -19,7 +19,7 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         visit: impl FnMut(Patch<S>),
     );
 
-    /// Returns the points that bear on a surface, if the contact is one of several separate points; the arguments are
+    /// Returns the points that bear on a surface, if the contact consists of several separate points; the arguments are
     /// as in [`Whole::meet`].
     #[inline(always)]
     fn points(
@@ -31,13 +31,14 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         None
     }
 
-    /// Returns the maximum number of sticks with one surface.
+    /// Returns the maximum number of sticks that the solid needs for one surface.
     fn most_sticks(&self) -> usize;
 
-    /// Returns the center (m, in the body frame, from the center of mass) and the radius (m) of an enclosing ball.
+    /// Returns the center (m, in the body frame, relative to the center of mass) and the radius (m) of an enclosing
+    /// ball.
     fn ball(&self) -> (S::Vector, S::Real);
 
-    /// Returns the tributary length of boundary (m) of a contact.
+    /// Returns the tributary length (m) of a contact.
     fn tributary_length(&self) -> S::Real;
 }
 
@@ -58,10 +59,10 @@ impl<S: Space> Touch<S> {
     }
 }
 
-/// Contact of two bodies: in a point, or along a line or a face that they share.
+/// Contact of two bodies: at a point, along a line that they share, or over a face that they share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch<S: Space> {
-    /// Index of the first stick of the patch, below [`Whole::most_sticks`].
+    /// Index of the first stick of the patch; less than [`Whole::most_sticks`].
     pub first: usize,
     /// Deepest point of the patch.
     pub deepest: Touch<S>,
@@ -74,7 +75,7 @@ pub struct Patch<S: Space> {
 pub struct Points<S: Space> {
     /// The points.
     pub points: [Bearing<S>; MOST_POINTS],
-    /// Unit vectors along the touching faces of both bodies, for the sticks.
+    /// Unit vectors along the touching faces of both bodies, along which the sticks are placed.
     pub axes: [S::Vector; 4],
 }
 
@@ -87,7 +88,7 @@ pub const MOST_POINTS: usize = 17;
 pub struct Bearing<S: Space> {
     /// Point of contact.
     pub touch: Touch<S>,
-    /// Number of springs that it represents.
+    /// Number of springs that the point represents.
     pub share: S::Real,
     /// Derivative of `share` with respect to the rotation of the contactor (1/rad).
     pub turning: S::Spin,
@@ -102,12 +103,12 @@ pub struct Bearing<S: Space> {
 /// E = a U(δ) + b (U(2 δ₀ − δ) + n U(δ₀))      n = 0 for a line, 2 for a face
 /// ```
 ///
-/// with `a = b = 1` is that of a tube on its two ends, and of a disc on four points of its rim, at any rotation. As
-/// bodies that lie flat rock, the deepest point moves from end to end. At that moment the part of the force at the
-/// deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`, so neither force nor moment jumps. A patch that
-/// shrinks to a point has the stiffness of one spring, so `a = b = 1/(2 + n)` there.
+/// with `a = b = 1` equals, at any rotation, the energy of a tube supported at its two ends, or of a disc supported at
+/// four points of its rim. As bodies that lie flat rock, the deepest point moves from end to end. At that moment the
+/// part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`, so neither force nor moment
+/// jumps. A patch that shrinks to a point has the stiffness of one spring, so `a = b = 1/(2 + n)` there.
 ///
-/// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and with them the energy. The
+/// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and so does the energy. The
 /// corresponding forces close the energy balance, for example for a tube that slides off a head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread<S: Space> {
@@ -117,17 +118,18 @@ pub struct Spread<S: Space> {
     pub shares: Shares<S::Real>,
     /// Extent (m) of the patch from its middle.
     pub radius: S::Real,
-    /// Unit vectors along the patch that turn with a body, for the sticks.
+    /// Unit vectors along the patch, which turn with one of the bodies and along which the sticks are placed.
     pub axes: Axes<S>,
     /// Derivatives with respect to the motion of the bodies.
     pub slopes: Slopes<S>,
 }
 
-/// Derivatives of a patch with respect to the motion of its contactor relative to its target: displacement (1/m) and
-/// rotation about the center of mass of the contactor (1/rad), as forces and moments are of energy.
+/// Derivatives of the quantities of a patch with respect to the motion of the contactor relative to the target: with
+/// respect to its displacement (1/m), stored as forces, and to its rotation about the center of mass of the contactor
+/// (1/rad), stored as moments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of δ₀ (m), without the part that is due to the motion of the material points at the middle.
+    /// Derivative of δ₀ (m), without the part that is due to the motion of the two bodies at the middle of the patch.
     pub middle: Wrench<S>,
     /// Derivative of `a`.
     pub deepest: Wrench<S>,
@@ -142,7 +144,7 @@ pub struct Shares<R> {
     pub deepest: R,
     /// `b` of [`Spread`]; less than `a` only if the bodies are rotated out of the plane of the patch.
     pub others: R,
-    /// Share of the friction that may act beside the center of pressure; zero for a point.
+    /// Share of the friction that may act at a distance from the center of pressure; zero for a contact at a point.
     pub aside: R,
 }
 

@@ -1,4 +1,4 @@
-//! A barrel of revolution about `x`: stave, heads, and a rounded chime between them.
+//! A barrel as a body of revolution about `x`: stave, heads, and a rounded chime between stave and heads.
 
 use crate::real::{Mask, Real};
 use crate::shape::Gap;
@@ -15,9 +15,9 @@ pub struct Barrel<R = f64> {
     pub half_length: R,
     /// Radius (m) of the heads of the core.
     pub head_radius: R,
-    /// `R`, the radius (m) of the stave of the core along the barrel.
+    /// `R`, the radius (m) of the longitudinal arc of the core's stave.
     pub stave_radius: R,
-    /// `a`, the distance (m) of the center of the stave's arc beyond the axis.
+    /// `a`, the distance (m) by which the center of the stave's arc lies beyond the axis.
     pub stave_offset: R,
     /// Distance (m) of the surface from the core.
     pub rounding: R,
@@ -39,8 +39,8 @@ pub struct BarrelError {
 }
 
 impl Barrel {
-    /// Creates a barrel from its length (m), the radii (m) of its heads and its bilge, and the radius (m) that rounds
-    /// the corner between head and stave, its chime.
+    /// Creates a barrel from its length (m), the radii (m) of its heads and its bilge, and the rounding radius (m) of
+    /// the chime, which is the edge between head and stave.
     ///
     /// # Errors
     /// If these are not the dimensions of a barrel.
@@ -87,7 +87,7 @@ impl<R: Real> Barrel<R> {
     /// Returns distance and normal at a point (m).
     ///
     /// Outside of the core the nearest point lies on the stave, on a head, or on the circle where they meet; inside,
-    /// the nearer of stave and head is used.
+    /// the nearest point is taken on the stave or the head, whichever is nearer.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -129,7 +129,7 @@ impl<R: Real> Barrel<R> {
         Gap { distance: distance - self.rounding, normal }
     }
 
-    /// Returns the support point (m) of the core in a direction of length one.
+    /// Returns the support point (m) of the core in the direction of a unit vector.
     #[inline(always)]
     pub(super) fn furthest(&self, direction: Vec3<R>) -> Vec3<R> {
         let (zero, one) = (R::zero(), R::splat(1.0));

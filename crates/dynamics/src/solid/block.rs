@@ -22,7 +22,7 @@ impl<R: Real> Block<R> {
         self.half.length() + self.rounding
     }
 
-    /// Returns distance and normal at a point (m); inside the core, those of the nearest face.
+    /// Returns distance and normal at a point (m); inside the core, the distance and normal of the nearest face.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -91,11 +91,11 @@ const EDGES: [(usize, usize); 12] = [
 
 /// Returns the closest points of a block, as target, and another solid, as contactor, in the frame of the block.
 ///
-/// `at` is the origin (m) of the other solid in the frame of the block, and `frame` the rotation from its frame to that
-/// of the block.
+/// `at` is the origin (m) of the other solid in the frame of the block, and `frame` the rotation from the frame of the
+/// other solid to that of the block.
 ///
-/// Separate cores are closest at an edge of the block, or inside a face at the support point of the other solid toward
-/// that face. For overlapping cores the face with the least penetration is used.
+/// If the cores are separate, the closest points lie at an edge of the block, or inside a face at the support point of
+/// the other solid toward that face. If the cores overlap, the face with the least penetration is used.
 pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     let (grown, radius) = (block.rounding, other.rounding());
     let mut best = Closest {

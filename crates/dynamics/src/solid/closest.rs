@@ -1,6 +1,7 @@
 //! Closest points of two convex bodies.
 //!
-//! All computations are scalar: lanes are processed one after the other, with the same bits as a single run.
+//! All computations are scalar: lanes are processed one after the other, with results that are bit-identical to a
+//! single run.
 
 use super::barrel::Barrel;
 use super::rounded::Hull;
@@ -10,11 +11,11 @@ use crate::space::{Linear, Rotation3, Spatial, Vec3};
 /// Closest or deepest points of two bodies, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// Distance (m) of the surfaces, negative where they overlap.
+    /// Distance (m) between the surfaces; negative where they overlap.
     pub distance: f64,
-    /// Unit normal out of the target.
+    /// Unit normal that points out of the target.
     pub normal: Vec3,
-    /// The point (m) of the contactor's surface.
+    /// The closest or deepest point (m) of the contactor's surface.
     pub point: Vec3,
     /// Number of distance and support evaluations.
     pub evaluations: u32,
@@ -22,26 +23,28 @@ pub struct Closest {
     pub converged: bool,
 }
 
-/// Maximum number of evaluations of the search along an axis. Bisection alone needs 50, and every third evaluation
-/// bisects where false position is slower, for example on a line that is flat to nine digits up to a kink.
+/// Maximum number of evaluations of the search along an axis. Bisection alone needs 50, and where false position
+/// converges more slowly than bisection, every third evaluation is a bisection. An example is a slope that is constant
+/// to nine digits up to a kink.
 const MOST_ALONG: u32 = 180;
 
-/// Result along a segment: position from −1 at `middle − half` to 1 at `middle + half`; gap there; number of
-/// evaluations; and `true` if it is the minimum.
+/// Result of a search along a segment: the position, from −1 at `middle − half` to 1 at `middle + half`; the gap at
+/// this position; the number of evaluations; and `true` if the gap is the minimum.
 type Along = (f64, Gap<Spatial>, u32, bool);
 
-/// Tolerance (1) of the slope of a gap along a segment at its minimum, relative to the parts of the slope.
+/// Tolerance (1) of the slope of a gap along a segment at the minimum of the gap, relative to the terms that add up to
+/// the slope.
 const FLAT: f64 = 1e-14;
-/// Maximum number of steps along a segment before the search takes over.
+/// Maximum number of steps of Halley's method along a segment before the slower search takes over.
 const MOST_HALLEY: u32 = 6;
-/// Length of a step below which the error after it, which is of third order, is lost in rounding.
+/// Length of a step below which the error after the step, which is proportional to its third power, is smaller than the
+/// rounding error.
 const LAST_HALLEY: f64 = 1e-5;
 
-/// Returns the point of a segment that is closest to a hull.
-///
-/// For a tube there is a closed form; for a stave, the usual case, Halley's method converges in two or three steps.
-/// Since the gap is convex, the result is valid if the gap does not decrease to either side. Otherwise [`along_axis`]
-/// searches for the minimum.
+/// Returns the point of a segment that is closest to a hull. For a tube there is a closed form. For the stave of a
+/// barrel, which is the usual case, Halley's method converges in two or three steps. Since the gap is convex, the
+/// result is the minimum if the gap does not decrease toward either side. Otherwise [`along_axis`] searches for the
+/// minimum.
 #[inline(always)]
 pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     // `inline(always)`: a closure left out of line loses the target feature.
@@ -70,8 +73,8 @@ pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     )
 }
 
-/// Finds the minimum of a quantity along a segment from its three derivatives, by Halley's method. Exchanging the ends
-/// of the segment gives the same result to the last bit.
+/// Finds the minimum of a quantity along a segment by Halley's method, from the first three derivatives of the
+/// quantity. Exchanging the ends of the segment gives a bit-identical result.
 #[inline(always)]
 fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> Option<f64> {
     let mut place = (-middle.dot(half) / half.dot(half)).clamp(-1.0, 1.0);
@@ -91,8 +94,7 @@ fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> O
 /// Returns the same as [`along`] for any convex body, by a search that needs only the gap.
 ///
 /// The distance is convex along the segment, so its slope `n · half` never decreases and has one zero, which is found
-/// by false position with bisection as a safeguard. Exchanging the ends of the segment gives the same result to the
-/// last bit.
+/// by false position with bisection as a safeguard. Exchanging the ends of the segment gives a bit-identical result.
 #[inline(always)]
 fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> Along {
     let (first, falling) = slope(&gap, middle, half, -1.0);
@@ -140,7 +142,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
     (best.0, best.1, MOST_ALONG, false)
 }
 
-/// Returns the gap at a position on a segment, and its slope.
+/// Returns the gap at a position on a segment, and the slope of the gap along the segment.
 #[inline(always)]
 fn slope(
     gap: &impl Fn(Vec3) -> Gap<Spatial>,
@@ -164,10 +166,10 @@ struct Set<'a> {
 struct Support {
     /// The support point (m).
     point: Vec3,
-    /// Curvature radius (m) that is common to all tangential directions: that of the stave along the barrel, or zero at
-    /// the chime.
+    /// Radius of curvature (m) that is common to all tangential directions: the radius of the stave along the barrel,
+    /// or zero at the chime.
     along: f64,
-    /// Additional curvature radius (m) in the direction `around`.
+    /// Additional radius of curvature (m) in the direction `around`.
     across: f64,
     /// The unit vector around the axis.
     around: Vec3,
@@ -189,8 +191,9 @@ impl Set<'_> {
 
     /// Returns the support of a unit direction, with the curvature of the surface there.
     ///
-    /// On the stave `h = R |n| − a β`, on the chime `h = l |α| + r β`, with α along the axis and β across it; the
-    /// second derivatives of `|n|` and `β` are `1` tangentially and `1/β` around the axis.
+    /// The support function is `h = R |n| − a β` on the stave and `h = l |α| + r β` on the chime, where α and β are the
+    /// components of the direction along and across the axis; the second derivatives of `|n|` and `β` are `1`
+    /// tangentially and `1/β` around the axis.
     fn support(&self, direction: Vec3) -> Support {
         let local = self.rotation.unapply(direction);
         let barrel = self.barrel;
@@ -208,7 +211,8 @@ impl Set<'_> {
         Support { point, along, across, around, outward }
     }
 
-    /// Returns the support in the direction of a head, at the side of the rim toward a point (m).
+    /// Returns the support in the direction of the axis of a head, at the point of the rim that is nearest to a point
+    /// (m).
     fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
         let (barrel, toward) = (self.barrel, self.rotation.unapply(toward - self.center));
         let radial = Vec3::new(0.0, toward.y, toward.z).unit_or(Vec3::new(0.0, 0.0, 1.0));
@@ -229,9 +233,9 @@ const HEAD: f64 = 1e-7;
 
 /// Separation of two cores in a direction.
 struct Separation {
-    /// Vector from the support of the target to that of the contactor.
+    /// Vector (m) from the support point of the target to the support point of the contactor.
     offset: Vec3,
-    /// Distance (m) of the supporting planes.
+    /// Distance (m) between the supporting planes.
     distance: f64,
     supports: [Support; 2],
 }
@@ -252,20 +256,20 @@ fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation
 /// Tangential part of `offset`, relative to the lengths involved, below which a normal is exact to rounding.
 const TANGENTIAL: f64 = 4e-15;
 /// Newton step (rad) below which a normal is exact. Near the edge of a head the support point moves much faster than
-/// the direction turns, so its position is lost in rounding long before the normal is.
+/// the direction turns, so rounding errors affect its position long before they affect the normal.
 const TURN: f64 = 1e-11;
 /// Maximum number of Newton steps before projections are used.
 const MOST_STEPS: u32 = 25;
 /// Maximum number of rounds of projections.
 const MOST_HELP: u32 = 40;
 
-/// Returns the closest points of two barrels, the target at the origin.
+/// Returns the closest points of two barrels; the target is at the origin.
 ///
-/// The normal is the direction `n` that maximizes the distance of the supporting planes of the cores, `g(n) = n · c −
-/// h₁(n) − h₂(−n)`, and the maximum is the distance of the cores; `g` is concave where the cores are separate. Where a
-/// head bears, `g` has a kink, so heads are tested first; otherwise Newton's method runs on the sphere of directions.
-/// It starts from projections from one core to the other and back. Projections also take over where Newton's method
-/// does not ascend, since they always approach the solution.
+/// The normal is the direction `n` that maximizes the distance between the supporting planes of the cores, `g(n) = n ·
+/// c − h₁(n) − h₂(−n)`, and the maximum is the distance between the cores; `g` is concave where the cores are separate.
+/// Where the closest point lies on a head, `g` has a kink, so heads are tested first; otherwise Newton's method runs on
+/// the sphere of directions. It starts from projections from one core to the other and back. Projections also take over
+/// where Newton's method does not ascend, since they always approach the solution.
 pub(super) fn barrels(
     target: &Barrel,
     contactor: &Barrel,
@@ -337,8 +341,8 @@ pub(super) fn barrels(
     found(normal, best.supports[1].point, best.distance, evaluations, false)
 }
 
-/// Returns the closest point of one core to a head of another, if it lies in front of the head: normal out of the head,
-/// point of the core, and its distance (m).
+/// Returns the closest point of one core to a head of another, if this point lies in front of the head. The result is
+/// the normal out of the head, the point of the core, and the distance (m).
 fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let axis = bearing.axis();
     let side = if (resting.center - bearing.center).dot(axis) < 0.0 { -1.0 } else { 1.0 };
@@ -355,8 +359,8 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     ))
 }
 
-/// Returns the closest points of the rims of two heads that face each other, if they cross in projection along the
-/// axis: normal out of the target, point of the contactor's core and distance (m).
+/// Returns the closest points of the rims of two heads that face each other, if the rims cross in projection along the
+/// axis. The result is the normal out of the target, the point of the contactor's core and the distance (m).
 ///
 /// The projections of such heads overlap in a lens. The heads are closest at a corner of the lens, unless the rim of
 /// one lies inside the other. The solution uses Newton's method on the angles of both points; the normal must lie
@@ -427,9 +431,9 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
     best
 }
 
-/// Returns normal, point of the contactor's core and distance (m), computed from the more accurate of both support
-/// points. A support point on a rim is inaccurate where the direction is nearly axial, since it then moves much faster
-/// than the direction turns.
+/// Returns the normal, the point of the contactor's core and the distance (m), computed from the more accurate one of
+/// the two support points. A support point on a rim is inaccurate where the direction is nearly axial, since the point
+/// then moves much faster than the direction turns.
 fn polished(
     target: &Set<'_>,
     contactor: &Set<'_>,
@@ -472,7 +476,7 @@ fn newton(normal: Vec3, here: &Separation, tangential: Vec3) -> Vec3 {
     }
 }
 
-/// Returns a step, shortened until the separation of the cores increases.
+/// Returns a step that has been shortened until it increases the separation of the cores.
 fn ascend(
     target: &Set<'_>,
     contactor: &Set<'_>,

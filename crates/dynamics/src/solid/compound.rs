@@ -8,11 +8,11 @@ use crate::space::{Pose, Rotation3, Spatial, Vec3};
 /// One solid of a compound body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Surface of the solid, as contactor and as target.
+    /// Surface of the solid, used both as contactor and as target.
     pub hull: Hull,
-    /// Origin (m) of the solid in the common frame of all parts.
+    /// Position (m) of the solid's origin in the common frame of all parts.
     pub center: Vec3,
-    /// Rotation of the solid in the common frame.
+    /// Rotation from the frame of the solid to the common frame.
     pub rotation: Rotation3,
     /// Mass distribution in the frame of the solid.
     pub bulk: Bulk,
@@ -23,8 +23,8 @@ pub struct Part {
 /// The body frame has its origin at the center of mass and its axes along the principal axes; the pose of the body is
 /// that of the body frame in the common frame.
 ///
-/// Every solid is a boundary of its own, so two bodies need the contact pairs of [`pairs_between`]. If the bodies are
-/// far apart, only bounding balls are tested, when the list of contact elements is built.
+/// Every solid is a boundary of its own, so two bodies need the contact pairs of [`pairs_between`]. For bodies that are
+/// far apart, only the bounding balls are tested, and only when the list of contact elements is built.
 pub fn compound(name: &str, parts: &[Part], tributary_length: f64) -> Body<Spatial> {
     let whole = Bulk::sum(parts.iter().map(|part| part.bulk.placed(part.center, part.rotation)));
     let (inertia, orientation) = whole.principal();

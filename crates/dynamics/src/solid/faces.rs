@@ -1,4 +1,5 @@
-//! Contact of the faces of two blocks: the polygon that they share, and the share of each corner in the force.
+//! Contact of the faces of two blocks: the polygon that the faces share, and the share of the force that acts at each
+//! corner of the polygon.
 //!
 //! All computations are scalar, as in [`closest`](super::closest).
 
@@ -19,10 +20,10 @@ const FLUSH: f64 = 1e-9;
 /// A corner of a shared polygon, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vertex {
-    /// The point (m) of the contactor's surface.
+    /// The corner (m) as a point of the contactor's surface.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
-    /// Number of springs that it represents.
+    /// Number of springs that the corner represents.
     pub(super) share: f64,
     /// Derivative of `share` with respect to the rotation of the contactor (1/rad).
     pub(super) turning: Vec3,
@@ -34,7 +35,7 @@ pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     /// Share of the contact that the polygon carries: 1 where a face of either block meets the other, 0 where an edge
     /// crosses an edge.
     pub(super) flat: f64,
-    /// Unit vectors along the face of the target, or along those of both.
+    /// Unit vectors along the face of the target, or along the faces of both blocks.
     pub(super) axes: [Vec3; AXES],
 }
 
@@ -45,7 +46,7 @@ enum Side {
     Target(usize),
 }
 
-/// Corners of a polygon, each with the side that follows counterclockwise.
+/// Corners of a polygon in counterclockwise order, each with the side that follows.
 #[derive(Clone, Copy)]
 struct Chain {
     corners: [(Vec2, Side); 2 * MOST],
@@ -81,8 +82,8 @@ impl Chain {
     }
 }
 
-/// The sides of a rectangle counterclockwise, the first from the corner of least coordinates: unit vectors
-/// along them and out of them.
+/// The sides of a rectangle in counterclockwise order, starting at the corner with the smallest coordinates. For each
+/// side, the unit vectors along the side and out of the rectangle.
 const SIDES: [(Vec2, Vec2); 4] = [
     (Vec2::new(1.0, 0.0), Vec2::new(0.0, -1.0)),
     (Vec2::new(0.0, 1.0), Vec2::new(1.0, 0.0)),
@@ -90,8 +91,8 @@ const SIDES: [(Vec2, Vec2); 4] = [
     (Vec2::new(0.0, -1.0), Vec2::new(-1.0, 0.0)),
 ];
 
-/// A face of a block in the frame of the target: its middle (m), two unit vectors along it and one out of it, and
-/// half its sides (m).
+/// A face of a block in the frame of the target: its middle (m), two unit vectors along the face, the outward unit
+/// normal, and half the lengths of its sides (m).
 struct Face {
     middle: Vec3,
     along: [Vec3; 2],
@@ -103,8 +104,8 @@ impl Face {
     /// Returns the face of a block toward a direction in the frame of the block.
     ///
     /// `frame` is the rotation from the frame of the block to that of the target, where the origin of the block lies at
-    /// `at` (m). The cross product of the two vectors along the face points to the side of `up`; by default that of the
-    /// outward normal.
+    /// `at` (m). The cross product of the two vectors along the face points to the same side as `up`, which is the
+    /// outward normal by default.
     fn of(block: &Block, direction: Vec3, at: Vec3, frame: Rotation3, up: Option<Vec3>) -> Self {
         let steep = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
         let halves = [block.half.x, block.half.y, block.half.z];
@@ -139,7 +140,7 @@ impl Face {
 }
 
 /// Returns the mean of [`shared`] and of [`shared`] with the blocks exchanged, so that the result does not depend on
-/// which block is the target.
+/// the choice of the target.
 pub(super) fn shared_by_both(
     contactor: &Block,
     target: &Block,
@@ -169,14 +170,15 @@ pub(super) fn shared_by_both(
 
 /// Returns the polygon that a block shares with a target, in the frame of the target.
 ///
-/// `at` is the origin (m) of the contactor, `frame` the rotation from its frame to that of the target, and `normal`
-/// points out of the target at the closest points.
+/// `at` is the origin (m) of the contactor, `frame` the rotation from the frame of the contactor to that of the target,
+/// and `normal` points out of the target at the closest points.
 ///
 /// The two faces that meet at the closest points overlap in a polygon, in projection on the face of the target. Each
 /// corner of the polygon acts like one spring per right angle by which the polygon turns at the corner, so the whole
-/// polygon always acts like four springs. A corner of a block on the face of the other block is one spring; where edges
-/// of twisted blocks cross, two corners of the polygon take the place of one. The result is continuous in the pose,
-/// since the turn of a convex boundary is, and exactly flush faces need no special case.
+/// polygon always acts like four springs. A corner of a block on the face of the other block acts like one spring.
+/// Where edges of twisted blocks cross, two corners of the polygon replace one corner of a block. The result is a
+/// continuous function of the pose, since the turn of a convex boundary is continuous, and exactly flush faces need no
+/// special case.
 fn shared(
     contactor: &Block,
     target: &Block,
@@ -245,11 +247,12 @@ fn shared(
     Shared { vertices, flat, axes: bearing.along }
 }
 
-/// Returns the crossing of a side of the contactor's face with a side of the target's face: the point (m) of the
-/// former, the common unit normal out of the target, the distance (m) along the normal, and a weight from 0 to 1.
+/// Returns the crossing of a side of the contactor's face with a side of the target's face: the point (m) on the
+/// contactor's side, the common unit normal out of the target, the distance (m) along the normal, and a weight from 0
+/// to 1.
 ///
-/// The weight vanishes where the common normal is far from that of the face, as for nearly parallel sides, which pass
-/// each other beside the faces.
+/// The weight vanishes where the common normal deviates strongly from the normal of the face. This is so for nearly
+/// parallel sides, which pass each other beside the faces.
 fn crossing(
     resting: &Face,
     own: usize,

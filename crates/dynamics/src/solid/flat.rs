@@ -1,5 +1,5 @@
-//! Line and face contacts of two bounded solids: tubes side by side, and a tube or a head on a head or on the face of a
-//! block.
+//! Line and face contacts of two bounded solids: two parallel tubes, a tube on a head or on the face of a block, and a
+//! head on a head or on the face of a block.
 //!
 //! All computations are scalar, as in [`closest`](super::closest).
 
@@ -12,7 +12,7 @@ use crate::space::{Linear, Quaternion, Rotation3, Spatial, Vec3, Wrench};
 /// Middle of a patch that two bodies share, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flat {
-    /// The point (m) of the contactor's surface.
+    /// The middle of the patch (m) as a point of the contactor's surface.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
     /// The weights, as in [`Spread`](crate::shape::Spread).
@@ -22,9 +22,9 @@ pub(super) struct Flat {
     pub(super) axes: [Vec3; 2],
 }
 
-/// Sine of the angle between two solids above which they share no patch.
+/// Sine of the largest angle between two solids that share a patch.
 pub(super) const WIDEST: f64 = 0.1;
-/// Extent (m) from the middle above which a line or a face has full weight.
+/// Extent (m) of a line or face from its middle, above which the line or face has full weight.
 const LONG: f64 = 0.05;
 
 /// Returns `3 u² − 2 u³`, clamped to 0 and 1.
@@ -34,7 +34,7 @@ pub(super) fn smooth(u: f64) -> f64 {
 }
 
 /// Returns the weights of a patch that acts like `springs` springs and extends `length` (m) from its middle, for two
-/// solids inclined to each other by an angle with the given squared sine.
+/// solids that are inclined to each other; `sine_squared` is the squared sine of the angle between them.
 ///
 /// The shorter the patch, the smaller the permitted angle: the part of an inclined tube in front of a head does not
 /// contain the deepest point, so its weight must vanish before this part ends.
@@ -46,11 +46,11 @@ fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     Shares { deepest: 1.0 - flat * (1.0 - each), others: flat * each, aside: long }
 }
 
-/// Returns the patch that a contactor shares with a target, in the frame of the target; `None` if they touch in a
+/// Returns the patch that a contactor shares with a target, in the frame of the target; `None` if they touch at a
 /// point.
 ///
-/// `at` is the origin (m) of the contactor, `frame` the rotation from its frame to that of the target, and `normal` the
-/// contact normal out of the target.
+/// `at` is the origin (m) of the contactor, `frame` the rotation from the frame of the contactor to that of the target,
+/// and `normal` the contact normal out of the target.
 pub(super) fn shared(
     contactor: &Hull,
     target: &Hull,
@@ -122,11 +122,11 @@ pub(super) fn shared(
     }
 }
 
-/// Step (m, rad) of central differences, good to eight digits.
+/// Step (m, rad) of central differences; the derivatives are accurate to eight digits.
 const HAIR: f64 = 1e-6;
 
-/// Returns the derivatives of a patch with respect to the motion of the contactor, by differences of neighboring
-/// poses.
+/// Returns the derivatives of a patch with respect to the motion of the contactor, by finite differences between
+/// neighboring poses.
 pub(super) fn slopes(
     flat: &Flat,
     contactor: &Hull,
@@ -161,7 +161,7 @@ pub(super) fn slopes(
     Slopes { middle, deepest, others }
 }
 
-/// Returns the patch of two tubes, the target along `x`.
+/// Returns the patch of two tubes; the axis of the target is along `x`.
 fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> Option<Flat> {
     let sine_squared = 1.0 - direction.x * direction.x;
     if sine_squared >= WIDEST * WIDEST {
@@ -184,7 +184,8 @@ fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> 
     })
 }
 
-/// Returns the ends of the overlap of an interval about zero and one about `center`, and half its length.
+/// Returns the two ends, and half the length, of the overlap of two intervals. The first extends by `half` to either
+/// side of zero, the second by `other` to either side of `center`.
 fn overlap(half: f64, center: f64, other: f64) -> (f64, f64, f64) {
     let (least, most) = ((center - other).max(-half), (center + other).min(half));
     (least, most, 0.5 * (most - least))
@@ -194,7 +195,7 @@ fn overlap(half: f64, center: f64, other: f64) -> (f64, f64, f64) {
 struct Line {
     /// Middle (m) of the part of the tube's axis in front of the head or face.
     center: Vec3,
-    /// Distance (m) of the surfaces at the middle.
+    /// Distance (m) between the surfaces at the middle.
     distance: f64,
     /// Unit normal out of the head or face.
     normal: Vec3,
@@ -244,8 +245,9 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
     }
 }
 
-/// Returns the contact line of a tube on a plane perpendicular to an axis, given by height and rounding (m), along a
-/// chord given by its middle and half its length (m) along the tube.
+/// Returns the contact line of a tube on a plane perpendicular to an axis. The plane is given by its height (m) along
+/// the axis and its rounding (m); the contact line follows a chord that is given by its middle and by half its length
+/// (m) along the tube.
 fn on_plane(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -271,7 +273,7 @@ fn on_plane(
 const AXES: [Vec3; 3] =
     [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
 
-/// Returns the axis of the face of a block nearest to a normal, with either sign.
+/// Returns the unit axis of a block that is most nearly parallel to a normal; the sign of the normal does not matter.
 fn facing(normal: Vec3) -> Vec3 {
     let steep = |axis: &Vec3| normal.dot(*axis).abs();
     let [x, y, z] = AXES;
@@ -304,10 +306,11 @@ fn head_on_block(
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// Returns the patch of the head of a barrel on a plane perpendicular to an axis, given by height and rounding (m).
+/// Returns the patch of the head of a barrel on a plane perpendicular to an axis; the plane is given by its height (m)
+/// along the axis and its rounding (m).
 ///
-/// `middle` returns the middle of the shared area and its extent (m) from the position of the center of the head in the
-/// plane.
+/// `middle` maps the position of the center of the head in the plane to the middle of the shared area and its extent
+/// (m).
 fn head_on(
     axis: Vec3,
     (height, rounding): (f64, f64),

@@ -41,8 +41,8 @@ impl Bulk {
         Self::symmetric(mass, Vec3::new(along, across, across) * mass)
     }
 
-    /// Returns the distribution of a thin-walled tube with open ends and a mass (kg), such as a tube of a rack; its
-    /// outside is a capsule.
+    /// Returns the distribution of a thin-walled tube with open ends and a mass (kg), such as a tube of a rack. The
+    /// outer surface of the tube is given as a capsule.
     pub fn of_hollow(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
         let across = 0.5 * r * r;
@@ -60,7 +60,7 @@ impl Bulk {
         outside.of_density(mass / outside.volume)
     }
 
-    /// Returns the distribution rotated and then displaced (m).
+    /// Returns the distribution after a rotation and then a displacement (m).
     #[must_use]
     pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
         // R S Rᵀ: first its rows, then its columns.
@@ -89,8 +89,8 @@ impl Bulk {
 
     /// Returns the principal moments of inertia (kg·m²) about the center of mass, and the rotation of their axes.
     ///
-    /// Uses Jacobi's method, which rotates one plane after the other until the matrix is diagonal. Distributions that
-    /// are symmetric about the planes of their frame keep its axes.
+    /// Uses Jacobi's method, which rotates one plane after the other until the matrix is diagonal. For distributions
+    /// that are symmetric about the planes of their frame, the principal axes are the axes of the frame.
     pub fn principal(&self) -> (Vec3, Quaternion) {
         let mut turned = Quaternion::identity();
         let mut second = self.second;
@@ -146,7 +146,7 @@ pub struct Cask {
     pub barrel: Barrel,
     /// Thickness (m) of staves and heads.
     pub wall: f64,
-    /// Depth (m) of the heads within the ends of the staves.
+    /// Distance (m) of the heads from the ends of the staves.
     pub chime: f64,
     /// Mass (kg) of the wood.
     pub wood: f64,
@@ -181,7 +181,7 @@ impl Revolved {
 }
 
 impl Cask {
-    /// Returns the cavity for wine, and the whole space inside the staves.
+    /// Returns the integrals over the cavity for wine, and the integrals over the whole space inside the staves.
     fn rooms(&self) -> [Revolved; 2] {
         let end = self.barrel.half_length + self.barrel.rounding;
         [end - self.chime - self.wall, end].map(|end| within(&self.barrel, self.wall, end))
@@ -192,7 +192,7 @@ impl Cask {
         self.rooms()[0].volume
     }
 
-    /// Returns the wood: the staves, and the two heads between them.
+    /// Returns the integrals over the wood: the staves, and the two heads between the staves.
     fn staves_and_heads(&self) -> Revolved {
         let [room, open] = self.rooms();
         let outer_face = self.barrel.half_length + self.barrel.rounding - self.chime;
@@ -208,9 +208,10 @@ impl Cask {
     /// Returns the mass distribution of wood and contents.
     ///
     /// Wine does not rotate about the axis of a rolling barrel, since its boundary layer is thin. About a transverse
-    /// axis it rotates like the liquid in a spheroid of the same moments, with `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb,
-    /// Hydrodynamics, on the ellipsoidal shell filled with liquid). Mass and center of mass include the wine; the
-    /// returned second moments are those of an equivalent rigid body.
+    /// axis, wine rotates like the liquid in a spheroid with the same second moments. The effective moment of inertia
+    /// of this liquid is `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with
+    /// liquid). Mass and center of mass include the wine; the returned second moments are those of an equivalent rigid
+    /// body.
     pub fn bulk(&self, fill: Fill) -> Bulk {
         let wood = self.staves_and_heads();
         let wood = wood.of_density(self.wood / wood.volume);
@@ -255,7 +256,7 @@ impl Cask {
     }
 }
 
-/// Returns the radius (m) of the full stave at a position (m) along the barrel.
+/// Returns the radius (m) of the stave, before its edges are rounded, at a position (m) along the barrel.
 fn stave(barrel: &Barrel, x: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding;
     (arc * arc - x * x).sqrt() - barrel.stave_offset
@@ -288,7 +289,8 @@ fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]
     sum
 }
 
-/// Returns the integrands of a disc of a radius (m) at a position (m) along the axis.
+/// Returns the contributions of a thin disc, per length, to the integrals of [`Revolved`]. The disc has a radius (m)
+/// and a position (m) along the axis.
 fn disc(x: f64, r: f64) -> [f64; 3] {
     let area = std::f64::consts::PI * r * r;
     [area, area * x * x, 0.25 * area * r * r]
@@ -299,7 +301,7 @@ fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
     Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }
 }
 
-/// Integrates over a whole barrel.
+/// Returns the integrals over a whole barrel.
 fn revolved(barrel: &Barrel) -> Revolved {
     let grown = barrel.rounding;
     let arc = barrel.stave_radius + grown;
@@ -317,14 +319,14 @@ fn revolved(barrel: &Barrel) -> Revolved {
     doubled(std::array::from_fn(|i| of_stave[i] + of_chime[i]))
 }
 
-/// Integrates the space inside the staves of a barrel with a wall thickness (m), up to the distance `end` (m) on both
-/// sides of the middle.
+/// Returns the integrals over the space inside the staves of a barrel with a wall thickness (m), up to the distance
+/// `end` (m) on both sides of the middle.
 fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }
 
-/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part of a
-/// body of revolution below a level (m above the axis).
+/// For the part of a body of revolution below a level (m above the axis), returns the volume, the first moment upward,
+/// and the second moments along the axis, across it and upward.
 ///
 /// `radius` returns the radius (m) at a position along the axis, up to `end` (m) on both sides of the middle.
 fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {

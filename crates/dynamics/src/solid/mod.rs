@@ -1,8 +1,7 @@
-//! Boundaries in space: ball, half-space, capsule, block, barrel of revolution, and the dish.
-//!
-//! All but the dish are convex cores grown by a radius. At usual penetrations the cores remain separate, so only
-//! distances of separate convex bodies are needed. A target computes the distance of a point ([`Surface::gap`]); a
-//! capsule, a block or a barrel touches as a whole ([`Rounded`]), a ball with its center
+//! Boundaries in three dimensions: ball, half-space, capsule, block, barrel of revolution, and dish. All except the
+//! dish are convex cores grown by a radius. At usual penetrations the cores remain separate, so only distances of
+//! separate convex bodies are needed. A target computes the distance of a point ([`Surface::gap`]); a capsule, a block
+//! or a barrel touches as a whole ([`Rounded`]), a ball with its center
 //! ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and legs with their points
 //! ([`Nodes::Fixed`](crate::body::Nodes::Fixed)). Each file has one solid; [`Solid`] lists them.
 
@@ -41,7 +40,7 @@ impl<R: Real> Ball<R> {
     }
 }
 
-/// A hollow sphere about the origin with matter all around it: the dish of a bearing, which only points can touch.
+/// A spherical cavity about the origin, surrounded by solid material: the dish of a bearing. Only points can touch it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dish<R = f64> {
     /// Radius (m).
@@ -80,10 +79,12 @@ impl<R: Real> Capsule<R> {
 }
 
 impl Capsule {
-    /// Returns the position of the point closest to the capsule's axis on a line, which is at `middle` (m) at position
-    /// 0 and at `middle + half` at position 1; NaN if the line is parallel to the axis.
+    /// Returns the position, on a line, of the point that is closest to the axis of the capsule. The line is at
+    /// `middle` (m) at position 0 and at `middle + half` at position 1. Returns NaN if the line is parallel to the
+    /// axis.
     ///
-    /// Beside the axis only the transverse distance counts, beyond an end of it the axial distance as well.
+    /// Between the ends of the axis, only the transverse distance counts; beyond an end, the axial distance counts as
+    /// well.
     #[inline(always)]
     fn nearest_on_line(&self, middle: Vec3, half: Vec3) -> f64 {
         let across = half.y * half.y + half.z * half.z;

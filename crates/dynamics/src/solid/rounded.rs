@@ -11,7 +11,7 @@ use crate::shape::{
 };
 use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 
-/// A convex solid that touches with its deepest points, centered at the origin and along `x`.
+/// A convex solid that touches with its deepest points. It is centered at the origin, with its axis along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hull<R = f64> {
     /// A tube with round ends.
@@ -27,22 +27,22 @@ pub enum Hull<R = f64> {
 pub struct Rounded<R = f64> {
     /// The hull.
     pub hull: Hull<R>,
-    /// Origin (m) of the hull in the body frame, from the center of mass.
+    /// Position (m) of the origin of the hull in the body frame, relative to the center of mass.
     pub center: Vec3<R>,
-    /// Rotation of the hull's frame in the body frame.
+    /// Rotation from the frame of the hull to the body frame.
     pub rotation: Rotation3<R>,
-    /// Tributary length of boundary (m) of each contact.
+    /// Tributary length (m) of each contact.
     pub tributary_length: R,
 }
 
-/// Number of sticks of a line and of a face: one at the center of pressure, and two along each axis of the patch.
+/// Numbers of sticks of a line and of a face: one at the center of pressure, and two along each axis of the patch.
 const OF_LINE: usize = 3;
 const OF_FACE: usize = 5;
 /// Number of sticks of a block, which touches the half-space with each of its corners.
 const CORNERS: usize = 8;
 
 impl<R: Real> Rounded<R> {
-    /// Creates a hull at the center of mass of its body.
+    /// Creates a hull whose center is at the center of mass of the body.
     pub fn centered(hull: Hull<R>) -> Self {
         Self {
             hull,
@@ -135,7 +135,8 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
     }
 }
 
-/// Returns a touch whose force acts midway between the surfaces, whichever body is the target.
+/// Returns a touch whose force acts midway between the surfaces, so that the result does not depend on the choice of
+/// the target.
 #[inline(always)]
 fn midway<R: Real>(point: Vec3<R>, gap: Gap<Spatial<R>>) -> Touch<Spatial<R>> {
     Touch { node: point + gap.normal * (gap.distance * R::splat(0.5)), gap }
@@ -150,8 +151,9 @@ fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
 
 /// Returns the patch of a barrel on the half-space: its deepest point, and the middle of its lower head.
 ///
-/// Energy and force of a standing barrel are those of four points of its rim: the deepest point and three more, a
-/// quarter turn apart. They are smooth in height and tilt, although an upright barrel has no deepest point.
+/// The energy and the force of a standing barrel are those of four points of its rim, a quarter turn apart; one of
+/// these is the deepest point. Energy and force are smooth functions of height and tilt, although an exactly upright
+/// barrel has no unique deepest point.
 #[inline(always)]
 fn standing<R: Real>(
     barrel: &Barrel<R>,
@@ -223,8 +225,8 @@ fn meeting<R: Real>(
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
 }
 
-/// Returns the points of two blocks, lane by lane: the corners of the area that their faces share, and the deepest
-/// point.
+/// Returns the contact points of two blocks, lane by lane: the corners of the area that their faces share, and the
+/// deepest point.
 #[inline(always)]
 fn block_on_block<R: Real>(
     block: &Block<R>,
@@ -319,7 +321,7 @@ impl Hull {
         }
     }
 
-    /// Returns the distance (m) of its surface from its core.
+    /// Returns the distance (m) of the surface of the hull from its core.
     pub(super) fn rounding(&self) -> f64 {
         match self {
             Self::Capsule(capsule) => capsule.radius,
@@ -340,7 +342,8 @@ impl Hull {
     }
 }
 
-/// Returns a bounded convex surface in one lane, with a ball as a capsule of zero length; `None` for other surfaces.
+/// Returns a bounded convex surface in one lane; a ball is returned as a capsule of zero length. Returns `None` for
+/// other surfaces.
 fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     match surface {
         Solid::HalfSpace | Solid::Dish(_) => None,
@@ -355,7 +358,8 @@ fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
 
 /// Returns the closest points of a contactor and a target, in the frame of the target.
 ///
-/// `at` is the origin (m) of the contactor, and `frame` the rotation from its frame to that of the target.
+/// `at` is the origin (m) of the contactor, and `frame` the rotation from the frame of the contactor to that of the
+/// target.
 fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     f64::scope(
         #[inline(always)]

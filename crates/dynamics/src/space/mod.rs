@@ -1,7 +1,8 @@
 //! Kinematics of rigid motion in two and three dimensions.
 //!
 //! Contact laws, the contact loop, the integrators, the energy ledger and the run loop are generic over [`Space`], and
-//! so independent of the dimension. [`Planar`] is motion in a vertical plane, [`Spatial`] motion in space.
+//! so independent of the number of dimensions. [`Planar`] is motion in a vertical plane, [`Spatial`] motion in three
+//! dimensions.
 
 mod planar;
 mod spatial;
@@ -38,7 +39,8 @@ pub trait Linear<R>:
 
 /// Rigid motion in two or three dimensions: the types and operations on which the physics is generic.
 pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
-    /// `true` if bodies often have several solids, so that the kinematics of two bodies are reused for several pairs.
+    /// `true` if bodies often consist of several solids, so that the kinematics of two bodies are reused for several
+    /// contact pairs.
     const SOLIDS_SHARE: bool;
 
     /// The scalar.
@@ -49,23 +51,24 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     type Spin: Linear<Self::Real>;
     /// Orientation of a body, advanced by the integrator.
     type Orientation: Copy + Debug + PartialEq + Send + Sync + 'static;
-    /// Rotation of a vector; computed once from an orientation.
+    /// Rotation that can be applied to vectors; computed once from an orientation.
     type Rotation: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// Moment of inertia about the center of mass (kg·m²).
     type Inertia: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
     type Tangent: Linear<Self::Real>;
-    /// Data stored with a tangent, so that it can be transported along a curved surface: the normal in space, and
-    /// nothing in the plane, where a tangent is a number.
+    /// Data stored with a tangent, so that it can be transported along a curved surface: the normal in three
+    /// dimensions, and nothing in the plane, where a tangent is a single number.
     type TangentPlane: Copy + Debug + Default + PartialEq + Send + Sync + 'static;
     /// Viscous damping matrix of a body.
     type Damping: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// Shapes whose surface can be a contact target.
     type Surface: crate::shape::Surface<Self>;
-    /// Convex solids that touch with their deepest points; empty in the plane, which has round pieces instead.
+    /// Convex solids that touch with their deepest points; an empty type in the plane, where boundaries have round
+    /// pieces instead.
     type Whole: crate::shape::Whole<Self>;
 
-    /// Returns the rotation from the body frame of an orientation.
+    /// Returns the rotation from the body frame to the inertial frame for an orientation.
     fn rotation(orientation: Self::Orientation) -> Self::Rotation;
     /// Transforms a vector from the rotated frame to the outer frame.
     fn rotate(rotation: Self::Rotation, vector: Self::Vector) -> Self::Vector;
@@ -79,43 +82,45 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn unrotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Transforms a spin or moment from the rotated frame to the outer frame.
     fn rotate_spin(rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
-    /// Returns the velocity of a point at `arm` from the axis due to a spin.
+    /// Returns the velocity, due to a spin, of a point at the vector `arm` from the axis.
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
-    /// Returns an upper bound of the length of a vector, cheaper than the length and close to it for most vectors.
+    /// Returns an upper bound of the length of a vector. The bound is cheaper to compute than the length, and close to
+    /// the length for most vectors.
     fn length_bound(vector: Self::Vector) -> Self::Real;
-    /// Returns the first coordinate of a vector, along which bodies are sorted to find neighbors.
+    /// Returns the first coordinate of a vector; bodies are sorted by this coordinate to find neighbors.
     fn first_coordinate(vector: Self::Vector) -> Self::Real;
     /// Returns the magnitude of a spin.
     fn spin_magnitude(spin: Self::Spin) -> Self::Real;
     /// Returns the moment of a force that acts at `arm`.
     fn moment(arm: Self::Vector, force: Self::Vector) -> Self::Spin;
-    /// Returns the orientation after rotation at a spin for a time.
+    /// Returns the orientation after rotation with a constant spin (rad/s) for a time (s).
     fn turn(
         orientation: Self::Orientation,
         spin: Self::Spin,
         time: Self::Real,
     ) -> Self::Orientation;
-    /// Returns the rotation (rad) from one orientation to a nearby one, as the spin that makes it in a unit of time.
+    /// Returns the rotation (rad) from one orientation to a nearby one, as the spin that causes this rotation in one
+    /// unit of time.
     fn turn_between(from: Self::Orientation, to: Self::Orientation) -> Self::Spin;
-    /// Returns the angle (rad) between two orientations, or an upper bound.
+    /// Returns the angle (rad) between two orientations, or an upper bound of this angle.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
-    /// Returns the angular acceleration due to a moment alone; the torque-free part is in [`Space::coast`] and
-    /// [`Space::momentum`].
+    /// Returns the angular acceleration due to a moment alone; [`Space::coast`] and [`Space::momentum`] account for the
+    /// torque-free part.
     fn spin_rate(
         inertia: Self::Inertia,
         rotation: Self::Rotation,
         moment: Self::Spin,
     ) -> Self::Spin;
     /// Returns the rotational quantity that is conserved without moments, up to a constant factor: the angular momentum
-    /// in space, the spin itself in the plane.
+    /// in three dimensions, the spin itself in the plane.
     fn momentum(inertia: Self::Inertia, rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
-    /// Returns the spin of a body from its angular momentum, [`Space::momentum`].
+    /// Returns the spin of a body, given its [`Space::momentum`].
     fn spin_of(
         inertia: Self::Inertia,
         orientation: Self::Orientation,
         momentum: Self::Spin,
     ) -> Self::Spin;
-    /// Returns orientation and spin after a time without moments.
+    /// Returns the orientation and the spin after a time (s) during which no moment acts.
     fn coast(
         inertia: Self::Inertia,
         orientation: Self::Orientation,
@@ -124,8 +129,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     ) -> (Self::Orientation, Self::Spin);
     /// Returns the rate of a rotation vector whose current value is `turned`, for a body with a spin.
     ///
-    /// Rotations do not add in space, so the integral of a spin over time is not a rotation vector, but the integral of
-    /// this rate is.
+    /// In three dimensions rotations are not additive, so the integral of a spin over time is not a rotation vector.
+    /// The integral of this rate is one.
     fn turn_rate(turned: Self::Spin, spin: Self::Spin) -> Self::Spin;
     /// Returns the smallest principal moment of inertia (kg·m²) in one lane.
     fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
@@ -137,9 +142,9 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     ) -> Self::Real;
     /// Returns the part of a vector that is tangent to a surface with this unit normal.
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
-    /// Returns a tangent as a vector, for a surface with this unit normal.
+    /// Converts a tangent to a vector, for a surface with this unit normal.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
-    /// Returns the data stored with tangents of a surface with this unit normal in a rotated frame.
+    /// Returns the data stored with the tangents of a surface whose unit normal is given in a rotated frame.
     fn tangent_plane(rotation: Self::Rotation, normal: Self::Vector) -> Self::TangentPlane;
     /// Transports a tangent from one tangent plane into another.
     fn carry(
@@ -147,34 +152,35 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         from: Self::TangentPlane,
         to: Self::TangentPlane,
     ) -> Self::Tangent;
-    /// Rotates a tangent from a rotated frame to the inertial one.
+    /// Transforms a tangent from a rotated frame to the inertial frame.
     fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Rotates a tangent from the inertial frame to a rotated one.
+    /// Transforms a tangent from the inertial frame to a rotated frame.
     fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Returns the rate (m/s) of a stick in the inertial frame due to its rotation about the normal, with the mean spin
-    /// of both bodies. `spins` are the spin (rad/s) of one body and the spin of the other relative to it, in a rotated
-    /// frame.
+    /// Returns the rate of change (m/s) of a stick in the inertial frame that is due to its rotation about the normal.
+    /// The stick rotates with the mean spin of both bodies. `spins` contains the spin (rad/s) of one body and the spin
+    /// of the other body relative to the first, in a rotated frame.
     fn stick_turn(
         displacement: Self::Tangent,
         plane: Self::TangentPlane,
         rotation: Self::Rotation,
         spins: [Self::Spin; 2],
     ) -> Self::Tangent;
-    /// Adds a turn to a tangent in lanes of the mask.
+    /// Adds the rate returned by [`Space::stick_turn`] to a tangent, in lanes of the mask.
     fn add_turn(
         mask: <Self::Real as Real>::Mask,
         tangent: Self::Tangent,
         turn: Self::Tangent,
     ) -> Self::Tangent;
-    /// Limits the length of a tangent to `limit` (not negative).
+    /// Shortens a tangent to the length `limit` (not negative) if it is longer.
     fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     fn choose(
         mask: <Self::Real as Real>::Mask,
         yes: Self::Tangent,
         no: Self::Tangent,
     ) -> Self::Tangent;
-    /// Returns force and moment of viscous damping at a velocity: minus matrix times velocity.
+    /// Returns the force and the moment of viscous damping: the negative product of the damping matrix and the
+    /// velocity.
     fn damp(
         damping: Self::Damping,
         linear: Self::Vector,
@@ -220,7 +226,7 @@ impl<S: Space> Twist<S> {
 }
 
 impl<S: Space> Pose<S> {
-    /// Returns the pose after motion with a twist for a time (s).
+    /// Returns the pose after motion with a constant twist for a time (s).
     #[inline(always)]
     #[must_use]
     pub fn moved(self, twist: Twist<S>, time: S::Real) -> Self {
@@ -230,7 +236,7 @@ impl<S: Space> Pose<S> {
         }
     }
 
-    /// Returns pose and twist after force-free motion for a time (s).
+    /// Returns the pose and the twist after force-free motion for a time (s).
     #[inline(always)]
     #[must_use]
     pub fn coasted(self, inertia: S::Inertia, twist: Twist<S>, time: S::Real) -> (Self, Twist<S>) {
@@ -239,7 +245,8 @@ impl<S: Space> Pose<S> {
         (Self { position, orientation }, Twist { linear: twist.linear, angular })
     }
 
-    /// Returns the displacement (m and rad) to a nearby pose, as the twist that makes it in a unit of time.
+    /// Returns the displacement (m and rad) to a nearby pose, as the twist that causes this displacement in one unit of
+    /// time.
     #[inline(always)]
     #[must_use]
     pub fn way_to(self, other: Self) -> Twist<S> {
@@ -281,7 +288,7 @@ impl<S: Space> Wrench<S> {
         Self { force: self.force * factor, moment: self.moment * factor }
     }
 
-    /// Returns the power (W) for a twist, or the work (J) for a displacement.
+    /// Returns the power (W) of the wrench for a twist, or its work (J) for a displacement.
     #[inline(always)]
     pub fn power(self, twist: Twist<S>) -> S::Real {
         self.force.dot(twist.linear) + self.moment.dot(twist.angular)

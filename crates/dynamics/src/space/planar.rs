@@ -1,4 +1,4 @@
-//! Motion in the vertical plane: `x` to the right, `z` up, angles from `x` toward `z`.
+//! Motion in a vertical plane: `x` to the right, `z` up, angles measured from `x` toward `z`.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -31,13 +31,13 @@ impl<R: Real> Vec2<R> {
     pub fn length(self) -> R {
         self.dot(self).sqrt()
     }
-    /// Rotates by a quarter turn from `x` toward `z`.
+    /// Rotates the vector by a quarter turn from `x` toward `z`.
     #[inline(always)]
     #[must_use]
     pub fn quarter_turn(self) -> Self {
         Self::new(-self.z, self.x)
     }
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self::new(R::select(mask, yes.x, no.x), R::select(mask, yes.z, no.z))
@@ -189,7 +189,8 @@ impl<R: Real> Space for Planar<R> {
     fn velocity_at(spin: R, arm: Vec2<R>) -> Vec2<R> {
         Vec2::new(-(spin * arm.z), spin * arm.x)
     }
-    /// Sum of the longer component and √2 − 1 times the shorter one: at most 8 % above the length.
+    /// Computes the sum of the larger component and √2 − 1 times the smaller component, which exceeds the length by at
+    /// most 8 %.
     #[inline(always)]
     fn length_bound(vector: Vec2<R>) -> R {
         let (x, z) = (vector.x.abs(), vector.z.abs());
@@ -246,7 +247,8 @@ impl<R: Real> Space for Planar<R> {
     fn spin_energy(inertia: R, _rotation: Rotation2<R>, spin: R) -> R {
         R::splat(0.5) * inertia * spin * spin
     }
-    /// Positive along the normal rotated by a quarter turn from `z` toward `x`: to the right on a floor.
+    /// A tangent is positive in the direction of the normal rotated by a quarter turn from `z` toward `x`: to the right
+    /// on a floor.
     #[inline(always)]
     fn tangential(vector: Vec2<R>, normal: Vec2<R>) -> R {
         vector.x * normal.z - vector.z * normal.x
@@ -293,7 +295,7 @@ impl<R: Real> Space for Planar<R> {
     }
 }
 
-/// Returns a row of a damping matrix times a velocity.
+/// Returns the product of one row of a damping matrix and a velocity.
 #[inline(always)]
 fn row<R: Real>(row: [R; 3], linear: Vec2<R>, spin: R) -> R {
     row[0] * linear.x + row[1] * linear.z + row[2] * spin

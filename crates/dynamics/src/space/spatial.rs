@@ -1,10 +1,10 @@
-//! Motion in space: `x` to the right, `y` away, `z` up, right-handed rotations.
+//! Motion in three dimensions: `x` to the right, `y` away from the viewer, `z` up; rotations are right-handed.
 
 use super::{Linear, Quaternion, Rotation3, Space, Vec3};
 use crate::real::{Mask, Real};
 use crate::solid::{Rounded, Solid};
 
-/// Motion in space, with a number or a bundle of lanes as its scalar.
+/// Motion in three dimensions, with a number or a bundle of lanes as its scalar.
 ///
 /// The axes of the body frame are the principal axes, so the inertia is three numbers. Spins and moments are in the
 /// inertial frame.
@@ -62,7 +62,7 @@ impl<R: Real> Space for Spatial<R> {
     fn velocity_at(spin: Vec3<R>, arm: Vec3<R>) -> Vec3<R> {
         spin.cross(arm)
     }
-    /// Returns the length itself, with a margin for rounding.
+    /// Returns the length itself, increased by a margin for rounding.
     #[inline(always)]
     fn length_bound(vector: Vec3<R>) -> R {
         vector.length() * R::splat(1.0 + 1e-15)
@@ -83,8 +83,8 @@ impl<R: Real> Space for Spatial<R> {
     fn turn(orientation: Quaternion<R>, spin: Vec3<R>, time: R) -> Quaternion<R> {
         Quaternion::turn(spin * time).after(orientation).normalized()
     }
-    /// Returns the rotation vector, by the series of `asin s / s`: accurate to 1e-14 rad below 0.2 rad, and too small
-    /// for larger rotations.
+    /// Returns the rotation vector, computed with the series of `asin s / s`. The result is accurate to 1e-14 rad for
+    /// rotations below 0.2 rad, and too small for larger rotations.
     #[inline(always)]
     fn turn_between(from: Quaternion<R>, to: Quaternion<R>) -> Vec3<R> {
         let turn = to.after(from.back());
@@ -98,8 +98,8 @@ impl<R: Real> Space for Spatial<R> {
         // A quaternion and its negative are the same rotation.
         turn.v * (series * R::select(turn.w.lt(R::zero()), -two, two))
     }
-    /// Computes an upper bound from the chord `d = 2 sin(θ/4)` between the quaternions. The chord is at most √2, where
-    /// the arc is 1.1108 times as long.
+    /// Computes an upper bound from the chord `d = 2 sin(θ/4)` between the quaternions. The chord is at most √2, and
+    /// the arc is then 1.1108 times as long as the chord.
     #[inline(always)]
     fn angle_between(a: Quaternion<R>, b: Quaternion<R>) -> R {
         let square = |w: R, v: Vec3<R>| w * w + v.dot(v);
@@ -114,8 +114,8 @@ impl<R: Real> Space for Spatial<R> {
     fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
         rotation.apply(rotation.unapply(spin).times(inertia))
     }
-    /// Refines the result once: a rotation matrix is orthogonal only up to rounding, and a systematic error would
-    /// accumulate over a run.
+    /// Refines the result by one iteration, since a rotation matrix is orthogonal only up to rounding, and a systematic
+    /// error would accumulate over a run.
     #[inline(always)]
     fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
         let rotation = orientation.matrix();
@@ -129,11 +129,11 @@ impl<R: Real> Space for Spatial<R> {
     /// T = ½ (Π₁²/I₁ + (Π₂² + Π₃²)/I₂) + ½ Π₃² (1/I₃ − 1/I₂)      Π = Rᵀ L
     /// ```
     ///
-    /// is the sum of that of a body of revolution, whose motion is exact (rotation about **L** at `L/I₂` and about its
-    /// own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates the body about its third axis. A step applies
-    /// half of the remainder, the body of revolution, and the other half of the remainder. This splitting is
-    /// symplectic, reversible, of second order, and exact for a body of revolution (after Touma and Wisdom 1994, and
-    /// Fassò 2003).
+    /// is the sum of the kinetic energy of a body of revolution, whose motion has an exact solution (rotation about
+    /// **L** at `L/I₂` and about its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates the body about
+    /// its third axis. A step applies half of the remainder, the body of revolution, and the other half of the
+    /// remainder. This splitting is symplectic, reversible, of second order, and exact for a body of revolution (after
+    /// Touma and Wisdom 1994, and Fassò 2003).
     #[inline(always)]
     fn coast(
         inertia: Vec3<R>,

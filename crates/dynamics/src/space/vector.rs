@@ -1,4 +1,4 @@
-//! Vectors in space and their rotations: unit quaternions, which are integrated, and matrices.
+//! Vectors in three dimensions and their rotations: unit quaternions, which are integrated over time, and matrices.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -6,7 +6,7 @@ use super::Linear;
 use crate::math;
 use crate::real::Real;
 
-/// A vector in space.
+/// A vector in three dimensions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3<R = f64> {
     /// Component to the right.
@@ -37,7 +37,7 @@ impl<R: Real> Vec3<R> {
     pub fn length(self) -> R {
         self.dot(self).sqrt()
     }
-    /// Returns the vector product.
+    /// Returns the cross product.
     #[inline(always)]
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
@@ -47,19 +47,19 @@ impl<R: Real> Vec3<R> {
             self.x * other.y - self.y * other.x,
         )
     }
-    /// Returns the products of the components.
+    /// Returns the vector of the products of corresponding components.
     #[inline(always)]
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
-    /// Returns the quotients of the components.
+    /// Returns the vector of the quotients of corresponding components.
     #[inline(always)]
     #[must_use]
     pub fn over(self, other: Self) -> Self {
         Self::new(self.x / other.x, self.y / other.y, self.z / other.z)
     }
-    /// Returns `yes` in lanes of the mask, `no` elsewhere.
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self::new(
@@ -129,9 +129,9 @@ impl<R: Real> Linear<R> for Vec3<R> {
 /// A unit quaternion, which rotates from the body frame to the outer frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion<R = f64> {
-    /// Cosine of half the angle.
+    /// Cosine of half the rotation angle.
     pub w: R,
-    /// The axis, with the sine of half the angle as its length.
+    /// Vector along the rotation axis, with the sine of half the rotation angle as its length.
     pub v: Vec3<R>,
 }
 
@@ -142,7 +142,7 @@ impl<R: Real> Quaternion<R> {
         Self { w: R::splat(1.0), v: Vec3::default() }
     }
 
-    /// Creates the right-handed rotation about a vector by the angle (rad) of its length.
+    /// Creates the right-handed rotation about a vector, by an angle (rad) equal to the length of the vector.
     #[inline(always)]
     pub fn turn(turn: Vec3<R>) -> Self {
         let square = turn.dot(turn) * R::splat(0.25);
@@ -160,7 +160,8 @@ impl<R: Real> Quaternion<R> {
         }
     }
 
-    /// Returns the quaternion with unit length, since every product of two adds a rounding error.
+    /// Returns the quaternion scaled to unit length; every product of two quaternions adds a rounding error to the
+    /// length.
     #[inline(always)]
     #[must_use]
     pub fn normalized(self) -> Self {
@@ -204,7 +205,7 @@ impl<R: Real> Quaternion<R> {
     }
 }
 
-/// A rotation matrix in space.
+/// A rotation matrix in three dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation3<R = f64> {
     /// Rows of the matrix.

@@ -1,8 +1,9 @@
-//! Isolators in space: a platform under every bottom rack, with a bearing at each of its corners on a flat surface or
-//! in a dish.
+//! Isolators in space: a platform under every bottom rack. At each corner, the platform has a bearing that slides on a
+//! flat surface or in a dish.
 //!
-//! Springs and stops act at the middles of the four sides of the platform, so that they resist its rotation as well.
-//! Since they act separately across and along, the platform may travel farther than the stroke in a diagonal direction.
+//! Springs and stops act at the middles of the four sides of the platform, so that they resist the rotation of the
+//! platform as well. Since they act separately across and along the barrels, the platform may move farther than the
+//! stroke in a diagonal direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Isolators, Path};
@@ -54,7 +55,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
     }
 }
 
-/// Adds the platform of a rack, from its center (m) and half its sides (m).
+/// Adds the platform of a rack, given the center (m) and half the side lengths (m) of the platform.
 fn platform(
     device: &Isolators,
     builder: &mut Builder<'_>,

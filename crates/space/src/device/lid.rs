@@ -1,4 +1,5 @@
-//! Lids in space, which are round: a barrel is released once it has moved out from under its lid in any direction.
+//! Lids in space. The lids are round: a barrel is released as soon as it has moved out from under its lid in any
+//! direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Lids, lowest};

@@ -1,8 +1,8 @@
-//! Devices on a stack in space: how each of them is attached, one file each.
+//! Attachment of devices to a stack in space; each device has a file of its own.
 //!
-//! The definition, loads, cost and words of a device are those of the plane. A device that acts in both planes acts in
-//! both directions in space. Chocks are part of the racks ([`tubes`](crate::rack::tubes)), pads part of the contact
-//! laws.
+//! The definition, loads, cost and descriptions of a device are those of the plane models. A device that acts in both
+//! plane models acts in both directions in space. Chocks are part of the racks ([`tubes`](crate::rack::tubes)), and
+//! pads are part of the contact laws.
 
 mod isolator;
 mod lid;
@@ -24,7 +24,7 @@ use crate::stack::Stack;
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
-    /// Excess (m) of the length of the element over the distance of its ends; negative under pretension.
+    /// Length (m) of the unloaded element less the distance between its ends; negative for a pretensioned element.
     give: f64,
     /// `true` for a guide on a body that may turn about the axis of the guide.
     about_axis: bool,
@@ -47,7 +47,7 @@ impl Loose {
     }
 }
 
-/// Installs all devices on a stack, in their order.
+/// Installs all devices on a stack, one kind after the other.
 pub(crate) fn place(builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     let Devices { strap, walking_stop, chock: _, lid, pad: _, isolator, tie, tuned_mass } =
         &builder.spec.devices;
@@ -71,7 +71,7 @@ impl Builder<'_> {
         self.turned(body).unapply(place - self.bodies[body].pose.position)
     }
 
-    /// Adds a line to the drawing of a body, through positions (m) in the stack.
+    /// Adds a line to the drawing of a body; the line runs through positions (m) in the stack.
     fn draw(&mut self, body: BodyId, line: &[Vec3]) {
         let line = line.iter().map(|place| self.within(body, *place)).collect();
         self.parts[body].lines.push(line);
@@ -83,10 +83,11 @@ impl Builder<'_> {
         (0..self.parts.len()).filter(on).collect()
     }
 
-    /// Returns names and positions of the left and right ends at `±across` (m), and of the near and far ends at
-    /// `±along` (m).
+    /// Returns the names and positions of four points: left and right at `±across` (m), and near and far at `±along`
+    /// (m).
     ///
-    /// In a mirrored stack the right end comes before the left one, so that the order of summation is mirrored, too.
+    /// In a mirrored stack the right point comes before the left point, so that the order of summation is mirrored,
+    /// too.
     fn sides(&self, across: f64, along: f64) -> [(&'static str, Vec3); 4] {
         let [left, right] =
             [("left", -across), ("right", across)].map(|(side, x)| (side, Vec3::new(x, 0.0, 0.0)));
@@ -108,7 +109,7 @@ impl Builder<'_> {
 }
 
 impl Stack {
-    /// Fits the elements to the stack at rest in `state`; returns `true` if any of them is under load.
+    /// Fits the elements to the stack at rest in `state`; returns `true` if any element is under load.
     pub(crate) fn fasten(&mut self, state: &mut State<Spatial>) -> Result<bool, ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

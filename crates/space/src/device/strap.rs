@@ -1,9 +1,11 @@
-//! Straps in space: those of both planes, each at a position where the strap is vertical on the undeformed stack.
+//! Straps in space: the straps of both plane models, each at a position where the strap is vertical on the undeformed
+//! stack.
 //!
-//! A strap over a barrel runs around the barrel at half its length, as in the plane across the barrels: it is attached
-//! at the ends of the horizontal diameter, and leads from there straight down to the rack. Where levels are tied
-//! together, every rack has one strap down the middle of each of its four sides. Those to the left and right are the
-//! straps of the plane across the barrels, those at the near and far sides the straps of the plane along them.
+//! A strap over a barrel runs around the barrel at the middle of its length, as in the plane across the barrels: the
+//! strap is attached at the ends of the horizontal diameter, and runs from there straight down to the rack. Where
+//! levels are tied together, every rack has one strap down the middle of each of its four sides. The straps on the left
+//! and right sides are those of the plane across the barrels; the straps on the near and far sides are those of the
+//! plane along the barrels.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Straps, Ties, lowest};
@@ -12,7 +14,7 @@ use barrelstack_dynamics::{BodyId, Link, Vec3};
 use super::Loose;
 use crate::builder::Builder;
 
-/// Installs the straps from the ground up, those on the left first.
+/// Installs the straps, body by body from the ground up; for each body, the strap on the left comes first.
 pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     if !device.is_on() {
         return Ok(());

@@ -1,5 +1,6 @@
-//! Ties in space, from the middles of the four sides of a rack. Those to the left and right are as in the plane across
-//! the barrels, those at the near and far sides as in the plane along them, whose left side is the near side.
+//! Ties in space, from the middles of the four sides of a rack. The ties on the left and right sides are as in the
+//! plane across the barrels. The ties on the near and far sides are as in the plane along the barrels, whose left side
+//! is the near side.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
@@ -13,7 +14,7 @@ use crate::stack::Stack;
 struct End {
     name: &'static str,
     on: Side,
-    /// Offset in columns and rows to the rack beside it.
+    /// Offset, in columns and rows, of the neighboring rack on this side.
     beside: [i64; 2],
 }
 

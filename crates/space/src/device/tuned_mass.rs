@@ -1,4 +1,5 @@
-//! Tuned masses in space, which swing in both directions, in each with the spring, damper and stops of a plane.
+//! Tuned masses in space. A mass swings in both horizontal directions, with the spring, damper and stops of the plane
+//! model in each direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::TunedMass;

@@ -1,8 +1,9 @@
 //! Walking stops in space, which keep racks from walking on the barrels below.
 //!
-//! A hook acts along the axis of its barrel, which may turn under the hook, at the height of the rack. It disengages
-//! once the distance of the rack from that axis exceeds the distance at rest by the lip. A saddle acts across the
-//! barrel, at any position of the rack along the barrel, and disengages once the rack has risen by the lip.
+//! A hook acts along the axis of its barrel, at the height of the rack; the barrel may turn under the hook. The hook
+//! disengages as soon as the distance of the rack from the axis of the barrel exceeds the distance at rest by the
+//! height of the lip. A saddle acts across the barrel, at any position of the rack along the barrel. It disengages as
+//! soon as the rack has risen by the height of the lip.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Holds, WalkingStops, lowest};

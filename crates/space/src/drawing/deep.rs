@@ -1,4 +1,4 @@
-//! Three-dimensional scene of a run, which the reader of a page can turn.
+//! Three-dimensional scene of a run. The reader of a page can rotate the scene.
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
@@ -8,10 +8,10 @@ use super::{Sight, events, moment};
 use crate::part::Part;
 use crate::run::Run;
 
-/// Half the thickness (m) of parts of devices that are drawn as lines: an assumption.
+/// Half the assumed thickness (m) of those parts of devices that the plane drawings show as lines.
 const PLATE: f64 = 0.012;
 
-/// Number of steps of the profile of a barrel.
+/// Number of steps into which the profile of a barrel is divided.
 const PARTS: u32 = 12;
 
 /// Returns the bodies of a run at some frames, with the events of all views.
@@ -43,8 +43,8 @@ fn point(of: Vec3) -> Point3 {
     [of.x, of.y, of.z]
 }
 
-/// Returns a body with its solids, without half-spaces, which are the floor of the picture, and dishes, which lie in
-/// the floor.
+/// Returns a body with its solids. Half-spaces are left out because the picture has a floor of its own, and dishes
+/// because they lie in the floor.
 fn drawn(part: &Part, body: &Body<Spatial>) -> DepthBody {
     let mut volumes: Vec<Volume> = Vec::new();
     let mut barrel = false;

@@ -11,9 +11,9 @@ use crate::part::Part;
 /// Number of steps of the view direction per right angle.
 const STEPS: f64 = 10.0;
 
-/// View direction of a body, rounded to steps.
+/// View direction of a body, rounded to fixed angular steps.
 pub(super) struct BodyView {
-    /// Right and up axes of its drawing, in the body frame.
+    /// Axes, in the body frame, that point right and up in the drawing.
     axes: [Vec3; 2],
     /// Rotation of the drawing on the page (rad).
     pub(super) angle: f64,
@@ -21,7 +21,7 @@ pub(super) struct BodyView {
 }
 
 impl BodyView {
-    /// Creates the view from the right and up axes of the page in the body frame.
+    /// Creates the view of a body, given the axes of the page that point right and up, in the body frame.
     pub(super) fn of(kind: PartKind, page: [Vec3; 2]) -> Self {
         let toward = page[0].cross(page[1]);
         let axis = Vec3::new(1.0, 0.0, 0.0);
@@ -50,7 +50,7 @@ impl BodyView {
         Self { axes: [right, up], angle, kind }
     }
 
-    /// Returns a key that distinguishes the drawings of one body.
+    /// Returns a key that is different for different drawings of the same body.
     #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
     pub(super) fn key(&self) -> [i32; 3] {
         let from = self.axes[0].cross(self.axes[1]);

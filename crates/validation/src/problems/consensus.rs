@@ -1,12 +1,12 @@
-//! Eight barrels on four levels, a scene on which five independent codes agree.
+//! Eight barrels on four levels: a scene for which five independent codes agree.
 //!
-//! The scene exists in two versions. *Bodies* is exactly the scene of those codes, with one contact point between the
-//! crown of a barrel and a flat underside. *Scenario* is the most similar stack that a scenario can state; its
+//! The scene exists in two versions. *Bodies* is exactly the scene of the five codes, with one contact point between
+//! the crown of a barrel and a flat underside. *Scenario* is the most similar stack that a scenario can state; its
 //! undersides are rows of nodes, several of which press on the same crown, so its contacts are stiffer.
 //!
-//! The displacement of the ground is A sin ωt from the first instant, a sudden start, which is how the description
-//! "sine base motion of 0.1016 m" is read here. The codes do not document their definition of a fall; here a barrel
-//! has fallen once it is one level (0.76 m) lower.
+//! The displacement of the ground is A sin ωt from the start, so the ground starts suddenly. This is how the
+//! description "sine base motion of 0.1016 m" is interpreted here. The codes do not document their definition of a
+//! fall; here a barrel counts as fallen when it is one level (0.76 m) lower than at the start.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -31,7 +31,7 @@ const LEVELS: usize = 4;
 const STIFFNESS: f64 = 9.8e5;
 const DAMPING: f64 = 2200.0;
 
-/// Drops (m): the first counts as a fall, the second shows the effect of that choice.
+/// Two drops (m): the first counts as a fall, and the second shows how much the result depends on this choice.
 const FALLS: [f64; 2] = [0.76, 0.2];
 
 /// Length of the runs (s).
@@ -62,7 +62,7 @@ fn first_fall() -> Problem {
         })
 }
 
-/// Scene A from a file: a free scene whose racks have explicit nodes.
+/// Creates the problem of scene A from a file: a free scene whose racks have explicit nodes.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),
@@ -104,7 +104,8 @@ fn verdict(
         })
 }
 
-/// A rack: a beam whose underside rests on the crowns below, feet, and two support points per barrel.
+/// A rack: a beam whose underside rests on the crowns of the barrels below, with feet and with two support points per
+/// barrel.
 fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     let center = CLEARANCE + RADIUS - 0.5 * BEAM;
     let mut supports = vec![];
@@ -127,7 +128,7 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
 /// Builds the scene from bodies, with cradle supports at ± an angle (degrees).
 ///
 /// # Errors
-/// If the bodies make no valid model.
+/// If the bodies do not form a valid model.
 pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
     let angle = degrees.to_radians();
     let mut bodies = vec![floor()];
@@ -173,7 +174,8 @@ fn is_rack(body: usize) -> bool {
     body > 0 && body % 3 == 1
 }
 
-/// Returns the times (s) at which the first barrel of the version *bodies* has sunk by each of the two drops.
+/// For the version *bodies*, returns the times (s) at which the first barrel has dropped by each of the two distances
+/// in [`FALLS`].
 fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
     let mut scene = Scene::of(eight_barrels(degrees)?).settled(1e-9)?;

@@ -1,4 +1,4 @@
-//! Protection devices with exact answers, each on a stack from a scenario.
+//! Protection devices with exact answers, each on a stack built from a scenario.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -28,7 +28,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A stack of one level on a rack so wide and heavy, and with contacts so stiff, that only the device deforms.
+/// Returns the scenario of a one-level stack. Its rack is so wide and heavy, and its contacts are so stiff, that only
+/// the device deforms.
 fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario, Failure> {
     let text = format!(
         "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\nrack = {{ width = \"8 m\", mass = \"400 kg\" }}\n\
@@ -45,12 +46,12 @@ pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Resu
     Ok(scenario(settings, motion, seconds)?.run()?)
 }
 
-/// Runs this stack under a push (g) that grows for one second and stays constant for another.
+/// Runs the stack of [`scenario`] under a push (g) that grows for one second and is then constant for one second.
 pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
     run_pushed(&scenario(settings, &self::push(push, 1.0), 1.99)?, push, 1000)
 }
 
-/// Runs a scenario under a push (g) that grows smoothly for a time (ms) and stays constant for a second.
+/// Runs a scenario under a push (g) that grows smoothly for a time (ms) and is then constant for one second.
 ///
 /// The growth is so smooth and the steps are so small that stiff elements do not vibrate.
 pub(super) fn run_pushed(scenario: &Scenario, push: f64, rise: u32) -> Result<Run, Failure> {
@@ -66,14 +67,14 @@ pub(super) fn push(amplitude: f64, seconds: f64) -> String {
     )
 }
 
-/// Returns the displacement (m) of a body along an axis, with its times (s).
+/// Returns the history of the displacement (m) of a body along an axis, as pairs of time (s) and displacement.
 pub(super) fn displacement(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     let name = format!("{body} displacement {axis}");
     let channel = run.recording.channel(&name).ok_or(Failure::Absent(name))?;
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
 }
 
-/// Returns the settings of chocks at an angle (rad) without a gap, on cradles that are lower than the chocks.
+/// Returns the settings for chocks at an angle (rad) without a gap; the cradles are lower than the chocks.
 fn chocks(angle: f64) -> Vec<String> {
     vec![
         "stack.chock.levels=1".into(),
@@ -92,10 +93,10 @@ fn rolls_out(degrees: f64) -> Problem {
     let exact = tan(angle);
     setting(
         format!("devices/chock-{degrees}"),
-        format!("barrels between chocks at {degrees}° under a lasting push"),
+        format!("barrels between chocks at {degrees}° under a sustained push"),
         "statics: roll-out at a/g = tan φ",
     )
-    .quantity("least push that makes a barrel roll out", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("smallest push that makes a barrel roll out", "g", relative(exact, 1e-2).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let run = pressed(&chocks(angle), amplitude)?;
         Ok(run.fates.collapse_time().is_some())
@@ -108,10 +109,11 @@ const BLOW: f64 = 0.05;
 /// Distance (m) from the center of a barrel to the center of the rounded end of a chock over which it rolls.
 const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
 
-/// Returns the least push (g) that makes a barrel roll over the chock at an angle (rad) on which it leans.
+/// Returns the smallest push (g) that makes a barrel roll over the chock on which it leans; the chock is at an angle
+/// (rad).
 ///
-/// About the end of the chock the barrel follows `L θ'' = g sin θ − a cos θ` during the impulse; then it must pass the
-/// energy barrier `g L (1 − cos θ)`.
+/// The rotation θ of the barrel about the end of the chock follows `L θ'' = g sin θ − a cos θ` during the impulse;
+/// after the impulse, the barrel must pass the energy barrier `g L (1 − cos θ)`.
 fn over_the_hill(angle: f64) -> f64 {
     let passes = |push: f64| {
         let steps = 2000;
@@ -141,7 +143,7 @@ fn hill() -> Problem {
         "barrels between chocks at 40°, pushed for 0.05 s",
         "energy: m g r (1 − cos φ) over the end of a chock",
     )
-    .quantity("least push that makes a barrel roll out", "g", relative(exact, 2e-2).fast(3e-2))
+    .quantity("smallest push that makes a barrel roll out", "g", relative(exact, 2e-2).fast(3e-2))
     .at_border(0.05, move |amplitude| {
         let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
         // Beyond the chock it falls onto the beam.
@@ -184,7 +186,7 @@ fn slides() -> Problem {
     let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;
     setting(
         "devices/sheet",
-        "a stack on a sheet of μ = 0.05, pushed with 0.15 g for 0.4 s",
+        "a stack on a sliding sheet with μ = 0.05, pushed with 0.15 g for 0.4 s",
         "Newmark 1965",
     )
     .quantity("residual displacement", "m", relative(exact, 1e-2))
@@ -207,7 +209,7 @@ fn pads() -> Problem {
     let mass = 46.0 + 990.0 * 0.225;
     let exact = mass * GRAVITY / (2.0 * 2.0 * stiffness * cos(angle) * cos(angle));
     setting("devices/pads", "a full barrel on pads of 400 kN/m without friction", "statics")
-        .quantity("settlement in its cradle", "m", relative(exact, 1e-2))
+        .quantity("settlement of the barrel in its cradle", "m", relative(exact, 1e-2))
         .by(move |_| {
             let settings = [
                 format!("stack.pad.stiffness=\"{stiffness} N/m\""),
@@ -228,7 +230,7 @@ fn pads() -> Problem {
 
 const MASS: f64 = 100.0;
 
-/// A mass that flies at a speed (m/s) without gravity, joined to the ground by an element.
+/// Creates a mass that moves at a speed (m/s) without gravity and is joined to the ground by an element.
 fn flying(
     speed: f64,
     element: barrelstack_dynamics::Element<barrelstack_dynamics::Planar>,
@@ -279,19 +281,19 @@ fn between_stops() -> Problem {
             let step = if effort == Effort::Full { 1e-5 } else { 5e-5 };
             match run_crossings(&mut scene, step, 1.0, |state| state.poses[1].position.x)?[..] {
                 [_, back, ..] => Ok(back),
-                _ => Err(Failure::Absent("it does not come back".into())),
+                _ => Err(Failure::Absent("the weight does not come back".into())),
             }
         })
 }
 
-/// Frequency of the structure to which a mass is tuned (rad/s); the square is stiffness over mass.
+/// Natural frequency (rad/s) of the structure to which a mass is tuned: the square root of stiffness divided by mass.
 const OMEGA: f64 = TAU;
 
 /// Returns the largest dynamic amplification of the displacement of a structure with a tuned mass, over all frequencies
 /// of a harmonic force.
 ///
-/// The tuned mass is `share` of the mass of the structure. The response to an impulse, which excites all frequencies,
-/// is transformed to the frequency domain.
+/// The tuned mass is `share` times the mass of the structure. The response to an impulse, which excites all
+/// frequencies, is transformed to the frequency domain.
 fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure> {
     let body = |name: &str, mass: f64, z: f64| Body {
         mass,
@@ -337,18 +339,19 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
 fn den_hartog(share: f64) -> [Problem; 2] {
     let exact = Tuning::den_hartog(share);
     let source = "Den Hartog 1956, section 3.3";
-    let title = format!("undamped structure with a tuned mass of {share} of its mass");
+    let title =
+        format!("undamped structure with a tuned mass of {share} times the mass of the structure");
     let step = 0.01;
     let peak = setting(format!("devices/tuned-mass-peak-{share}"), title.clone(), source)
         .quantity(
-            "largest displacement over that at rest",
+            "largest displacement divided by the static displacement",
             "",
             relative((1.0 + 2.0 / share).sqrt(), 1e-2),
         )
         .by(move |_| largest_answer(share, exact, step));
     let frequency = setting(format!("devices/tuned-mass-frequency-{share}"), title, source)
         .quantity(
-            "best frequency of the mass over that of the structure",
+            "best frequency of the tuned mass, divided by that of the structure",
             "",
             relative(exact.frequency, 1e-2),
         )

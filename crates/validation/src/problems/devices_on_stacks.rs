@@ -1,4 +1,4 @@
-//! Protection devices that hold a stack, from a scenario: forces, periods and frequencies.
+//! Protection devices on stacks built from scenarios: forces, periods and frequencies.
 
 use std::f64::consts::TAU;
 
@@ -21,26 +21,27 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Angle (rad) of the supports of a cradle of the scenario.
+/// Angle (rad) from the vertical at which a barrel rests on the supports of a cradle.
 const CRADLE: f64 = 28.0 * TAU / 360.0;
 
 /// Mass of a full barrel (kg).
 const BARREL: f64 = 46.0 + 990.0 * 0.225;
 
-/// Returns the push (g) under which a barrel leans on one support of its cradle only, while a device holds it down with
-/// a force (N): `N sin φ = m A`, `N cos φ = m g + F`.
+/// Returns the push (g) under which a barrel leans on only one support of its cradle while a device holds the barrel
+/// down with a force (N): `N sin φ = m A`, `N cos φ = m g + F`.
 fn held_at(force: f64) -> f64 {
     tan(CRADLE) * (1.0 + force / (BARREL * GRAVITY))
 }
 
-/// Returns the force (N) that holds a barrel down on one support under a push (g): the inverse of [`held_at`].
+/// Returns the force (N) that holds a barrel down on one support under a push (g). This function is the inverse of
+/// [`held_at`].
 fn holding(push: f64) -> f64 {
     BARREL * GRAVITY * (push / tan(CRADLE) - 1.0)
 }
 
 const HELD: &str = "statics: F = m g (A/(g tan φ) − 1)";
 
-/// Contact stiffness so great that the barrel practically stays in its drawn position on the support.
+/// Contact stiffness that is so large that the penetration of the barrel into its support is negligible.
 const HARD: &str = "interface.barrel-rack.stiffness=\"500 MN/m\"";
 
 fn lids() -> Vec<String> {
@@ -74,7 +75,7 @@ fn lid_breaks() -> Problem {
         "a barrel in a cradle of 28° under a lid that breaks at 1 kN",
         HELD,
     )
-    .quantity("least push that makes the barrel roll out", "g", relative(exact, 5e-3).fast(2e-2))
+    .quantity("smallest push that makes the barrel roll out", "g", relative(exact, 5e-3).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let mut settings = lids();
         settings.push(format!("stack.lid.strength=\"{strength} N\""));
@@ -90,7 +91,7 @@ fn strap() -> Problem {
         "a barrel strapped into a cradle of 28° without slack, pushed with 0.9 g",
         HELD,
     )
-    .quantity("tension of one of its two straps", "N", relative(exact, 5e-3))
+    .quantity("tension of one of the two straps", "N", relative(exact, 5e-3))
     .by(|_| {
         let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
         let settings = settings.map(str::to_owned);
@@ -98,9 +99,10 @@ fn strap() -> Problem {
     })
 }
 
-/// Returns the period (s) of the zero crossings of a quantity after a time (s).
+/// Returns the period (s) of a quantity, computed from its zero crossings after a time (s).
 fn period(samples: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
-    devices::period(samples, after).ok_or_else(|| Failure::Absent("it does not swing".into()))
+    devices::period(samples, after)
+        .ok_or_else(|| Failure::Absent("the stack does not swing".into()))
 }
 
 /// Returns the mass (kg) of the bodies whose names pass a filter.
@@ -110,7 +112,7 @@ fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
     counted.map(|(_, body)| body.mass).sum()
 }
 
-/// Creates the problems in which the upper of two levels slides without friction between the stops of the two barrels
+/// Creates the problems in which the upper level of two slides without friction between the stops on the two barrels
 /// below.
 fn walking_stop() -> [Problem; 2] {
     let (gap, stiffness) = (0.01, 1e5);
@@ -137,7 +139,7 @@ fn walking_stop() -> [Problem; 2] {
             .by(move |_| period(&displacement(&run()?, "R2", "x")?, seconds)),
         setting("devices/walking-stop-force", title(), "energy: ½ m v² = F²/2k on two stops")
             .quantity(
-                "largest force in one of two stops",
+                "largest force in one of the two stops",
                 "N",
                 relative(0.5 * mass * omega * speed, 5e-3),
             )
@@ -145,7 +147,7 @@ fn walking_stop() -> [Problem; 2] {
     ]
 }
 
-/// Settings of a platform without friction.
+/// Returns the settings of a platform without friction.
 fn platform(recentring: f64) -> Vec<String> {
     vec![
         "stack.isolator.path=\"flat\"".to_owned(),
@@ -156,7 +158,7 @@ fn platform(recentring: f64) -> Vec<String> {
     ]
 }
 
-/// Mass (kg) that moves with a platform of the default mass.
+/// Mass (kg) that moves with a platform, including the default mass of the platform.
 const ABOARD: f64 = 60.0 + 400.0 + 2.0 * BARREL;
 
 fn tie() -> Problem {
@@ -166,7 +168,8 @@ fn tie() -> Problem {
     let omega = (stiffness / ABOARD).sqrt();
     setting(
         "devices/tie",
-        "a stack that glides between ties to both walls, each with 2 cm of slack",
+        "a stack that slides without friction between ties to both walls, each tie with 2 cm of \
+         slack",
         "4 δ/v + 2π/ω",
     )
     .quantity("period", "s", relative(4.0 * slack / speed + TAU / omega, 5e-3))
@@ -185,7 +188,7 @@ fn tie() -> Problem {
 /// Stiffness (N/m) of the springs of a platform with a tuned mass.
 const SPRINGS: f64 = 1e5;
 
-/// Runs a platform on springs with a mass on the rack that it carries.
+/// Simulates a platform on springs, with a tuned mass on the rack that the platform carries.
 fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Result<Run, Failure> {
     let own = TAU / (tuning.frequency * (SPRINGS / ABOARD).sqrt());
     let mut settings = platform(SPRINGS);
@@ -198,12 +201,12 @@ fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Res
     let run = one_level(&settings, &push(motion.0, motion.1), seconds)?;
     let aboard = mass_of(&run, |name| name != "mass on R1");
     if (aboard / ABOARD - 1.0).abs() > 1e-9 {
-        return Err(Failure::Absent(format!("{aboard} kg aboard, not {ABOARD} kg")));
+        return Err(Failure::Absent(format!("the platform carries {aboard} kg, not {ABOARD} kg")));
     }
     Ok(run)
 }
 
-/// Creates the problem of the lower or the upper natural frequency of a platform with a mass, without damping.
+/// Creates the problem of the lower or the upper natural frequency of a platform with a tuned mass, without damping.
 fn frequency(upper: usize) -> Problem {
     let (mass, tuning) = (150.0, Tuning { frequency: 0.9, damping_ratio: 0.0 });
     let whole = SPRINGS / ABOARD;
@@ -215,7 +218,7 @@ fn frequency(upper: usize) -> Problem {
     let name = ["lower", "upper"][upper];
     setting(
         format!("devices/tuned-mass-{name}"),
-        "a stack on a sprung platform with a mass of 150 kg on its rack, undamped",
+        "a stack on a platform with springs and a tuned mass of 150 kg on its rack, undamped",
         "two degrees of freedom",
     )
     .quantity(
@@ -236,15 +239,16 @@ fn frequency(upper: usize) -> Problem {
     })
 }
 
-/// The frequencies (rad/s) at which the response is evaluated.
+/// Returns the frequencies (rad/s) at which the response is evaluated.
 fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
 
-/// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass that is tuned
-/// by Den Hartog's formula, over all frequencies of the ground.
+/// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass tuned by Den
+/// Hartog's formula, over all frequencies of the ground.
 ///
-/// The exact answer is a closed form; ours comes from the response to an impulse, which excites all frequencies.
+/// The exact answer is a closed form. The program's answer is computed from the response to an impulse, which excites
+/// all frequencies.
 fn tuned(share: f64) -> Problem {
     let tuning = Tuning::den_hartog(share);
     let whole = SPRINGS / ABOARD;
@@ -267,10 +271,13 @@ fn tuned(share: f64) -> Problem {
     let (blow, seconds) = (0.5, 0.02);
     setting(
         format!("devices/tuned-mass-{share}"),
-        format!("a stack on a sprung platform with a mass tuned by Den Hartog, {share} of its own"),
+        format!(
+            "a stack on a platform with springs and a tuned mass by Den Hartog, {share} times all \
+             other mass"
+        ),
         "two degrees of freedom",
     )
-    .quantity("largest displacement over that at rest", "", relative(exact, 1e-2))
+    .quantity("largest displacement divided by the static displacement", "", relative(exact, 1e-2))
     .by(move |_| {
         let run = with_mass(share * ABOARD, tuning, (blow, seconds), 16.0)?;
         let samples = displacement(&run, "platform of R1", "x")?;

@@ -1,4 +1,4 @@
-//! Largest impact force on a falling body, as a run reports it.
+//! Largest impact force on a falling body, as reported by a run.
 
 use std::ops::ControlFlow;
 
@@ -20,8 +20,8 @@ pub(super) fn problems() -> Vec<Problem> {
 /// Mass (kg) and radius (m) of a full barrel, and Hertz stiffness (N/m^1.5) of the ground.
 const BARREL: [f64; 3] = [268.75, 0.345, 1.2e9];
 
-/// Returns the largest force (N) on a body that falls from a height (m) on ground with `F = k δ^1.5`, from
-/// `m g (h + δ) = ⅖ k δ^2.5`.
+/// Returns the largest force (N) on a body that falls from a height (m) onto ground with the contact law `F = k δ^1.5`.
+/// The energy balance is `m g (h + δ) = ⅖ k δ^2.5`.
 fn largest_force(height: f64) -> f64 {
     let [mass, _, hardness] = BARREL;
     let mut depth = 0.0_f64;
@@ -35,9 +35,10 @@ fn stopped(height: f64) -> Problem {
     let [mass, radius, hardness] = BARREL;
     let exact = largest_force(height);
     setting(format!("falls/force-{height}"), format!(
-            "a barrel that falls {height} m on ground with the stiffness of the default impact law"
+            "a barrel that falls {height} m onto ground with the stiffness of the default impact \
+             law"
         ), "energy: m g (h + δ) = ⅖ k δ^2.5")
-.quantity("largest force on it", "N", relative(exact, 1e-4))
+.quantity("largest force on the barrel", "N", relative(exact, 1e-4))
 .by(move |_| {
             let text = format!(
                 "schema = 1\nkind = \"free\"\n[[body]]\nname = \"barrel\"\n\
@@ -61,7 +62,7 @@ fn stopped(height: f64) -> Problem {
         })
 }
 
-/// Thresholds with which a body counts as fallen 20 cm below its place; the body has no seat.
+/// Thresholds by which a body counts as fallen when it is 20 cm below its initial position; the body has no seat.
 const THRESHOLDS: Thresholds = Thresholds {
     seat_loss_ratio: f64::INFINITY,
     fall_drop: 0.2,

@@ -1,4 +1,5 @@
-//! Fragility fits against published numbers, the coverage of their bands, and an annual rate against its closed form.
+//! Fragility fits compared with published numbers, the coverage of the confidence bands of the fits, and an annual rate
+//! compared with a closed form.
 
 use barrelstack_dynamics::math::exp;
 use barrelstack_fragility::{
@@ -11,7 +12,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 
 const BAKER: &str = "Baker 2015, eqs. 8 to 11";
 
-/// Eight levels of twenty cases.
+/// Returns eight stripes (intensity levels) of twenty cases each.
 fn stripes() -> Vec<Stripe> {
     let x = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0];
     let failures = [0, 1, 5, 9, 12, 15, 18, 20];
@@ -23,7 +24,8 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// Creates the problem of one number of the fit of the eight stripes, exact to half a unit of its last published digit.
+/// Creates the problem of one number of the fit to the eight stripes. The tolerance is half a unit of the last
+/// published digit.
 fn number(
     id: &str,
     quantity: &'static str,
@@ -40,7 +42,8 @@ const TRUTH: Lognormal = Lognormal { median: 0.45, dispersion: 0.45 };
 const LEVELS: [f64; 7] = [0.15, 0.25, 0.35, 0.45, 0.6, 0.8, 1.0];
 const AT: [f64; 5] = [0.2, 0.3, 0.45, 0.6, 0.9];
 
-/// Returns the share of bands that contain the true curve, over campaigns of seven stripes of thirty cases.
+/// Returns the share of confidence bands that contain the true curve; each band is fitted to a campaign of seven
+/// stripes of thirty cases.
 fn coverage(
     effort: Effort,
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,
@@ -77,7 +80,7 @@ fn covered(
     setting(format!("fragility/{id}"), title, source)
         // Sixty campaigns at five correlated intensities scatter by some 0.02.
         .quantity(
-            "share of 95 % bands that contain the true curve, mean of five intensities",
+            "share of 95 % bands that contain the true curve, mean over five intensities",
             "",
             absolute(0.95, 0.02).fast(0.05),
         )

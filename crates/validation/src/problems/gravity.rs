@@ -20,7 +20,7 @@ const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
-/// Distance (m) of the nodes from the ends of a brick, so that equal bricks can stand on each other.
+/// Distance (m) of the nodes of a brick from its ends; it allows equal bricks to stand on each other.
 pub(super) const INSET: f64 = 0.02;
 
 fn firm() -> NormalLaw {
@@ -31,7 +31,7 @@ fn rough() -> FrictionLaw {
     coulomb(0.5, STIFFNESS, 1e4)
 }
 
-/// A brick whose nodes are slightly inside its ends.
+/// Creates a brick whose nodes are slightly inside its ends.
 pub(super) fn brick(
     name: &str,
     (length, height): (f64, f64),
@@ -64,7 +64,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns the sum of normal forces (N) between two bodies, whichever has the nodes.
+/// Returns the sum of the normal forces (N) between two bodies, regardless of which of them has the nodes.
 fn force_between(scene: &Scene, a: usize, b: usize) -> f64 {
     let joins = |pair: usize| {
         let pair = scene.model.pair(pair);
@@ -87,11 +87,12 @@ fn level_force(level: usize) -> Problem {
 fn sink() -> Problem {
     let exact = 5.0 * MASS * GRAVITY / (2.0 * STIFFNESS);
     setting("gravity/sink", "five bricks in a column, the lowest on two nodes", SOURCE)
-        .quantity("sinking of the lowest", "m", relative(exact, 1e-8)) // measured 3e-10
+        .quantity("penetration of the lowest brick", "m", relative(exact, 1e-8)) // measured 3e-10
         .by(|_| Ok(0.1 - column(5)?.state.poses[1].position.z))
 }
 
-/// Creates a disc of a radius (m) on two points of the ground at ± an angle (rad) from straight down.
+/// Creates a disc of a radius (m) that rests on two points of the ground, at plus and minus an angle (rad) from the
+/// vertical.
 pub(super) fn on_two_points(
     disc: Body<Planar>,
     radius: f64,
@@ -126,7 +127,7 @@ fn cradle(angle: f64) -> Problem {
         let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
         let there = mass * GRAVITY / (2.0 * cos(steeper));
         Ok(Outcome::of(found).noted(format!(
-            "relative error for the geometry after sinking: {:.1e}",
+            "relative error if the penetration is taken into account: {:.1e}",
             (found / there - 1.0).abs()
         )))
     })
@@ -154,7 +155,7 @@ fn rest() -> Problem {
     })
 }
 
-/// Returns `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
+/// Returns `true` if a stack of `n` bricks with harmonic overhangs, multiplied by the fraction `share`, stands.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
     // The lowest lies on a table that ends at x = 0; brick i from the top overhangs the one below by L/2i.
@@ -178,8 +179,8 @@ fn overhang(n: u32) -> Problem {
     setting(
         format!("gravity/overhang-{n}"),
         match n {
-            1 => "a brick of 1 m over the end of a table".into(),
-            _ => format!("{n} equal bricks of 1 m over the end of a table"),
+            1 => "a brick of 1 m that overhangs the end of a table".into(),
+            _ => format!("{n} equal bricks of 1 m that overhang the end of a table"),
         },
         "the harmonic stack",
     )

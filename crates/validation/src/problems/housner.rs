@@ -1,4 +1,4 @@
-//! Free rocking of a block: period and amplitude, loss at impacts, uplift, and overturning by one pulse.
+//! Free rocking of a block: period and amplitude, energy loss at impacts, uplift, and overturning by a single pulse.
 
 use barrelstack_dynamics::math::{cos, tan};
 
@@ -20,7 +20,8 @@ pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     }
 }
 
-/// Creates a slender block for closed forms of small angles, so stiff that its penetration stays small.
+/// Creates a slender block for closed forms that assume small angles. The contact is so stiff that the penetration
+/// stays small.
 pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     let stiffer = if effort == Effort::Full { 5.0 } else { 4.0 };
     RockingBlock {
@@ -55,7 +56,7 @@ fn quarter_period(alpha: f64, share: f64) -> Problem {
         format!("block of α = {alpha} released at φ = {share}"),
         SOURCE,
     )
-    .quantity("p times the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
+    .quantity("p multiplied by the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
     .by(move |effort| {
         let block = firm(effort, 1.0, alpha);
         let slender = theory::slender_quarter_period(share);
@@ -77,7 +78,8 @@ fn ratio(alpha: f64) -> Problem {
     .refined(move |effort, level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
 }
 
-/// Returns the peak rotation over α after a number of impacts, from a release at φ = ½; exact for any α.
+/// Returns the peak rotation divided by α after a number of impacts, for a block that is released at φ = ½; exact for
+/// any α.
 fn peaks(alpha: f64, impacts: usize) -> f64 {
     let eta = theory::housner_restitution(alpha);
     (0..impacts).fold(0.5, |share, _| theory::next_peak(alpha, share, eta * eta))
@@ -87,11 +89,11 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
     let exact = peaks(alpha, impacts);
     setting(
         format!("housner/decay-{alpha:.2}-{impacts}"),
-        format!("block of α = {alpha} let go at φ = 0.5"),
+        format!("block of α = {alpha} released at φ = 0.5"),
         SOURCE,
     )
     .quantity(
-        "rotation over α after the number of impacts in the name",
+        "peak rotation divided by α after the number of impacts in the name",
         "",
         relative(exact, 1e-2).fast(3e-2),
     )
@@ -108,22 +110,21 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Returns the time (s) and the next peak over α of the last of a number of impacts.
+/// Returns, for the impact with a given number, its time (s) and the next peak rotation divided by α.
 fn nth(swings: &[(f64, f64)], impacts: usize) -> Result<(f64, f64), Failure> {
-    swings
-        .get(impacts - 1)
-        .copied()
-        .ok_or_else(|| Failure::Absent(format!("only {} impacts of {impacts}", swings.len())))
+    swings.get(impacts - 1).copied().ok_or_else(|| {
+        Failure::Absent(format!("only {} of {impacts} impacts occurred", swings.len()))
+    })
 }
 
 fn half_period(alpha: f64, impacts: usize) -> Problem {
     let exact = 2.0 * theory::quarter_period(alpha, peaks(alpha, impacts));
     setting(
         format!("housner/half-period-{alpha:.2}-{impacts}"),
-        format!("block of α = {alpha} let go at φ = 0.5"),
+        format!("block of α = {alpha} released at φ = 0.5"),
         SOURCE,
     )
-    .quantity("p times the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
+    .quantity("p multiplied by the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
     .refined(move |effort, level| {
         let block = firm(effort, 1.0, alpha).refined(level - 1);
         let swings = block.swings(0.5, impacts + 1, 12.0)?;
@@ -132,7 +133,8 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Creates the problem of the uplift under a slowly growing ground acceleration, with a constant vertical one (g).
+/// Creates the problem of the uplift under a slowly growing horizontal ground acceleration, with a constant vertical
+/// ground acceleration (g).
 fn uplift(alpha: f64, vertical: f64) -> Problem {
     let exact = tan(alpha) * (1.0 + vertical);
     let name = if vertical == 0.0 {
@@ -145,7 +147,11 @@ fn uplift(alpha: f64, vertical: f64) -> Problem {
         format!("block of α = {alpha}, vertical ground acceleration {vertical} g"),
         SOURCE,
     )
-    .quantity("ground acceleration that lifts a corner", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity(
+        "horizontal ground acceleration that lifts a corner",
+        "g",
+        relative(exact, 5e-3).fast(1.2e-2),
+    )
     .by(move |effort| {
         let block = firm(effort, 1.0, alpha);
         let bracket = (0.98 * exact, 1.02 * exact);
@@ -166,7 +172,11 @@ fn rectangular(product: f64) -> Problem {
         format!("slender block (α = 0.03), constant push of p t₁ = {product}"),
         SOURCE,
     )
-    .quantity("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
+    .quantity(
+        "push divided by g tan α that overturns the block",
+        "",
+        relative(exact, 1e-2).fast(2.5e-2),
+    )
     .by(move |effort| {
         // The sudden push excites the springs; stiffer springs less.
         refine(effort, exact, |level| {
@@ -187,7 +197,7 @@ fn impulse() -> Problem {
     let exact = (8.0 * GRAVITY * radius * (1.0 - cos(alpha)) / 3.0).sqrt() / cos(alpha);
     setting("housner/impulse", "block of α = 0.25, ground velocity reached within 2 ms", SOURCE)
         .quantity(
-            "sudden ground velocity that overturns",
+            "sudden ground velocity that overturns the block",
             "m/s",
             relative(exact, 1e-2).fast(2.5e-2),
         )

@@ -1,4 +1,4 @@
-//! Intensity measures of motions with closed forms: a harmonic, and a constant push.
+//! Intensity measures of motions with closed-form answers: a harmonic motion and a constant push.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,12 +11,12 @@ use crate::{Failure, Problem};
 const SOURCE: &str = "integrals of a harmonic";
 const STEP: &str = "oscillator pushed by a constant force";
 
-/// Amplitude (m/s²), period (s) and cycles of the harmonic.
+/// Amplitude (m/s²), period (s) and number of cycles of the harmonic motion.
 const AMPLITUDE: f64 = 0.3 * STANDARD_GRAVITY;
 const PERIOD: f64 = 0.5;
 const CYCLES: u32 = 8;
 
-/// Damping ratio of spectra.
+/// Damping ratio of the response spectra.
 const DAMPING: f64 = 0.05;
 
 /// Returns the problems of this module.
@@ -64,14 +64,14 @@ fn of_harmonic(
     .by(move |_| measured(&measure, &harmonic()?))
 }
 
-/// Returns a push of 1 m/s² for 4 s.
+/// Returns a ground acceleration of 1 m/s² that lasts 4 s.
 fn push(step: f64) -> Result<Sampled, Failure> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
     let samples = (4.0 / step) as usize;
     sampled(step, vec![1.0; samples])
 }
 
-/// Returns the largest pseudo-acceleration over the push: 1 + e^{−πζ/√(1−ζ²)}.
+/// Returns the largest pseudo-acceleration, divided by the push: 1 + e^{−πζ/√(1−ζ²)}.
 fn overshoot() -> f64 {
     1.0 + exp(-PI * DAMPING / (1.0 - DAMPING * DAMPING).sqrt())
 }
@@ -79,10 +79,10 @@ fn overshoot() -> f64 {
 fn of_push(period: f64) -> Problem {
     setting(
         format!("intensity/push-{period}"),
-        format!("oscillator of {period} s with 5 % damping under a lasting push"),
+        format!("oscillator with a period of {period} s and 5 % damping under a sustained push"),
         STEP,
     )
-    .quantity("pseudo-acceleration over the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
+    .quantity("pseudo-acceleration divided by the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
     .by(move |_| {
         let motion = push(period / 1000.0)?;
         let found =
@@ -94,10 +94,11 @@ fn of_push(period: f64) -> Problem {
 fn short_period() -> Problem {
     setting(
         "intensity/short-period",
-        "the harmonic in twelve samples per cycle, at a period of a twentieth of the sample step",
+        "the harmonic motion with twelve samples per cycle; oscillator period of a twentieth of \
+         the sample step",
         SOURCE,
     )
-    .quantity("Sa over PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
+    .quantity("Sa divided by PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
     .by(|_| {
         // Twelve samples per cycle are steps of 42 ms, so the recursion has to divide them.
         let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
@@ -111,7 +112,7 @@ fn short_period() -> Problem {
 /// at all periods.
 fn housner_intensity() -> Problem {
     let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
-    setting("intensity/housner", "Housner intensity of a lasting push of 1 m/s²", STEP)
+    setting("intensity/housner", "Housner intensity of a sustained push of 1 m/s²", STEP)
         .quantity("Housner intensity", "m", relative(exact, 1e-3)) // measured 6.7e-7
         .by(|_| {
             let measure = IntensityMeasure::Housner { damping: DAMPING };

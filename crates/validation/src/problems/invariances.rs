@@ -13,7 +13,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 const SOURCE: &str = "symmetry of mechanics";
 const BALANCE: &str = "balance of energy";
 
-/// Returns the number of heaps of a problem.
+/// Returns the number of heaps that a problem computes.
 fn seeds(effort: Effort) -> u64 {
     match effort {
         Effort::Fast => 2,
@@ -29,7 +29,7 @@ fn shaken(acceleration: f64) -> Shake {
     Shake::Harmonic { acceleration, omega: 9.0 }
 }
 
-/// Returns position, rotation, velocity and spin of each body as six numbers.
+/// Returns the position, rotation, velocity and spin of each body as six numbers.
 fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
     let bodies = state.poses.iter().zip(&state.twists);
     bodies
@@ -39,7 +39,7 @@ fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
         .collect()
 }
 
-/// Returns the largest difference between two states, after scaling the components of the first.
+/// Returns the largest difference between two states, after the components of the first state have been scaled.
 fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
     numbers(a)
         .iter()
@@ -52,11 +52,16 @@ fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         invariance("mirror", "mirrored heap on mirrored ground", 1e-10, mirror),
-        invariance("froude", "heap four times as large, gravity kept", 0.0, froude),
+        invariance("froude", "heap four times as large, same gravity", 0.0, froude),
         invariance("mass-unit", "heap and contacts 1024 times as heavy", 0.0, mass_unit),
         invariance("galilean", "heap on ground that moves at 3 m/s", 1e-8, galilean),
         invariance("order", "heap with bodies and nodes in reverse order", 1e-10, order),
-        invariance("time-shift", "heap on ground at rest, clock started at 64 s", 1e-9, time_shift),
+        invariance(
+            "time-shift",
+            "heap on ground at rest, with the time starting at 64 s",
+            1e-9,
+            time_shift,
+        ),
         invariance("repeat", "the same heap run twice", 0.0, repeat),
         balance(),
         elastic_row(),
@@ -81,7 +86,7 @@ fn invariance(
         })
 }
 
-/// Time step (s) and end (s) of the heaps.
+/// Time step (s) and end time (s) of the runs of heaps.
 const STEP: f64 = 2e-4;
 const END: f64 = 0.5;
 
@@ -111,7 +116,7 @@ fn mirror(seed: u64) -> Result<f64, Failure> {
     Ok(apart(&here.state, [-1.0, 1.0, -1.0, -1.0, 1.0, -1.0], &there.state))
 }
 
-/// Returns a body four times as large under the same gravity.
+/// Returns a body that is four times as large, under the same gravity.
 fn four_times(body: &Body<Planar>) -> Body<Planar> {
     let mut body = body.clone();
     body.mass *= 64.0;
@@ -141,9 +146,9 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
     body
 }
 
-/// Compares a heap with one four times as large.
+/// Compares a heap with a heap that is four times as large.
 ///
-/// All factors are powers of two, so the runs must agree to the last bit.
+/// All factors are powers of two, so the two runs must be bit-identical up to these factors.
 fn froude(seed: u64) -> Result<f64, Failure> {
     let bodies = heap(seed);
     let large = bodies.iter().map(four_times).collect();
@@ -235,7 +240,7 @@ fn repeat(seed: u64) -> Result<f64, Failure> {
 fn balance() -> Problem {
     setting("invariances/energy-balance", "heap on shaking ground, one second", BALANCE)
         .quantity(
-            "residual of the balance over the energy exchanged",
+            "residual of the energy balance, divided by the energy exchanged",
             "",
             absolute(0.0, 1e-4).fast(1e-3),
         )
@@ -264,14 +269,18 @@ fn balance() -> Problem {
         })
 }
 
-/// Creates the problem of Newton's cradle: elastic discs in a row without friction.
+/// Creates the problem of Newton's cradle: elastic discs in a row, without friction.
 fn elastic_row() -> Problem {
     setting(
         "invariances/elastic-row",
         "disc that strikes a row of four, elastic contacts, no gravity",
         BALANCE,
     )
-    .quantity("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4))
+    .quantity(
+        "kinetic energy after the impact, divided by that before",
+        "",
+        relative(1.0, 1e-6).fast(1e-4),
+    )
     .by(|effort| {
         let energy = |step: f64| -> Result<f64, Failure> {
             let mut bodies = vec![floor()];

@@ -1,7 +1,8 @@
 //! Measured blocks: the granite blocks of Peña et al. on a shaking table.
 //!
-//! Sizes and rigid-body theory are exact; the measured ratios of angular velocities are quoted from
-//! memory. The problems do not check the measurement but that the contact can be calibrated to a measured block.
+//! Sizes and rigid-body theory are exact; the measured ratios of angular velocities are not verified against the
+//! publication. The problems do not check the measurements. They check that the contact can be calibrated to a measured
+//! block.
 
 use barrelstack_dynamics::math::atan;
 
@@ -28,7 +29,7 @@ pub(super) fn problems() -> Vec<Problem> {
     periods.chain(decays).collect()
 }
 
-/// Returns half-diagonal (m) and slenderness (rad).
+/// Returns the half-diagonal (m) and the slenderness angle (rad) of a block.
 fn dimensions(width: f64, height: f64) -> (f64, f64) {
     (0.5 * width.hypot(height), atan(width / height))
 }
@@ -41,7 +42,7 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
         format!("granite block {width} m by {height} m released at φ = 0.5"),
         SOURCE,
     )
-    .quantity("time to be upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
+    .quantity("time until the block is upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
     .by(move |effort| {
         let block = firm(effort, radius, alpha);
         Ok(block.quarter_period(0.5)? / block.rate())
@@ -54,11 +55,18 @@ fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));
     setting(
         format!("measured/{name}-decay"),
-        format!("the same block, damping chosen at the first impact for the measured η = {ratio}"),
+        format!(
+            "the same block, with the damping calibrated at the first impact to the measured η = \
+             {ratio}"
+        ),
         SOURCE,
     )
     // The loss at an impact depends slightly on the rotation, mostly for the smallest of the three blocks.
-    .quantity("rotation over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
+    .quantity(
+        "peak rotation divided by α after three impacts",
+        "",
+        relative(exact, 3e-2).fast(6e-2),
+    ) // measured 5.8e-3; measured 9.6e-4
     .by(move |effort| {
         let stiffer = if effort == Effort::Full { 1.0 } else { 0.5 };
         let block = RockingBlock {

@@ -1,7 +1,7 @@
-//! Smooth motions, compared with independent equations that a library solves.
+//! Smooth motions, compared with independent equations of motion that a library solves.
 //!
 //! The equations are either those of rigid bodies, which the contact approaches as it becomes stiffer, or those of the
-//! contact springs and dampers themselves, which differ from the program only by its time step.
+//! contact springs and dampers themselves; from the latter the program differs only by the error of its time steps.
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{acos, atan2, cos, sin};
@@ -39,7 +39,8 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Returns velocity (m/s) and displacement (m) of ground with acceleration `a sin ωt` that starts at rest.
+/// Returns the velocity (m/s) and the displacement (m) of ground that starts at rest and has the acceleration `a sin
+/// ωt`.
 fn ground(a: f64, omega: f64, t: f64) -> (f64, f64) {
     let velocity = a / omega * (1.0 - cos(omega * t));
     (velocity, a / omega * (t - sin(omega * t) / omega))
@@ -58,7 +59,7 @@ fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64;
 
 /// Creates the problem of a block that rocks on one corner under one sine cycle of `push` g.
 ///
-/// The block stays near its rotation of unstable equilibrium, or overturns.
+/// Depending on the parameters, the block stays near its unstable equilibrium or overturns.
 fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     let (radius, until) = (1.0, 1.0);
     let rates = leaning(alpha, move |t| -push * GRAVITY * sin(omega * t));
@@ -66,7 +67,8 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     setting(
         format!("ode/rocking-{name}"),
         format!(
-            "block of α = {alpha} released at φ = 0.5, ground in a sine of {push} g, {omega} rad/s"
+            "block of α = {alpha} released at φ = 0.5, ground acceleration with a sine of {push} \
+             g, {omega} rad/s"
         ),
         SOURCE,
     )
@@ -81,7 +83,7 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     })
 }
 
-/// Creates the problem of a block on a soft corner, with the full equations of the springs and dampers of the normal
+/// Creates the problem of a block on a soft corner, with the full equations of the springs and dampers in the normal
 /// and tangential directions.
 fn corner() -> Problem {
     let (alpha, omega, push, until) = (0.25, 6.0, 0.3, 0.8);
@@ -115,7 +117,7 @@ fn corner() -> Problem {
         SOURCE,
     )
     .quantity(
-        "angle after 0.8 s of a sine of 0.3 g, 6 rad/s",
+        "rotation after 0.8 s on ground with a sine of 0.3 g, 6 rad/s",
         "rad",
         relative(exact, 1e-6).fast(1e-4),
     ) // measured 1.5e-7 and 2.5e-6
@@ -159,28 +161,33 @@ fn springs() -> Problem {
     let depth = move |z: f64, angle: f64| ground(push, omega, until).1 - z - corner(-1.0, angle).1;
     let [z, angle, ..] = solution(rates, [start, tilt, 0.0, 0.0], (0.0, until));
     let exact = depth(z, angle);
-    setting("ode/two-springs", "tilted block on two smooth springs (60 rad/s, ζ = 0.02) on a floor that shakes up and down", SOURCE)
-.quantity("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
-.refined(move |_, level| {
-                let size = (2.0 * half_width, 2.0 * half_height);
-                let body = block("block", size, MASS, pose(0.0, start, tilt));
-                let law = NormalLaw::KelvinVoigt { stiffness, damping };
-                let laws = interface(law, FrictionLaw::Frictionless);
-                let mut scene = Scene::new(vec![floor(), body], laws, DOWN)?;
-                let z = Shake::Sine { acceleration: push, omega, half_waves: 100.0 };
-                let drive = Both { x: Shake::Cruise(0.0), z };
-                scene.run(&drive, 4e-4 / 2.0_f64.powi(level), until)?;
-                let there = scene.state.poses[1];
-                Ok(depth(there.position.z, there.orientation))
-            })
+    setting(
+        "ode/two-springs",
+        "tilted block on two frictionless springs (60 rad/s, ζ = 0.02) on a floor that moves up \
+         and down",
+        SOURCE,
+    )
+    .quantity("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
+    .refined(move |_, level| {
+        let size = (2.0 * half_width, 2.0 * half_height);
+        let body = block("block", size, MASS, pose(0.0, start, tilt));
+        let law = NormalLaw::KelvinVoigt { stiffness, damping };
+        let laws = interface(law, FrictionLaw::Frictionless);
+        let mut scene = Scene::new(vec![floor(), body], laws, DOWN)?;
+        let z = Shake::Sine { acceleration: push, omega, half_waves: 100.0 };
+        let drive = Both { x: Shake::Cruise(0.0), z };
+        scene.run(&drive, 4e-4 / 2.0_f64.powi(level), until)?;
+        let there = scene.state.poses[1];
+        Ok(depth(there.position.z, there.orientation))
+    })
 }
 
-/// Radii (m) of the cradle and of the disc in it.
+/// Radii (m) of the cradle and of the disc that lies in the cradle.
 const CRADLE: f64 = 0.6;
 const DISC: f64 = 0.35;
 
-/// Creates a solid disc in a wide cradle at an angle (rad), at its static penetration; returns the scene and its time
-/// step (s).
+/// Creates a solid disc in a wide cradle, displaced by an angle (rad) from the bottom and at its static penetration.
+/// Returns the scene and its time step (s).
 ///
 /// Each refinement has a stiffer contact and a shorter step.
 fn cradled(angle: f64, friction: f64, level: i32) -> Result<(Scene, f64), Failure> {
@@ -220,7 +227,8 @@ fn pendulum() -> Problem {
     })
 }
 
-/// Creates the problem of a disc that climbs its cradle and spins so fast that it always slips in the same direction.
+/// Creates the problem of a disc that climbs in its cradle and spins so fast that the contact always slips in the same
+/// direction.
 fn bowl() -> Problem {
     let (friction, spin, until) = (0.4, 40.0, 0.6);
     let arm = CRADLE - DISC;
@@ -233,7 +241,8 @@ fn bowl() -> Problem {
     let exact = solution(rates, [0.0, 0.0, spin], (0.0, until))[0];
     setting(
         "ode/cradle-slip",
-        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m at 40 rad/s, slipping",
+        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m with a spin of 40 rad/s; it \
+         slips",
         SOURCE,
     )
     .quantity("angle after 0.6 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.7e-6 and 4.4e-5
@@ -261,7 +270,7 @@ fn flight() -> Problem {
     let exact = x - ground(push, omega, until).1;
     setting(
         "ode/flight",
-        "thrown body with a full matrix of viscous drag, relative to ground that shakes",
+        "thrown body with a full matrix of viscous drag relative to shaking ground",
         SOURCE,
     )
     .quantity("displacement along the ground after 1 s", "m", relative(exact, 1e-6).fast(1e-4)) // measured 2.8e-9 and 4.6e-8
@@ -281,14 +290,15 @@ fn flight() -> Problem {
     })
 }
 
-/// Returns the block of the ensembles for the independent integrator of this crate.
+/// Returns the block of the ensembles, in the form used by the independent integrator of this crate.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);
     Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
 }
 
-/// Creates the problem that verifies the integrator of the ensembles over an interval without impact.
+/// Creates the problem that verifies the rigid-block integrator, which the ensembles use, over an interval without
+/// impact.
 fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);
     let rigid = rigid();
@@ -296,16 +306,21 @@ fn own_lean() -> Problem {
     let rates = leaning(rigid.alpha, acceleration);
     let start = 0.5 * rigid.alpha;
     let exact = solution(rates, [start, 0.0], (0.0, until))[0];
-    setting("ode/own-integrator-lean", "the problem ode/rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less", SOURCE)
-.quantity("rotation after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
-.refined(move |_, level| {
-                let steps = 100 << level;
-                Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)
-            })
+    setting(
+        "ode/own-integrator-lean",
+        "the problem ode/rocking-leaning, solved by the integrator for rigid blocks of this crate, \
+         in steps of at most 10 ms",
+        SOURCE,
+    )
+    .quantity("rotation after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
+    .refined(move |_, level| {
+        let steps = 100 << level;
+        Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)
+    })
 }
 
-/// Creates the problem that verifies the same integrator from rest: uplift, one swing under a half-sine, and the peak
-/// that follows from the energy.
+/// Creates the problem that verifies the same integrator for a block that starts at rest: uplift, one swing under a
+/// half-sine, and the peak rotation, which follows from the energy.
 fn own_peak() -> Problem {
     let rigid = rigid();
     let omega = 2.0 * rigid.rate;
@@ -319,11 +334,16 @@ fn own_peak() -> Problem {
     // Energy after the half-sine: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].
     let left = cos(rigid.alpha - lean) + 0.5 * spin * spin / (rigid.rate * rigid.rate);
     let exact = rigid.alpha - acos(left);
-    setting("ode/own-integrator-peak", "block at rest under a half-sine of 1.7 g tan α, by this crate's own integrator, in the steps of the ensembles", SOURCE)
-.quantity("largest rotation", "rad", relative(exact, 1e-5)) // measured 1.9e-7
-.by(move |_| {
-            let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
-            let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);
-            Ok(ride.peak)
-        })
+    setting(
+        "ode/own-integrator-peak",
+        "block at rest under a half-sine of 1.7 g tan α, solved by the integrator of this crate \
+         with the time step of the ensembles",
+        SOURCE,
+    )
+    .quantity("largest rotation", "rad", relative(exact, 1e-5)) // measured 1.9e-7
+    .by(move |_| {
+        let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
+        let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);
+        Ok(ride.peak)
+    })
 }

@@ -7,54 +7,59 @@ use crate::{Effort, Failure, Outcome, Problem};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
 
-/// Creates the problem of the deepest overlap of bodies without a common seat, over all frames until rest of stacks of
-/// all kinds under strong shaking.
+/// Creates the problem of the deepest overlap of two bodies without a common seat. Stacks of all kinds are strongly
+/// shaken, and all frames until the bodies come to rest are checked.
 pub(super) fn problem() -> Problem {
-    setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")
-.quantity("deepest overlap, except at seats", "m", absolute(0.0, 0.015))
-.by(|effort| {
-            let (count, records) =
-                if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
-            let mut worst = Survey::default();
-            let (mut fallen, mut unstable) = (0, 0);
-            for case in 0..count {
-                let scenario = random_stack(case, &records)?;
-                let run = match scenario.run() {
-                    Ok(run) => run,
-                    // A stack whose rails are too steep for the staves does not come to rest; it is counted as such.
-                    Err(barrelstack::RunFailure::Settle(_)) => {
-                        unstable += 1;
-                        continue;
-                    }
-                    Err(failure) => return Err(failure.into()),
-                };
-                fallen += usize::from(run.fates.collapse_time().is_some());
-                worst.look(&run);
-            }
-            if fallen * 3 < count {
-                return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
-            }
-            let note = format!(
-                "{fallen} of {count} stacks fell, {unstable} do not stand at rest; {} records besides the bundled one; overlap at seats {:.1} mm; at the end \
-                 {:.1} mm, and {:.1} mm at seats; largest residual of the energy balance {:.1e}",
-                records.len(),
-                1e3 * worst.seat,
-                1e3 * worst.end,
-                1e3 * worst.seat_end,
-                worst.balance
-            );
-            Ok(Outcome::of(worst.loose).noted(note))
-        })
+    setting(
+        "solids/overlap-of-falling-stacks",
+        "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames",
+        "bodies are solid",
+    )
+    .quantity("deepest overlap, except at seats", "m", absolute(0.0, 0.015))
+    .by(|effort| {
+        let (count, records) =
+            if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
+        let mut worst = Survey::default();
+        let (mut fallen, mut unstable) = (0, 0);
+        for case in 0..count {
+            let scenario = random_stack(case, &records)?;
+            let run = match scenario.run() {
+                Ok(run) => run,
+                // A stack whose rails are too steep for the staves does not come to rest; it is counted as such.
+                Err(barrelstack::RunFailure::Settle(_)) => {
+                    unstable += 1;
+                    continue;
+                }
+                Err(failure) => return Err(failure.into()),
+            };
+            fallen += usize::from(run.fates.collapse_time().is_some());
+            worst.look(&run);
+        }
+        if fallen * 3 < count {
+            return Err(Failure::Absent(format!("only {fallen} of {count} stacks fell")));
+        }
+        let note = format!(
+            "{fallen} of {count} stacks fell; {unstable} did not stand at rest; {} records besides \
+             the bundled one; overlap at seats {:.1} mm; at the end {:.1} mm, and {:.1} mm at \
+             seats; largest residual of the energy balance {:.1e}",
+            records.len(),
+            1e3 * worst.seat,
+            1e3 * worst.end,
+            1e3 * worst.seat_end,
+            worst.balance
+        );
+        Ok(Outcome::of(worst.loose).noted(note))
+    })
 }
 
-/// Deepest overlaps (m) observed.
+/// Deepest overlaps (m) that occurred.
 #[derive(Default)]
 struct Survey {
-    /// Of two bodies without a common seat.
+    /// Deepest overlap of two bodies without a common seat.
     loose: f64,
-    /// Of two bodies at their common seat.
+    /// Deepest overlap of two bodies at their common seat.
     seat: f64,
-    /// In the last frame, of two bodies without a common seat.
+    /// Deepest overlap, in the last frame, of two bodies without a common seat.
     end: f64,
     seat_end: f64,
     /// Largest residual of the energy balance.
@@ -91,7 +96,7 @@ impl Survey {
     }
 }
 
-/// Returns the records of horizontal motion that cannot be distributed, if they are present beside the checkout.
+/// Returns the records of horizontal motion that cannot be distributed, if they are present next to the working copy.
 fn records() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     [
@@ -107,7 +112,7 @@ fn records() -> Vec<PathBuf> {
     .collect()
 }
 
-/// Returns a random stack that is determined by its number and the records.
+/// Returns a random stack, which is determined by the number of the case and by the records.
 fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
     // Each choice is one step of the generator SplitMix64.
     let pick = |salt: usize, count: usize| {

@@ -1,4 +1,5 @@
-//! Overturning of a block by pulses: without an impact, after an impact, and the safe strengths between.
+//! Overturning of a block by pulses: without an impact, after an impact, and the strengths in between at which the
+//! block is safe.
 
 use crate::drive::Shake;
 use crate::problem::{border, halvings, relative, setting};
@@ -47,8 +48,8 @@ impl Form {
     }
 }
 
-/// Borders of the table, with increasing strength: overturning starts, the block is safe again, the block overturns
-/// without an impact.
+/// Borders in the table, in the order of increasing pulse strength: overturning starts, the block is safe again, the
+/// block overturns without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
 /// Returns the problems of this module.
@@ -91,7 +92,11 @@ fn closed(form: Form, ratio: f64) -> Problem {
         format!("slender block (α = 0.03), {} of ω/p = {ratio}, no impact", form.name()),
         CLOSED,
     )
-    .quantity("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
+    .quantity(
+        "pulse amplitude divided by g tan α that overturns the block",
+        "",
+        relative(exact, 1e-2).fast(2.5e-2),
+    )
     .by(move |effort| {
         let block = slender(effort, 1.0);
         let omega = ratio * block.rate();
@@ -125,7 +130,7 @@ fn tabulated(
         TABLE,
     )
     .quantity(
-        "strength over g tan α at the border in the name",
+        "pulse amplitude divided by g tan α at the border in the name",
         "",
         relative(exact, 1e-2).fast(2.5e-2),
     )

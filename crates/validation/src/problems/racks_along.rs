@@ -17,7 +17,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Runs a stack in the plane along its barrels under a push (g) that grows for two seconds and stays constant for one.
+/// Runs a stack in the plane along its barrels under a push (g) that grows for two seconds and is then constant for one
+/// second.
 ///
 /// The contacts are so stiff that almost nothing deforms.
 fn pushed(settings: &[String], push: f64) -> Result<Run, Failure> {
@@ -38,11 +39,11 @@ fn scenario(settings: &[String]) -> Result<Scenario, Failure> {
     Ok(Scenario::parse("racks.toml", &text, settings)?)
 }
 
-/// Distance (m) of the outer end of the flat top of a post from the middle of its rack: 44 cm to its axis, plus half
-/// of its 5 cm, minus the 12 mm radius of its corners.
+/// Distance (m) of the outer end of the flat top of a post from the middle of the rack: 44 cm to the axis of the post,
+/// plus half its width of 5 cm, minus the corner radius of 12 mm.
 const EDGE: f64 = 0.44 + 0.025 - 0.012;
 
-/// Height (m) from one level of racks on posts to the next.
+/// Vertical distance (m) between two levels of racks that stand on posts.
 const PITCH: f64 = 0.89;
 
 fn towers() -> Vec<String> {
@@ -69,7 +70,11 @@ fn posts() -> Problem {
         "two levels on the posts of a heavy rack, pushed along the barrels",
         "statics: uplift at a/g = c/h",
     )
-    .quantity("least push that lifts them off their posts", "g", relative(exact, 5e-3).fast(1e-2))
+    .quantity(
+        "smallest push that lifts the upper levels off their posts",
+        "g",
+        relative(exact, 5e-3).fast(1e-2),
+    )
     .by(move |effort| {
         height_of_upper_levels()?;
         let found = border((0.97 * exact, 1.03 * exact), halvings(effort).min(6), |amplitude| {
@@ -108,18 +113,17 @@ const CRADLE: f64 = 28.0;
 
 /// Returns the effective friction coefficient of the barrel along its axis.
 ///
-/// The barrel is wedged between the two supports of each cradle, so their normal forces add up to its load on the rail
-/// over the cosine of the cradle angle.
+/// The barrel is wedged between the two supports of each cradle, so the normal forces of the two supports add up to the
+/// load of the barrel on the rail, divided by the cosine of the cradle angle.
 fn wedged() -> f64 {
     FRICTION / cos(CRADLE.to_radians())
 }
 
-/// Returns the least push (g) that makes a barrel slide on two rails that raise its right end by an angle (rad).
-///
-/// The barrel slides toward that end or, with `side = -1`, away from it.
-/// Its staves are an arc about a point C high above it, so it slides by rotating about C. The balance of forces is
-/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0`, and that of moments about C is
-/// `m d × (A, −g) = μ (N₁ + N₂) R`; μ is the coefficient of [`wedged`].
+/// Returns the smallest push (g) that makes a barrel slide on two rails that raise its right end by an angle (rad). The
+/// barrel slides toward the right end or, with `side = -1`, away from it. The staves form an arc about a point C high
+/// above the barrel, so the barrel slides by rotating about C. The balance of forces is `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂
+/// t₂) + m (A, −g) = 0`, and the balance of moments about C is `m d × (A, −g) = μ (N₁ + N₂) R`; μ is the coefficient of
+/// [`wedged`].
 fn sliding(angle: f64, side: f64) -> f64 {
     let [length, head, bilge] = BARREL;
     let friction = wedged();
@@ -156,15 +160,15 @@ fn slides(degrees: f64, side: f64) -> Problem {
     let exact = sliding(degrees.to_radians(), side);
     let (name, words) = match (degrees > 0.0, side > 0.0) {
         (false, _) => ("level", "on level rails"),
-        (true, true) => ("up", "towards the end that its rails raise by 3.5°"),
-        (true, false) => ("down", "from the end that its rails raise by 3.5°"),
+        (true, true) => ("up", "toward the end that its rails raise by 3.5°"),
+        (true, false) => ("down", "away from the end that its rails raise by 3.5°"),
     };
     setting(
         format!("devices/incline-{name}"),
         format!("a barrel pushed {words}, μ = {FRICTION}"),
         "statics: two contacts under Coulomb friction on an arc",
     )
-    .quantity("least push that makes the barrel slide", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("smallest push that makes the barrel slide", "g", relative(exact, 1e-2).fast(2e-2))
     .by(move |effort| {
         border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
             let settings = [

@@ -27,7 +27,8 @@ pub(super) fn standing(
     Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
 }
 
-/// Returns whether a block of height 2 m and slenderness `s` has begun to slide, and whether it has begun to rock.
+/// Returns two flags: whether a block of height 2 m and slenderness `s` has begun to slide, and whether it has begun to
+/// rock.
 fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, bool), Failure> {
     let finer = 2.0_f64.powi(refinement);
     let mut scene = standing((2.0 * s, 2.0), friction, 1e10 * finer * finer)?;
@@ -62,7 +63,7 @@ fn least_friction(s: f64, share: f64) -> Problem {
         SOURCE,
     )
     .quantity(
-        "least friction coefficient with which the block rocks without sliding",
+        "smallest friction coefficient with which the block rocks without sliding",
         "",
         relative(exact, 4e-3).fast(1.2e-2),
     )
@@ -97,7 +98,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     let exact = 3.0 * GRAVITY * (beta - s) / (4.0 * (1.0 + s * s));
     setting(
         format!("regimes/first-spin-{s}-{beta}"),
-        format!("block of s = {s} under a sudden {beta} g, no sliding"),
+        format!("block of s = {s} under a sudden ground acceleration of {beta} g, no sliding"),
         SOURCE,
     )
     .quantity(
@@ -119,7 +120,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     })
 }
 
-/// Runs a block that is too flat to rock through a motion of the ground.
+/// Simulates a block that is too flat to rock, under a given motion of the ground.
 ///
 /// # Errors
 /// If the run fails numerically.
@@ -135,7 +136,7 @@ pub(super) fn ridden(
     Ok(scene)
 }
 
-/// Returns the coarsest refinement at an effort.
+/// Returns the coarsest refinement level for an effort.
 pub(super) fn base(effort: Effort) -> i32 {
     match effort {
         Effort::Fast => -1,

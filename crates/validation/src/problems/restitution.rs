@@ -15,7 +15,7 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 const SOURCE: &str = "damped oscillator on approach";
 const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021";
 
-/// Natural frequency √(k/m) (rad/s) of the mass on its node.
+/// Natural frequency √(k/m) (rad/s) of the mass on the spring of its node.
 const OMEGA: f64 = 100.0;
 const RADIUS: f64 = 0.1;
 
@@ -51,10 +51,14 @@ pub(super) fn problems() -> Vec<Problem> {
 fn newtons_cradle() -> Problem {
     setting(
         "restitution/newtons-cradle",
-        "one disc at 1 m/s against a row of four that touch, no damping, no friction",
+        "one disc at 1 m/s that strikes a row of four touching discs, no damping, no friction",
         "balance of energy",
     )
-    .quantity("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4)) // measured 1.9e-10
+    .quantity(
+        "kinetic energy after the impact, divided by that before",
+        "",
+        relative(1.0, 1e-6).fast(1e-4),
+    ) // measured 1.9e-10
     .by(|effort| {
         let mut bodies = vec![ground_of(vec![])];
         for at in 0..5 {
@@ -87,7 +91,8 @@ fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, 
     Ok(Scene::new(vec![floor(), body], interface(normal, FrictionLaw::Frictionless), gravity)?)
 }
 
-/// Returns the time (s) and the speed (m/s) at which a mass leaves the floor; `None` if it stays for `patience` (s).
+/// Returns the time (s) and the speed (m/s) at which a mass leaves the floor; `None` if the mass does not leave within
+/// `patience` (s).
 fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f64)>, Failure> {
     let mut before = (0.0, 0.0);
     let mut left = None;
@@ -105,7 +110,8 @@ fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f
 
 /// Returns the time step (s) of a refinement.
 ///
-/// A refinement halves only the step and keeps the stiffness, since the exact answer is that of the law itself.
+/// A refinement halves only the step and keeps the stiffness, since the exact answer is the restitution of the law
+/// itself.
 fn step(level: i32) -> f64 {
     1e-4 / OMEGA / 2.0_f64.powi(level)
 }
@@ -147,7 +153,7 @@ fn contact_time(zeta: f64) -> Problem {
         format!("mass on one node, speed-gap law, ζ = {zeta}, no gravity"),
         SOURCE,
     )
-    .quantity("ω times the time of contact", "", relative(exact, 2e-4).fast(5e-4))
+    .quantity("ω multiplied by the contact time", "", relative(exact, 2e-4).fast(5e-4))
     .refined(move |_, level| {
         let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
         Ok(OMEGA * gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.0)
@@ -157,7 +163,7 @@ fn contact_time(zeta: f64) -> Problem {
 fn inverted(e: f64, published: f64) -> Problem {
     setting(
         format!("restitution/damping-for-{e}"),
-        format!("damping ratio of the speed-gap law for e = {e}, checked by a drop"),
+        format!("damping ratio of the speed-gap law for e = {e}, checked with an impact"),
         SOURCE,
     )
     // The published values have three or four digits.
@@ -195,7 +201,11 @@ fn stays(zeta: f64) -> Problem {
         format!("mass on one speed-gap node under gravity, ζ = {zeta}"),
         SOURCE,
     )
-    .quantity("least Γ = g/ωv at which the mass stays", "", relative(exact, 2e-3).fast(1.2e-2))
+    .quantity(
+        "smallest Γ = g/ωv at which the mass does not rebound",
+        "",
+        relative(exact, 2e-3).fast(1.2e-2),
+    )
     .at_border(0.02, move |gamma| {
         let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
         // Every later rebound is lower than the first.
@@ -211,7 +221,7 @@ fn stability(zeta: f64) -> Problem {
         format!("mass that rests on a damped node, ζ = {zeta}, symplectic Euler"),
         "root of the step's polynomial at −1",
     )
-    .quantity("ω times the longest stable step", "", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("ω multiplied by the longest stable step", "", relative(exact, 5e-3).fast(1.2e-2))
     .at_border(0.02, move |step| {
         let mut scene = striking(Corner::KelvinVoigt, zeta, 0.0, DOWN)?;
         scene.method = Method::SemiImplicitEuler;
@@ -226,7 +236,7 @@ fn stability(zeta: f64) -> Problem {
     })
 }
 
-/// Creates the problem of a damping that is calibrated at one amplitude and checked at another.
+/// Creates the problem of a damping ratio that is calibrated at one amplitude and checked at another.
 fn calibrated(target: f64) -> Problem {
     let alpha = 0.25;
     setting(

@@ -22,16 +22,16 @@ const SOURCE: &str = "rigid-body dynamics of rolling";
 const MASS: f64 = 100.0;
 const RADIUS: f64 = 0.35;
 
-/// Ratios k²/r² of radius of gyration and radius, squared: a full barrel whose wine slips, a ball, a solid cylinder
-/// and a hoop.
+/// Squared ratios k²/r² of the radius of gyration to the radius, for a full barrel whose wine does not rotate, a ball,
+/// a solid cylinder and a hoop.
 const RATIOS: [f64; 4] = [0.1236, 0.4, 0.5, 1.0];
 
-/// Returns the stiffness (N/m) after refinements.
+/// Returns the stiffness (N/m) at a refinement level.
 fn stiffness(level: i32) -> f64 {
     1e8 * 4.0_f64.powi(level)
 }
 
-/// Returns the time step (s) after refinements.
+/// Returns the time step (s) at a refinement level.
 fn step(level: i32) -> f64 {
     1e-4 / 2.0_f64.powi(level)
 }
@@ -46,7 +46,7 @@ fn stick(coefficient: f64, level: i32) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, MASS))
 }
 
-/// Creates a disc with k²/r² = `ratio`, at its static penetration in a floor.
+/// Creates a disc with k²/r² = `ratio` on a floor, at its static penetration.
 fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene, Failure> {
     let sunk = -MASS * gravity.z / stiffness(level);
     let center = Vec2::new(0.0, RADIUS - sunk);
@@ -54,7 +54,7 @@ fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene,
     Ok(Scene::new(vec![floor(), body], interface(firm(level), stick(friction, level)), gravity)?)
 }
 
-/// Returns the mean acceleration (m/s²) of the center between 0.5 s and 1 s.
+/// Returns the mean acceleration (m/s²) of the center of the disc between 0.5 s and 1 s.
 fn acceleration(scene: &mut Scene, drive: &impl Drive<Planar>, level: i32) -> Result<f64, Failure> {
     scene.run(drive, step(level), 0.5)?;
     let before = scene.state.twists[1].linear.x;
@@ -87,7 +87,7 @@ fn base(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio} on a base that accelerates at 1.5 m/s²"),
         SOURCE,
     )
-    .quantity("its acceleration over that of the base", "", relative(exact, 1e-4))
+    .quantity("acceleration of the disc, divided by that of the base", "", relative(exact, 1e-4))
     .refined(move |_, level| {
         let drive = Shake::Rectangular { acceleration: 1.5, duration: 1e9 };
         Ok(acceleration(&mut roller(ratio, 0.5, DOWN, level)?, &drive, level)? / 1.5)
@@ -98,11 +98,11 @@ fn base_slip(ratio: f64) -> Problem {
     let exact = 0.2 * (1.0 + 1.0 / ratio);
     setting(
         format!("rolling/base-slip-{ratio}"),
-        format!("disc of k²/r² = {ratio}, μ = 0.2, base acceleration grows"),
+        format!("disc of k²/r² = {ratio}, μ = 0.2, on a base whose acceleration grows"),
         SOURCE,
     )
     .quantity(
-        "base acceleration at which it starts to slip",
+        "base acceleration at which the disc starts to slip",
         "g",
         relative(exact, 5e-3).fast(1.2e-2),
     )
@@ -150,7 +150,7 @@ fn slope_slip(ratio: f64) -> Problem {
         SOURCE,
     )
     .quantity(
-        "tangent of the least slope on which it slips",
+        "tangent of the smallest slope on which the disc slips",
         "",
         relative(exact, 1e-2).fast(1.2e-2),
     )
@@ -189,7 +189,7 @@ fn swing(ratio: f64) -> Problem {
     })
 }
 
-/// Creates the disc on two points of the ground.
+/// Creates a disc that rests on two points of the ground.
 fn two_points(angle: f64, friction: FrictionLaw) -> Result<Scene, Failure> {
     let body = disc("barrel", RADIUS, MASS, 0.5 * RADIUS * RADIUS, Vec2::default());
     Ok(on_two_points(body, RADIUS, angle, interface(firm(0), friction))?.settled(1e-9)?)
@@ -199,11 +199,13 @@ fn leaves(angle: f64) -> Problem {
     let exact = tan(angle);
     setting(
         format!("rolling/leaves-cradle-{angle}"),
-        format!("disc on two frictionless points at ±{angle} rad, ground acceleration grows"),
+        format!(
+            "disc on two frictionless points at ±{angle} rad, on ground whose acceleration grows"
+        ),
         SOURCE,
     )
     .quantity(
-        "ground acceleration at which it leaves one point",
+        "ground acceleration at which the disc leaves one point",
         "g",
         relative(exact, 5e-3).fast(1.2e-2),
     )

@@ -1,4 +1,4 @@
-//! Sliding blocks: under pulses, on shaking ground, and on slopes; and blocks that must not slide.
+//! Blocks that slide under pulses, on shaking ground and on slopes, and blocks that must not slide.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -34,7 +34,7 @@ pub(super) fn problems() -> Vec<Problem> {
         ),
         slide(
             "half-sine",
-            "half-sine of 0.5 g and 0.4 s, μ = 0.2",
+            "half-sine push of 0.5 g for 0.4 s, μ = 0.2",
             half_sine,
             theory::slide_in_half_sine(a, n, duration),
         ),
@@ -50,15 +50,19 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn slide(name: &str, title: &str, drive: Shake, exact: f64) -> Problem {
     setting(format!("sliding/{name}"), title, SOURCE)
-        .quantity("displacement of the block on the ground", "m", relative(exact, 2e-4).fast(1e-3))
+        .quantity(
+            "displacement of the block relative to the ground",
+            "m",
+            relative(exact, 2e-4).fast(1e-3),
+        )
         .refined(move |effort, level| {
             Ok(-ridden(0.2, &drive, 3.0, base(effort) + level)?.relative(1))
         })
 }
 
 fn ride_along() -> Problem {
-    setting("sliding/below-yield", "half-sine of 0.19 g and 0.4 s, μ = 0.2", SOURCE)
-        .quantity("displacement of the block on the ground", "m", absolute(0.0, 1e-9)) // measured 1.2e-12
+    setting("sliding/below-yield", "half-sine push of 0.19 g for 0.4 s, μ = 0.2", SOURCE)
+        .quantity("displacement of the block relative to the ground", "m", absolute(0.0, 1e-9)) // measured 1.2e-12
         .by(|effort| {
             let drive =
                 Shake::Sine { acceleration: 0.19 * GRAVITY, omega: PI / 0.4, half_waves: 1.0 };
@@ -119,7 +123,7 @@ fn creep(share: f64) -> Problem {
     let exact = 0.01 * share / (1.0 - share * share).sqrt();
     setting(
         format!("sliding/regularized-creep-{share}"),
-        format!("regularized friction, slope of {share} of the friction angle"),
+        format!("regularized friction, slope of {share} times the friction angle"),
         "equilibrium of the smooth law",
     )
     .quantity("creep speed", "m/s", relative(exact, 1e-12)) // measured 3e-15

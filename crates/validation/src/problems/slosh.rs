@@ -1,5 +1,5 @@
-//! Waves in a part-filled barrel: their frequencies and masses, compared with published values and with finite
-//! elements in the plane of the cross-section.
+//! Waves in a partly filled barrel: frequencies and moving masses, compared with published values and with a
+//! finite-element solution in the plane of the cross-section.
 
 use barrelstack::slosh::{across, along, filled_to};
 use barrelstack::{Run, Scenario};
@@ -29,7 +29,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns `ω² R/g` of a cylinder of radius 1 m filled to a depth (m).
+/// Returns `ω² R/g` for the wave in a cylinder of radius 1 m that is filled to a depth (m).
 fn number(depth: f64) -> f64 {
     1.0 / across(1.0, filled_to(depth)).length
 }
@@ -37,7 +37,10 @@ fn number(depth: f64) -> f64 {
 fn frequency(name: &str, source: &'static str, depth: f64, exact: f64, tolerance: f64) -> Problem {
     setting(
         format!("slosh/{name}"),
-        format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
+        format!(
+            "horizontal cylinder filled to a depth of {depth} times its radius, first transverse \
+             wave"
+        ),
         source,
     )
     .quantity("ω² R/g", "", relative(exact, tolerance))
@@ -49,21 +52,25 @@ fn nearly_full() -> Problem {
     let half_width = (1.0 - (depth - 1.0) * (depth - 1.0)).sqrt();
     setting(
         "slosh/nearly-full",
-        "horizontal cylinder, full except for a slit, first wave across",
+        "horizontal cylinder, full except for a narrow free surface (a slit), first transverse \
+         wave",
         NEARLY_FULL,
     )
     .quantity("ω² b/g with half the width b of the slit", "", relative(2.006_119, 1e-3))
     .by(move |_| Ok(number(depth) * half_width))
 }
 
-/// Number of elements per side, with which the finite-element answers are off by about 0.1 %.
+/// Number of elements per side. With this number, the finite-element answers have an error of about 0.1 %.
 const SIDE: usize = 28;
 
 fn by_elements(depth: f64) -> Problem {
     let (exact, _) = finite_elements(depth, SIDE);
     setting(
         format!("slosh/frequency-{depth}"),
-        format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
+        format!(
+            "horizontal cylinder filled to a depth of {depth} times its radius, first transverse \
+             wave"
+        ),
         ELEMENTS,
     )
     .quantity("ω² R/g", "", relative(exact, 4e-3))
@@ -74,7 +81,10 @@ fn mass(depth: f64) -> Problem {
     let (_, exact) = finite_elements(depth, SIDE);
     setting(
         format!("slosh/mass-{depth}"),
-        format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
+        format!(
+            "horizontal cylinder filled to a depth of {depth} times its radius, first transverse \
+             wave"
+        ),
         ELEMENTS,
     )
     .quantity("share of the mass that moves with the wave", "", relative(exact, 4e-3))
@@ -83,7 +93,8 @@ fn mass(depth: f64) -> Problem {
 
 /// Returns `ω²/g` and the mass fraction of the first antisymmetric wave in a segment of the unit circle.
 ///
-/// Bilinear elements between surface and wall give the eigenvalue problem `K φ = κ M φ`, with `M` on the surface only.
+/// Bilinear elements between the liquid surface and the wall give the eigenvalue problem `K φ = κ M φ`, where `M` has
+/// entries for the surface only.
 fn finite_elements(depth: f64, side: usize) -> (f64, f64) {
     let angle = acos(1.0 - depth);
     let (width, height) = sin_cos(angle);
@@ -202,7 +213,7 @@ fn long() -> Problem {
     })
 }
 
-/// Creates the problem of the wine of a barrel in its cradle, excited by a short push.
+/// Creates the problem of a wave in the wine of a barrel in its cradle, excited by a short push.
 fn in_a_stack(filled: f64) -> Problem {
     let wave = scenario(filled)
         .ok()
@@ -211,10 +222,12 @@ fn in_a_stack(filled: f64) -> Problem {
         wave.map_or(f64::NAN, |wave| (GRAVITY / wave.length).sqrt() / std::f64::consts::TAU);
     setting(
         format!("slosh/barrel-{filled}"),
-        format!("barrels of 225 L filled to {filled} on their rack after a short push"),
-        "the pendulum of its wave",
+        format!(
+            "barrels of 225 L on their rack, {filled} of the capacity filled, after a short push"
+        ),
+        "pendulum that represents the wave",
     )
-    .quantity("frequency of the wine", "Hz", relative(exact, 3e-3))
+    .quantity("frequency of the wave in the wine", "Hz", relative(exact, 3e-3))
     .by(move |_| {
         let run: Run = scenario(filled)?.run()?;
         let recording = &run.recording;

@@ -16,7 +16,7 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 const REBOUND: &str = "balance of energy of a spring k δ^1.5";
 
-/// Mass (kg) of a full barrel; its impact law is that of the catalog.
+/// Mass (kg) of a full barrel; the impact law of the barrel is the default law of the catalog.
 const MASS: f64 = 270.0;
 const STIFFNESS: f64 = 1.2e9;
 const RESTITUTION: f64 = 0.3;
@@ -44,8 +44,8 @@ fn law() -> NormalLaw {
     NormalLaw::Rebound { stiffness: STIFFNESS, restitution: RESTITUTION, speed: 0.1 }
 }
 
-/// Returns the greatest depth (m) and the rebound speed (m/s) of a mass that hits the floor after a fall from a height
-/// (m).
+/// Returns the largest penetration (m) and the rebound speed (m/s) of a mass that hits the floor after a fall from a
+/// height (m).
 fn drop(mass: f64, height: f64, step: f64) -> Result<(f64, f64), Failure> {
     let radius = 0.35;
     let mut body = disc("mass", radius, mass, 0.01, Vec2::new(0.0, radius));
@@ -70,9 +70,9 @@ fn speed_after(height: f64) -> f64 {
     (2.0 * GRAVITY * height).sqrt()
 }
 
-/// Creates the problem of the greatest depth of a falling barrel: `½ m v² + m g δ = ⅖ k δ^2.5`.
+/// Creates the problem of the largest penetration of a falling barrel: `½ m v² + m g δ = ⅖ k δ^2.5`.
 ///
-/// The barrel is much faster than the speed at which the law begins to damp.
+/// The barrel is so fast that the force on approach is practically that of the spring alone.
 fn depth(height: f64) -> Problem {
     let energy = MASS * GRAVITY * height;
     let mut exact = 0.01;
@@ -81,21 +81,21 @@ fn depth(height: f64) -> Problem {
     }
     setting(
         format!("solids/depth-{height:.1}m"),
-        format!("a full barrel of {MASS} kg falls {height} m on the floor"),
+        format!("a full barrel of {MASS} kg falls {height} m onto the floor"),
         REBOUND,
     )
-    .quantity("greatest depth", "m", relative(exact, 2e-3))
+    .quantity("largest penetration", "m", relative(exact, 2e-3))
     .refined(move |_, level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
 }
 
-/// Creates the problem of the rebound speed, which does not depend on the mass.
+/// Creates the problem of the rebound speed, which must not depend on the mass.
 fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     setting(
         format!("solids/restitution-{}-{height:.1}m", what.replace(' ', "-")),
-        format!("a {what} ({mass} kg at the contact) falls {height} m on the floor"),
-        "e² of the energy comes back; Walton and Braun 1986",
+        format!("a {what} ({mass} kg at the contact) falls {height} m onto the floor"),
+        "the fraction e² of the energy is returned; Walton and Braun 1986",
     )
-    .quantity("speed after over speed before", "", relative(RESTITUTION, 2e-2))
+    .quantity("speed after the impact, divided by that before", "", relative(RESTITUTION, 2e-2))
     .by(move |effort| {
         let step = if effort == Effort::Full { 1e-6 } else { 1e-5 };
         let (depth, left) = drop(mass, height, step)?;
@@ -104,21 +104,21 @@ fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     })
 }
 
-/// Creates the problem of the rebound with the default step of a stack.
+/// Creates the problem of the rebound, computed with the default time step of a stack.
 fn default_step() -> Problem {
     setting(
         "solids/restitution-at-the-default-step",
         "a full barrel falls 3.3 m, computed with steps of 0.25 ms",
-        "e² of the energy comes back; Walton and Braun 1986",
+        "the fraction e² of the energy is returned; Walton and Braun 1986",
     )
-    .quantity("speed after over speed before", "", relative(RESTITUTION, 0.1))
+    .quantity("speed after the impact, divided by that before", "", relative(RESTITUTION, 0.1))
     .by(|_| {
         let (depth, left) = drop(MASS, 3.3, 2.5e-4)?;
         let said = [1e-4, 5e-4].map(|step| drop(MASS, 3.3, step));
         let [fine, coarse] = said;
         let share = |left: f64| left / speed_after(3.3);
         let note = format!(
-            "{:.1} mm deep; {:.3} at 0.1 ms, {:.3} at 0.5 ms",
+            "penetration {:.1} mm; ratio {:.3} at 0.1 ms, {:.3} at 0.5 ms",
             1e3 * depth,
             share(fine?.1),
             share(coarse?.1)
@@ -156,7 +156,7 @@ fn two_boxes() -> [Shape; 2] {
     [rounded_box(1.0, 0.2), rounded_box(0.6, 0.2)]
 }
 
-/// Returns the section of a rail, and the profile of a barrel along its axis.
+/// Returns the cross-section of a rail and the longitudinal profile of a barrel.
 fn rail_and_barrel() -> [Shape; 2] {
     let rail = Polygon::bar(Vec2::new(-0.48, 0.0), Vec2::new(0.48, 0.0), 0.012);
     let barrel = BarrelProfile::new(0.95, 0.58, 0.7).and_then(|profile| profile.rounded(0.01));
@@ -166,7 +166,8 @@ fn rail_and_barrel() -> [Shape; 2] {
     }
 }
 
-/// Creates a model of two bodies, each tested as contactor of the other; the lower one is at the origin.
+/// Creates a model of two bodies, each of which is tested as the contactor of the other. The lower body is at the
+/// origin.
 fn two(
     [below, above]: [Shape; 2],
     upper: Pose<Planar>,
@@ -192,12 +193,12 @@ fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Fa
     Ok(([wrench.force.x, wrench.force.z, wrench.moment], scratch.contacts.len()))
 }
 
-/// Creates the problem of a box flat on another: it must have two contacts, at the ends of the overlap, in either order
-/// of the boxes.
+/// Creates the problem of a box that lies flat on another box. There must be two contacts, at the ends of the overlap,
+/// whichever box comes first.
 fn flat(share: f64, count: f64) -> Problem {
     setting(
         format!("solids/flat-on-flat-{share:.2}"),
-        format!("a box flat on another, {share} of its width beyond the edge"),
+        format!("a box that lies flat on another box, with {share} of its width beyond the edge"),
         "two overlapping lines touch at the two ends of the overlap",
     )
     .quantity("contacts", "", absolute(count, 0.0))
@@ -215,16 +216,16 @@ fn flat(share: f64, count: f64) -> Problem {
 
 /// Creates the problem of the smoothness of forces while one box moves over the flats, edges and corners of another.
 ///
-/// The quantity is the largest jump between neighboring points of a fine path, relative to the change that the
-/// stiffness explains.
+/// The quantity is the largest change of force between neighboring points of a fine path, relative to the change that
+/// follows from the stiffness.
 fn smooth() -> Problem {
     setting(
         "solids/smooth-along-paths",
-        "a box moved over flats, edges and corners of another on 40 paths",
+        "a box that is moved over the flats, edges and corners of another box on 40 paths",
         "forces of a spring of stiffness k change by k times the displacement",
     )
     .quantity(
-        "largest jump of a force over k times the step, in excess of 4",
+        "largest jump of a force, divided by k times the step, in excess of 4",
         "",
         absolute(0.0, 1e-9),
     )
@@ -258,20 +259,21 @@ fn smooth() -> Problem {
     })
 }
 
-/// Displacement (m, rad) to either side in a finite difference.
+/// Displacement (m, rad) to either side in the central finite difference.
 const STEP: f64 = 1e-8;
 
-/// Creates the problem of the force as negative gradient of the elastic energy, at poses all around the lower body.
+/// Creates the problem that the force must be the negative gradient of the elastic energy, at poses all around the
+/// lower body.
 ///
 /// If force and gradient agree wherever two bodies press on each other, no path around a corner gains or loses energy.
-/// The quantity is their largest difference in any of the three components, over the force.
+/// The quantity is the largest difference between the two in any of the three components, divided by the force.
 fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
     setting(
         format!("solids/slope-of-the-energy-{}", what.replace(' ', "-")),
-        format!("{what}, in contact all around each other"),
+        format!("{what}, in contact in poses all around each other"),
         "a conservative force is the negative gradient of its energy",
     )
-    .quantity("largest difference, over the force", "", absolute(0.0, 1e-4))
+    .quantity("largest difference, divided by the force", "", absolute(0.0, 1e-4))
     .by(move |effort| {
         let wanted = if effort == Effort::Full { 20_000 } else { 1000 };
         let (model, mut state) = two(shapes(), scene::pose(0.0, 0.0, 0.0), false)?;

@@ -12,14 +12,14 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 use super::gravity::{INSET, brick};
 
-const UPLIFT: &str = "quasi-static balance, least c/h over the joints";
+const UPLIFT: &str = "quasi-static balance, smallest c/h of all joints";
 const PATTERNS: &str = "Psycharis 1990";
 const MASS: f64 = 100.0;
 
 /// Stiffness (N/m) of a joint's nodes.
 const STIFFNESS: f64 = 1e9;
 
-/// Creates blocks of given sizes (m) on each other, from the ground up.
+/// Creates a tower of blocks with given sizes (m), listed from the ground up.
 ///
 /// `frictions` are the friction coefficients of the joint on the ground and of all other joints.
 fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> {
@@ -59,8 +59,8 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Returns the least ratio of half-width to height of the center of mass above it among the joints, and the index of
-/// that joint.
+/// Returns the smallest ratio, among all joints, of the half-width of a joint to the height of the center of mass of
+/// the blocks above that joint; and the index of the joint with this ratio.
 fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
     let joint = |k: usize| {
         // Equal masses: the mean of the heights of the centers above the joint.
@@ -86,7 +86,9 @@ fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
         format!("stacks/opens-{name}"),
         match sizes.len() {
             1 => "a block on the ground".into(),
-            count => format!("{count} blocks on each other, joint {} opens first", joint + 1),
+            count => {
+                format!("{count} blocks on top of each other, joint {} opens first", joint + 1)
+            }
         },
         UPLIFT,
     )
@@ -140,7 +142,8 @@ fn slides(ground: f64, between: f64, exact: f64) -> Problem {
 /// Names of the rocking patterns of Psycharis.
 const NAMES: [&str; 4] = ["together", "upper alone", "same sense", "opposite senses"];
 
-/// Returns the index of the pattern of two blocks with rotations `lower` and `upper` (rad); `None` near rest.
+/// Returns the index of the rocking pattern of two blocks with the rotations `lower` and `upper` (rad); `None` near
+/// rest.
 fn pattern(lower: f64, upper: f64) -> Option<usize> {
     let (open, hair) = (2e-3, 2e-4);
     let between = upper - lower;
@@ -155,7 +158,7 @@ fn pattern(lower: f64, upper: f64) -> Option<usize> {
 fn patterns() -> Problem {
     setting(
         "stacks/four-patterns",
-        "two blocks 1 m high, of several widths, under one sine of 0.33 g to 0.8 g",
+        "two blocks of height 1 m and of several widths, under one sine cycle of 0.33 g to 0.8 g",
         PATTERNS,
     )
     .quantity("rocking patterns that occur", "", absolute(4.0, 0.0))

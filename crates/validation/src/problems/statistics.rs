@@ -1,6 +1,8 @@
-//! Distribution of the largest rotations under an ensemble of records, compared with the rigid-block integrator.
+//! Distribution of the largest rotations under an ensemble of records, compared with the distribution computed by the
+//! rigid-block integrator.
 //!
-//! Single rocking histories are too sensitive to be compared, but the distribution of their maxima is not.
+//! Individual rocking histories are too sensitive for a comparison, but the distribution of their maxima can be
+//! compared.
 
 use std::f64::consts::TAU;
 
@@ -15,14 +17,15 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 
 use super::housner::firm;
 
-const SOURCE: &str = "ensembles of maxima, as Bachmann et al. 2018";
+const SOURCE: &str = "ensembles of maxima, as in Bachmann et al. 2018";
 const ALPHA: f64 = 0.25;
 const RADIUS: f64 = 1.0;
 
 /// Sampling interval (s) of the records.
 const SAMPLE: f64 = 0.01;
 
-/// Returns a synthetic record: 24 waves of random phase between 0.4 Hz and 6 Hz, in an envelope.
+/// Returns a synthetic record: the sum of 24 sine waves between 0.4 Hz and 6 Hz with random phases, multiplied by an
+/// envelope.
 ///
 /// Its peak is between 0.26 g and 0.5 g, so that less than half of the records overturn the block.
 fn record(seed: u64) -> Sampled {
@@ -49,7 +52,8 @@ fn record(seed: u64) -> Sampled {
     Sampled::new(SAMPLE, shape.iter().map(|a| a * peak / largest).collect())
 }
 
-/// Returns the peak rotations over α of the contact code and of the rigid block, record by record.
+/// Returns, for every record, the peak rotation divided by α, as computed by the contact code and by the rigid-block
+/// integrator.
 ///
 /// The value is 2 if the block overturned.
 fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
@@ -67,7 +71,7 @@ fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     Ok((ours, exact))
 }
 
-/// Returns the largest vertical distance between two empirical distributions with equally many samples.
+/// Returns the largest vertical distance between two empirical distribution functions with equal numbers of samples.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let share =
         |of: &[f64], at: f64| of.iter().filter(|x| **x <= at).count() as f64 / of.len() as f64;
@@ -91,7 +95,7 @@ pub(super) fn problems() -> Vec<Problem> {
         )
         // Two samples of 200 from the same distribution differ by at least this much in one case of twenty.
         .quantity(
-            "Kolmogorov–Smirnov distance of the maxima from those of the rigid block",
+            "Kolmogorov–Smirnov distance between the maxima and those of the rigid block",
             "",
             absolute(0.0, 0.136).fast(0.3),
         )

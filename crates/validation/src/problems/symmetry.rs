@@ -6,7 +6,7 @@ use crate::order::{Order, planar_heap, planar_pairs, spatial_heap, spatial_pairs
 use crate::problem::{Answer, absolute, setting};
 use crate::{Effort, Outcome, Problem};
 
-/// Time step (s) and end (s).
+/// Time step (s) and end time (s).
 const STEP: f64 = 1e-4;
 const END: f64 = 1.0;
 
@@ -14,11 +14,11 @@ const END: f64 = 1.0;
 pub(super) fn problems() -> Vec<Problem> {
     let limit = || absolute(0.0, 1e-9);
     vec![
-        problem("two-in-the-plane", "two bodies of the plane that collide", limit(), |_| {
+        problem("two-in-the-plane", "two bodies in a plane that collide", limit(), |_| {
             planar_pairs()
         }),
-        problem("two-in-space", "two solids that collide", limit(), |_| spatial_pairs()),
-        problem("four-on-a-floor", "four bodies of the plane on a floor", limit(), |effort| {
+        problem("two-in-space", "two solids in space that collide", limit(), |_| spatial_pairs()),
+        problem("four-on-a-floor", "four bodies in a plane on a floor", limit(), |effort| {
             (0..if effort == Effort::Full { 24 } else { 4 }).map(planar_heap).collect()
         }),
         problem("two-on-a-floor", "two solids on a floor", limit(), |effort| {
@@ -38,7 +38,7 @@ fn problem<S: Space<Real = f64>>(
     scenes: fn(Effort) -> Vec<Order<S>>,
 ) -> Problem {
     setting(format!("symmetry/{name}"), title, "symmetry of mechanics")
-        .quantity("largest difference in one second between the two orders", "m", answer)
+        .quantity("largest difference between the two orders within one second", "m", answer)
         .by(move |effort| {
             let (scenes, mut worst) = (scenes(effort), (0.0_f64, String::new()));
             let count = scenes.len();

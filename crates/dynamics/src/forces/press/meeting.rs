@@ -21,7 +21,7 @@ pub(crate) struct PairKinematics<S: Space> {
 /// Relative motion of two bodies.
 #[derive(Clone, Copy, Debug)]
 struct Motion<S: Space> {
-    /// Vector (m) from the center of mass of the target to that of the contactor.
+    /// Vector (m) from the center of mass of the target to the center of mass of the contactor.
     apart: S::Vector,
     /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
     linear: S::Vector,
@@ -53,7 +53,8 @@ impl<S: Space> PairKinematics<S> {
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
 
-    /// Returns the kinematics of a pair; reuses those of the previous pair if it has the same bodies and surface.
+    /// Returns the kinematics of a pair; reuses the kinematics of the previous pair if that pair has the same bodies
+    /// and the same surface.
     #[inline(always)]
     pub(super) fn shared<'a>(
         last: &'a mut Option<Self>,
@@ -105,10 +106,12 @@ impl<'a, S: Space> Meeting<'a, S> {
         self.motion.linear + S::velocity_at(self.motion.spin, point - self.frame.contactor)
     }
 
-    /// Returns the contact of a node at `node` (m, in the surface's frame), with kinematics but without forces.
+    /// Returns the contact of a node at `node` (m, in the surface's frame), with its kinematics; its forces are still
+    /// zero.
     ///
-    /// The force acts on both bodies at the companion point of `node`, and both velocities are taken there. So the pair
-    /// conserves momentum, and the power that it loses is the force times the relative velocity.
+    /// The force acts on both bodies at the companion point of `node`, and the velocities of both bodies are taken at
+    /// this point. So the contact conserves momentum, and the power lost in the contact is the product of the force and
+    /// the relative velocity.
     #[inline(always)]
     pub(super) fn contact(
         &self,

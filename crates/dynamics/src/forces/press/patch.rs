@@ -1,4 +1,5 @@
-//! Forces of a patch: memoryless normal forces, and sticks about the center of pressure.
+//! Forces of a patch: normal forces, which need no memory, and friction, with sticks placed around the center of
+//! pressure.
 
 use super::{Contact, Laws, Press, Pressed};
 use crate::contact::NormalForce;
@@ -31,8 +32,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Requests substeps in lanes where spring and damper would change too abruptly in a whole step, and detects hard
-    /// impacts.
+    /// Requests substeps in lanes where the forces of spring and damper would change too abruptly in a whole step, and
+    /// detects hard impacts.
     #[inline(always)]
     fn look_at_speed(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(fast) = self.fast else { return };
@@ -134,8 +135,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 
     /// Adds the forces of points that act like parallel springs, whose sticks start at `first` in the list of elements.
     ///
-    /// Friction acts about the center of pressure, at the root-mean-square distance of the points. So it transfers the
-    /// same moment as friction at the points, and its sticks persist when other points touch.
+    /// Friction acts about the center of pressure, at the root-mean-square distance of the points. So the friction
+    /// transfers the same moment as friction at the points would, and the sticks persist when different points come
+    /// into contact.
     #[inline(always)]
     pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -207,7 +209,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// Returns the normal force of a spring, with its stop if any.
+    /// Returns the normal force of one spring, including its stop if it has one.
     #[inline(always)]
     pub(super) fn law(&self, depth: S::Real, rate: S::Real) -> NormalForce<S::Real> {
         let normal = (self.laws)().normal.force_of_step(depth, rate, self.step);
@@ -217,7 +219,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Adds a share of the friction of a patch, at the offset `aside` (m) from its center of pressure.
+    /// Adds a share of the friction of a patch, at the offset `aside` (m) from the center of pressure.
     #[inline(always)]
     fn stick(&mut self, element: usize, at: &Pressure<S>, aside: S::Vector, share: S::Real) {
         let meeting = self.meeting;
@@ -261,8 +263,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space> Spread<S> {
-    /// Returns the lanes in which more than the deepest point is in contact, from the distance (m) of the deepest
-    /// point.
+    /// Returns the lanes in which more than the deepest point of the patch is in contact; `deepest` is the distance (m)
+    /// of this point.
     #[inline(always)]
     fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
         let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);

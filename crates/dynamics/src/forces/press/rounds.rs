@@ -7,28 +7,31 @@ use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
 
 /// Length (m) by which a side is extended for corners of the leading body, and shortened for corners of the other body.
-/// So exactly one contact is counted where two corners coincide.
+/// This way, exactly one contact is counted where two corners coincide.
 const SLACK: f64 = 1e-9;
 
-/// Distance (m) from the end of a side beyond which a corner counts in full, even if another corner is inside there.
+/// Distance (m) from the end of a side. A corner that is farther from the end than this counts in full, even if the
+/// corner at that end bears on a side of the corner's own body.
 const COMPANION: f64 = 0.01;
 
-/// Sine of the angle past the limits of a round piece up to which it faces a side: 45°.
+/// Sine of the largest angle, 45°, by which a side may lie outside the limits of a round piece and still be faced by
+/// the piece.
 const FACES: f64 = 0.7;
 
-/// Distance (m) outside of a core within which the center of a round piece still bears on the sides that the piece
-/// faces. Where two bodies are flush, one of two nearly coincident corners lies there.
+/// Distance (m) up to which the center of a round piece may lie outside of the other body's core and still bear on the
+/// sides that the piece faces. Where two bodies are flush, one of two nearly coincident corners lies within this
+/// distance.
 const NEARLY_INSIDE: f64 = 1e-5;
 
-/// Tolerance of the normal beyond the limits of a round piece, toward another round piece.
+/// Tolerance by which the direction toward another round piece may lie outside the limits of a round piece.
 const LIMIT: f64 = 2e-7;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the contacts of the round pieces of a convex boundary, each with its deepest point.
     ///
-    /// A round piece touches a straight side wherever the piece is deepest or ends straight. Two round pieces touch if
-    /// each lies within the limits of the other; this contact belongs to the pair whose contactor
-    /// [leads](Press::leads).
+    /// A round piece touches a straight side wherever the deepest point of the piece lies within its limits, or beyond
+    /// a limit at which the boundary continues straight. Two round pieces touch if each lies within the limits of the
+    /// other; this contact belongs to the pair whose contactor [leads](Press::leads).
     #[inline(always)]
     pub(super) fn rounds(&mut self, rounds: &[Round<S>], group: &Group, surface: &S::Surface) {
         let zero = S::Real::zero();
@@ -84,8 +87,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Returns the piece of a surface nearest to the center (m) of a round piece; if the center is inside the core, the
-    /// nearest piece on which the round piece can bear.
+    /// Returns the piece of a surface that is nearest to the center (m) of a round piece. If the center is inside the
+    /// core of the surface's shape, returns the nearest piece on which the round piece can bear.
     #[inline(always)]
     fn nearest(
         &self,
@@ -112,9 +115,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Where two faces overlap slightly, both corners at the ends of the overlap are inside the other body. They are
     /// one contact, which splits into two as the overlap grows. The corner nearer to the end of the side that it bears
     /// on, which is the shallower of the two, has a share that decreases to zero toward that end, and the other corner
-    /// counts in full. So neither begins or ends with a jump, at any depth. Where two faces end together to within
-    /// rounding, their corners coincide. The contact is then the corner that lies further inside the other face or, if
-    /// neither does, that of the leading body.
+    /// counts in full. So neither contact begins or ends with a jump in force, at any depth. Where two faces end
+    /// together to within rounding, their corners coincide. The contact is then the corner that lies further inside the
+    /// other face or, if neither does, that of the leading body.
     #[inline(always)]
     fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));

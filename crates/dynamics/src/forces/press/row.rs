@@ -2,7 +2,7 @@
 //!
 //! The depth of the seat is that of its deepest node. The laws are evaluated at this depth, and their forces are
 //! divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
-//! location of the pressure, but not stiffness, damping or friction.
+//! location of the resultant force, but not the stiffness, the damping or the friction.
 
 use crate::pair_frame::AtFace;
 use crate::real::Real;
@@ -11,7 +11,7 @@ use crate::space::Space;
 
 use super::{Laws, Press};
 
-/// Returns the gap in lanes where the contact filter accepts it, and an open gap elsewhere.
+/// Returns the gap in lanes where the contact filter accepts the contact, and an open gap in all other lanes.
 #[inline(always)]
 pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) -> Gap<S> {
     if let Some(face) = counted {
@@ -30,7 +30,7 @@ pub(super) struct Row<R> {
 }
 
 impl<R: Real> Row<R> {
-    /// Adds a node by its gap after [`counting`].
+    /// Adds a node, given its gap as returned by [`counting`].
     #[inline(always)]
     pub(super) fn add<S: Space<Real = R>>(&mut self, gap: Gap<S>) {
         let depth = (-gap.distance).max(R::zero());

@@ -1,4 +1,4 @@
-//! Rolling on a rim or a stave: tops, discs, barrels on a floor and on tubes.
+//! Rolling on a rim or on the staves: tops, discs, and barrels on a floor and on tubes.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::ControlFlow;
@@ -17,7 +17,8 @@ use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
 use crate::swing::run_crossings;
 use crate::{Failure, Problem};
 
-/// Fills of a barrel of 225 liters: name, mass (kg), moments of inertia (kg·m²) about the axis and across it.
+/// Fills of a barrel of 225 liters: name, mass (kg), and moments of inertia (kg·m²) about the axis of the barrel and
+/// about a transverse axis.
 const FILLS: [(&str, f64, f64, f64); 3] =
     [("frozen", 269.0, 14.1, 22.6), ("fluid", 269.0, 4.0, 8.5), ("empty", 48.0, 3.9, 6.0)];
 
@@ -69,7 +70,8 @@ fn shaped(length: f64, head: f64, bilge: f64, rounding: f64) -> Result<Barrel, F
     Barrel::new(length, head, bilge, rounding).map_err(absent)
 }
 
-/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical up to a time (s).
+/// Returns the mean rate (rad/s), from the start to a time (s), at which the axis of body 1 precesses about the
+/// vertical.
 fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Failure> {
     let (mut round, mut before) = (0.0, 0.0);
     scene.watch(&Still, step, end, |state, _, _| {
@@ -90,15 +92,15 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
     Ok(round / end)
 }
 
-/// Creates the problem of a top whose spherical tip rolls, in steady precession.
+/// Creates the problem of a top in steady precession whose spherical tip rolls.
 fn top(which: &'static str) -> Problem {
     let (quantity, unit, exact) = match which {
-        "speed" => ("speed of its center after 1 s", "m/s", 0.344_417_790),
+        "speed" => ("speed of the center of the top after 1 s", "m/s", 0.344_417_790),
         _ => ("precession", "rad/s", 2.867_405_337_754),
     };
     setting(
         format!("space-barrels/top-{which}"),
-        "top of 0.5 kg with a tip of 5 mm that rolls, 200 rad/s",
+        "top of 0.5 kg with a rolling tip of 5 mm, 200 rad/s",
         "steady precession without slip; Routh 1884",
     )
     .quantity(quantity, unit, relative(exact, 1e-3))
@@ -130,7 +132,8 @@ fn top(which: &'static str) -> Problem {
 
 /// Creates a body of revolution that rolls on its lower rim while its center stays at rest.
 ///
-/// The point of the rim on the floor is at rest, so the angular velocity lies along the line from the center to it.
+/// The point of the rim on the floor is at rest, so the angular velocity is parallel to the line from the center to
+/// this point.
 fn running_round(
     shape: Barrel,
     (mass, about, across): (f64, f64, f64),

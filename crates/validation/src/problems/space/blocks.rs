@@ -24,8 +24,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns the forces (N) on the feet of a plate of 981 N on equal springs; `feet` are relative to the center of mass
-/// (m).
+/// Returns the forces (N) on the feet of a plate of 981 N on equal springs; `feet` contains the positions (m) of the
+/// feet relative to the center of mass.
 fn loads(feet: &[Vec3]) -> Result<Vec<f64>, Failure> {
     let mut plate = free("plate", 100.0, Vec3::new(10.0, 10.0, 10.0), Vec3::default());
     plate.nodes = vec![points(feet)];
@@ -66,14 +66,14 @@ fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Proble
     exact.into_iter().enumerate().map(of).collect()
 }
 
-/// Creates the problem of a box that is pushed obliquely and tips over the critical edge.
+/// Creates the problem of a box that is pushed obliquely and tips over the weakest of its edges.
 fn tips(degrees: f64, exact: f64) -> Problem {
     setting(
         format!("space-blocks/tips-{degrees}"),
         format!("box of half sides 0.27 and 0.7365 m, center 0.9 m high, pushed at {degrees}°"),
         "moments about the edges",
     )
-    .quantity("least push that tips it over", "g", relative(exact, 1e-3))
+    .quantity("smallest push that tips the box over", "g", relative(exact, 1e-3))
     .by(move |effort| {
         let halvings = if effort == Effort::Full { 8 } else { 5 };
         border((0.99 * exact, 1.01 * exact), halvings, |push| {
@@ -96,11 +96,11 @@ fn tips(degrees: f64, exact: f64) -> Problem {
 
 /// The first impact of a box.
 struct Impact {
-    /// Time (s).
+    /// Time (s) of the impact.
     time: f64,
-    /// Angular velocity (rad/s) before.
+    /// Angular velocity (rad/s) before the impact.
     rate: f64,
-    /// Ratio of the angular velocities after and before, from the next peak rotation of the box.
+    /// Ratio of the angular velocities after and before the impact, computed from the next peak rotation of the box.
     ratio: f64,
 }
 
@@ -154,7 +154,10 @@ fn rocks() -> Vec<Problem> {
     let mut list = vec![];
     for degrees in [0.0, 30.0, 90.0] {
         let angle = f64::to_radians(degrees);
-        let title = format!("box of 0.54 × 1.8 m that rocks, turned by {degrees}°");
+        let title = format!(
+            "box of 0.54 × 1.8 m that rocks, with the scene rotated by {degrees}° about the \
+             vertical"
+        );
         let mut problem = |name: &str, source, (quantity, unit, exact), of: fn(Impact) -> f64| {
             list.push(
                 setting(format!("space-blocks/rocks-{degrees}-{name}"), title.clone(), source)
@@ -163,17 +166,22 @@ fn rocks() -> Vec<Problem> {
             );
         };
         let source = "Housner 1963, exact equation";
-        let time = ("time to its first impact", "s", 0.471_810_597_6);
+        let time = ("time of the first impact", "s", 0.471_810_597_6);
         problem("time", source, time, |impact| impact.time);
-        let rate = ("rate before its first impact", "rad/s", -0.703_182_112_6);
+        let rate = ("angular velocity before the first impact", "rad/s", -0.703_182_112_6);
         problem("rate", source, rate, |impact| impact.rate);
-        let ratio = ("rate after its first impact over that before", "", 0.876_146_789_0);
+        let ratio = (
+            "angular velocity after the first impact, divided by that before",
+            "",
+            0.876_146_789_0,
+        );
         problem("impact", "Housner 1963, eq. 8", ratio, |impact| impact.ratio);
         if degrees > 0.0 {
             list.push(
                 setting(format!("space-blocks/rocks-{degrees}-turned"), title, "isotropy of space")
                     .quantity(
-                        "relative change of next rotation and rate when the scene is turned",
+                        "relative change of the next peak rotation and of the angular velocity \
+                         when the scene is rotated",
                         "",
                         absolute(0.0, 1e-9),
                     )

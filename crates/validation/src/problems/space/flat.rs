@@ -19,13 +19,13 @@ use crate::{Failure, Problem, theory};
 
 /// Mass (kg) of the bodies.
 const MASS: f64 = 269.0;
-/// Moments of inertia (kg·m²) of the barrel about its axis and across.
+/// Moments of inertia (kg·m²) of the barrel about its axis and about a transverse axis.
 const ABOUT: f64 = 14.1;
 const ACROSS: f64 = 22.6;
 /// Half the length (m) of the barrel, and the radius (m) of the flat part of its head.
 const HALF: f64 = 0.4725;
 const HEAD: f64 = 0.269_982_558_045_203;
-/// Stiffness (N/m) at which springs deform measurably.
+/// Stiffness (N/m) that is low enough for measurable deformations.
 const SOFT: f64 = 1e6;
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -60,10 +60,10 @@ fn stands(count: u32) -> Problem {
     let exact: f64 = (1..=count).map(|above| f64::from(above) * MASS * G / (4.0 * SOFT)).sum();
     setting(
         format!("space-flat/stands-{count}"),
-        format!("{count} barrels on their heads, one on the other"),
+        format!("{count} barrels that stand on their heads, one on top of the other"),
         "disc on four springs",
     )
-    .quantity("settlement of the top one", "m", relative(exact, 1e-6))
+    .quantity("settlement of the top barrel", "m", relative(exact, 1e-6))
     .by(move |_| {
         let mut bodies = vec![floor()];
         for level in 0..count {
@@ -78,11 +78,12 @@ fn stands(count: u32) -> Problem {
     })
 }
 
-/// Returns the period (s) of a component of the axis of body 1.
+/// Returns the period (s) of the oscillation of one component of the axis of body 1.
 fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<f64, Failure> {
     let through =
         run_crossings(&mut scene, 1e-5, 5.3 * guess, |state| of(axis(state.poses[1].orientation)))?;
-    let half = mean_time(&through, 2).ok_or_else(|| Failure::Absent("it does not rock".into()))?;
+    let half =
+        mean_time(&through, 2).ok_or_else(|| Failure::Absent("the body does not rock".into()))?;
     Ok(2.0 * half)
 }
 
@@ -115,7 +116,7 @@ fn tube_on_springs() -> Swing {
     (TAU / square.sqrt(), scene)
 }
 
-/// The exact period (s), and a scene to measure it.
+/// The exact period (s), and a scene in which the period is measured.
 type Swing = (f64, Result<Scene<Spatial>, Failure>);
 
 fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
@@ -130,7 +131,8 @@ fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
     .by(move |_| period(start().1?, of, exact))
 }
 
-/// Creates the problem of a barrel that is released on the rim of its head, at half the angle of unstable equilibrium.
+/// Creates the problem of a barrel that is released while it leans on the rim of its head, at half the angle of
+/// unstable equilibrium.
 fn rocks(which: &'static str) -> Problem {
     // An almost sharp rim.
     let rounding = 1e-6;
@@ -139,10 +141,10 @@ fn rocks(which: &'static str) -> Problem {
     let square = half * half + head * head;
     let rate = (MASS * G * square.sqrt() / (ACROSS + MASS * square)).sqrt();
     let (quantity, unit, exact) = if which == "time" {
-        ("time until it stands", "s", theory::quarter_period(alpha, 0.5) / rate)
+        ("time until the barrel stands upright", "s", theory::quarter_period(alpha, 0.5) / rate)
     } else {
         let fall = 2.0 * (cos(0.5 * alpha) - cos(alpha));
-        ("rate when it stands", "rad/s", rate * fall.sqrt())
+        ("angular velocity when the barrel is upright", "rad/s", rate * fall.sqrt())
     };
     setting(
         format!("space-flat/rocks-{which}"),
@@ -174,12 +176,13 @@ fn rocks(which: &'static str) -> Problem {
             before = (state.time, lean, rate);
             ControlFlow::Continue(())
         })?;
-        let (time, rate) = found.ok_or_else(|| Failure::Absent("it does not fall".into()))?;
+        let (time, rate) =
+            found.ok_or_else(|| Failure::Absent("the barrel does not fall".into()))?;
         Ok(if which == "time" { time } else { rate })
     })
 }
 
-/// Creates the problem of a tube in the groove between two others, in line contact.
+/// Creates the problem of a tube that lies in the groove between two other tubes, in line contact.
 fn groove() -> Problem {
     let (radius, aside) = (0.05, 0.06);
     let slope = asin(aside / (2.0 * radius));
@@ -199,10 +202,14 @@ fn groove() -> Problem {
     };
     setting(
         "space-flat/groove",
-        "tube between two shorter ones side by side",
+        "tube in the groove between two shorter parallel tubes",
         "equilibrium of springs at the ends of both lines",
     )
-    .quantity("height of its axis above theirs", "m", relative(exact, 1e-6))
+    .quantity(
+        "height of the axis of the tube above the axes of the others",
+        "m",
+        relative(exact, 1e-6),
+    )
     .by(move |_| {
         let shape = |half_length| Hull::Capsule(Capsule { half_length, radius });
         let side = |name: &str, y: f64| Body {
@@ -219,7 +226,7 @@ fn groove() -> Problem {
     })
 }
 
-/// Creates the problem of a tube that rolls down a slope, which must not depend on its azimuth.
+/// Creates the problem of a tube that rolls down a slope. Its motion must not depend on the azimuth of the slope.
 fn rolls(degrees: f64) -> Problem {
     let (radius, half_length) = (0.1, 0.7);
     let slope = 5.0_f64.to_radians();
@@ -227,7 +234,7 @@ fn rolls(degrees: f64) -> Problem {
     let exact = G * sin(slope) / (1.0 + inertia.x / (MASS * radius * radius));
     setting(
         format!("space-flat/rolls-{degrees}"),
-        format!("tube that rolls down a slope of 5°, with the scene turned by {degrees}°"),
+        format!("tube that rolls down a slope of 5°, with the scene rotated by {degrees}°"),
         "g sin θ / (1 + I / (m r²))",
     )
     .quantity("acceleration", "m/s2", relative(exact, 1e-4))

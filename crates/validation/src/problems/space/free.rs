@@ -55,7 +55,7 @@ fn spin() -> Problem {
         "asymmetric body that tumbles for 20 s, Runge–Kutta 4 at 1 ms",
         SOURCE,
     )
-    .quantity("spin about its intermediate axis", "rad/s", absolute(2.709_578_90, 1e-7))
+    .quantity("spin of the body about its intermediate axis", "rad/s", absolute(2.709_578_90, 1e-7))
     .by(|_| {
         let mut scene = body(Method::RungeKutta4)?;
         scene.run(&Still, 1e-3, 20.0)?;
@@ -73,7 +73,7 @@ fn attitude() -> Problem {
         SOURCE,
     )
     .quantity(
-        "distance of its quaternion from the exact one or its negative",
+        "distance of the quaternion from the exact quaternion, up to the sign",
         "",
         absolute(0.0, 1e-7),
     )
@@ -93,7 +93,7 @@ fn attitude() -> Problem {
     })
 }
 
-/// Returns the orientation of the body after 7 s in steps of a length (s).
+/// Returns the orientation of the body after 7 s, computed with a time step (s).
 fn turned(method: Method, step: f64) -> Result<Quaternion, Failure> {
     let mut scene = body(method)?;
     scene.run(&Still, step, 7.0)?;
@@ -107,7 +107,7 @@ fn convergence(method: Method, order: f64) -> Problem {
         SOURCE,
     )
     .quantity(
-        "order of convergence of its attitude, at most that of the method",
+        "order of convergence of the orientation, at most that of the method",
         "",
         absolute(order, 0.1),
     )
@@ -153,7 +153,7 @@ fn energy() -> Problem {
         "asymmetric body that tumbles for 100 s, velocity Verlet at 1 ms",
         "conservation of energy",
     )
-    .quantity("largest relative change of its energy", "", absolute(0.0, 1e-6))
+    .quantity("largest relative change of the energy", "", absolute(0.0, 1e-6))
     .by(|_| {
         let mut scene = body(Method::VelocityVerlet)?;
         let mut worst = 0.0_f64;

@@ -1,4 +1,4 @@
-//! Bodies in space: free rotation, rolling, sliding, standing on feet, and barrels.
+//! Bodies in space: free rotation, rolling, sliding, bodies on feet, and barrels.
 
 mod barrels;
 mod blocks;
@@ -24,14 +24,14 @@ const STEP: f64 = 2e-5;
 /// Stiffness (N/m) of a contact, normal and tangential.
 const STIFFNESS: f64 = 1e8;
 
-/// The role of a body in a pair.
+/// The role of a body in a contact pair.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Contactor,
     Target,
 }
 
-/// Returns the problems of all modules in space.
+/// Returns the problems of all modules about bodies in space.
 pub(super) fn problems() -> Vec<Problem> {
     let theories = [
         free::problems(),
@@ -44,17 +44,18 @@ pub(super) fn problems() -> Vec<Problem> {
     theories.into_iter().flatten().collect()
 }
 
-/// Returns a normal law of a stiffness (N/m), damped for a mass (kg) that comes to rest on it.
+/// Returns a normal law with a stiffness (N/m), and with enough damping for a mass (kg) to come to rest on the contact.
 fn firm(stiffness: f64, mass: f64) -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, 0.7, mass) }
 }
 
-/// Returns friction of a coefficient, with sticks of a stiffness (N/m), damped for a mass (kg).
+/// Returns a friction law with a coefficient, with sticks of a stiffness (N/m), and with damping suitable for a mass
+/// (kg).
 fn rough(coefficient: f64, stiffness: f64, mass: f64) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, mass))
 }
 
-/// Creates a scene whose bodies touch by one interface.
+/// Creates a scene in which one interface applies to all contacts.
 fn scene(
     bodies: Vec<Body<Spatial>>,
     normal: NormalLaw,

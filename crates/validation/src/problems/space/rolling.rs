@@ -1,4 +1,4 @@
-//! Balls in space: rolling down a slope, with side spin, and bouncing.
+//! Balls in space that roll down a slope, move with side spin, or bounce.
 
 use std::ops::ControlFlow;
 
@@ -15,7 +15,7 @@ use crate::{Failure, Outcome, Problem};
 const SOURCE: &str = "rigid-body dynamics of a homogeneous ball";
 const RADIUS: f64 = 0.3;
 const MASS: f64 = 10.0;
-/// Downhill direction (rad) of the slopes, which is not along an axis.
+/// Azimuth (rad) of the downhill direction of the slopes; the direction is not parallel to a coordinate axis.
 const HEADING: f64 = 0.5;
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -72,10 +72,10 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
     ]
 }
 
-/// Radius (m) of the ball that represents the floor if the ball is the target.
+/// Radius (m) of the large ball that represents the floor where the rolling ball is the target.
 const EARTH: f64 = 1e5;
 
-/// Creates the ball on a slope with the constants of the carried stick.
+/// Creates the ball on a slope, with the contact constants of the problems of [`carried`].
 fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     let gravity = gravity_on_slope(G, 20_f64.to_radians(), HEADING);
     let stiffness = 1e7;
@@ -94,8 +94,8 @@ fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     scene(vec![ground, ball], firm(stiffness, MASS), friction, gravity)
 }
 
-/// Creates the problems of a stick that travels over the surface of the ball or stays on the floor; the forces must be
-/// equal.
+/// Creates the problems of a ball that rolls for a long way as contactor or as target. Its stick then moves over the
+/// floor or over the surface of the ball, and the forces must be equal.
 fn carried(role: Role, friction: f64) -> [Problem; 3] {
     let (name, place) = match role {
         Role::Contactor => ("contactor", 10.784_628),
@@ -133,7 +133,11 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
             title.clone(),
             SOURCE,
         )
-        .quantity("largest friction along the normal", "N", absolute(0.0, 1e-9))
+        .quantity(
+            "largest component of the friction force along the normal",
+            "N",
+            absolute(0.0, 1e-9),
+        )
         .by(move |_| forces(|_, _, along| along.abs())),
         setting(format!("space-rolling/carried-{name}-{friction}-way"), title, SOURCE)
             .quantity("displacement down after 3 s", "m", relative(place, 1e-4))
@@ -145,10 +149,11 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     ]
 }
 
-/// Creates the problems of a ball that slips obliquely: it moves on a parabola, then along a straight line.
+/// Creates the problems of a ball that slips obliquely: the center of the ball moves on a parabola, then along a
+/// straight line.
 fn side_spin() -> [Problem; 3] {
     let title = "ball thrown along x with spin (6, 4, 7) rad/s, μ = 0.2";
-    let source = "slip keeps its direction; Coriolis 1835";
+    let source = "the slip keeps its direction; Coriolis 1835";
     let run = |end: f64| -> Result<Scene<Spatial>, Failure> {
         let mut scene = on_slope(0.0, 0.2)?;
         scene.state.twists[1].linear = Vec3::new(2.0, 0.0, 0.0);
@@ -164,16 +169,16 @@ fn side_spin() -> [Problem; 3] {
     [
         setting("space-rolling/side-spin-rolls", title, source)
             .quantity(
-                "distance from the exact place where it begins to roll",
+                "distance from the exact position at which the ball begins to roll",
                 "m",
                 absolute(0.0, 1e-5),
             )
             .by(move |_| off(0.286_846_011_4, 0.540_909_62, -0.073_760_40)),
         setting("space-rolling/side-spin-place", title, source)
-            .quantity("distance from its exact place after 1.5 s", "m", absolute(0.0, 1e-5))
+            .quantity("distance from the exact position after 1.5 s", "m", absolute(0.0, 1e-5))
             .by(move |_| off(1.5, 2.689_925_26, -0.697_668_17)),
         setting("space-rolling/side-spin-spin", title, source)
-            .quantity("error of its spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
+            .quantity("error of the spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
             .by(move |_| {
                 let spin = run(1.5)?.state.twists[1].angular;
                 let exact = Vec3::new(1.714_285_7, 5.904_761_9, 7.0);
@@ -182,7 +187,8 @@ fn side_spin() -> [Problem; 3] {
     ]
 }
 
-/// Creates the problems of a ball that bounces while it slides, so that friction is always μ times the normal force.
+/// Creates the problems of a ball that bounces while it slides, so that the friction force is always μ times the normal
+/// force.
 fn bounce() -> [Problem; 3] {
     let problem = |name: &'static str,
                    quantity: &'static str,
@@ -210,7 +216,7 @@ fn bounce() -> [Problem; 3] {
         })
     };
     [
-        problem("up", "speed upward after the bounce", "m/s", 1.817_774_060_7, |scene| {
+        problem("up", "upward speed after the bounce", "m/s", 1.817_774_060_7, |scene| {
             scene.state.twists[1].linear.z
         }),
         problem("aside", "speed along y after the bounce", "m/s", 0.809_111_297_0, |scene| {

@@ -1,4 +1,4 @@
-//! Sliding and spinning blocks and rings: the limit of friction must not depend on the direction.
+//! Sliding and spinning blocks and rings: the friction limit must not depend on the direction of the slip.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ use crate::spatial::{corners, floor, free, gravity_on_slope, points, yaw};
 use crate::{Failure, Problem};
 
 const MASS: f64 = 100.0;
-/// Half the side lengths (m) of the block.
+/// Half the lengths (m) of the sides of the block's footprint.
 const HALF: (f64, f64) = (0.7365, 0.27);
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -27,7 +27,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Creates a block that stands on its lower corners, `height` (m) below its center of mass.
+/// Creates a block that stands on its lower corners, which are `height` (m) below the center of mass.
 fn block(
     friction: f64,
     height: f64,
@@ -46,7 +46,7 @@ fn block(
     )
 }
 
-/// Creates a body on a number of feet, with a moment of inertia (kg·m²) about the vertical.
+/// Creates a body that stands on feet and has a moment of inertia (kg·m²) about the vertical.
 fn sliding(
     feet: barrelstack_dynamics::Nodes<Spatial>,
     count: f64,
@@ -71,7 +71,8 @@ fn turn(orientation: Quaternion) -> f64 {
     2.0 * barrelstack_dynamics::math::atan2(orientation.v.z, orientation.w)
 }
 
-/// Returns the time (s) at which the body first reverses its motion, measured by `speed` (m/s or rad/s).
+/// Returns the time (s) at which the body first reverses its motion, that is, at which `speed` (m/s or rad/s) changes
+/// sign.
 fn stops(
     scene: &mut Scene<Spatial>,
     end: f64,
@@ -87,7 +88,7 @@ fn stops(
         before = (state.time, now);
         ControlFlow::Continue(())
     })?;
-    found.ok_or_else(|| Failure::Absent("it does not stop".into()))
+    found.ok_or_else(|| Failure::Absent("the body does not stop".into()))
 }
 
 const COULOMB: &str = "Coulomb friction opposite to the slip";
@@ -103,17 +104,17 @@ fn circle() -> [Problem; 3] {
     };
     [
         setting("space-sliding/circle-time", title, COULOMB)
-            .quantity("time until it stops", "s", absolute(exact, 1e-4))
+            .quantity("time until the body stops", "s", absolute(exact, 1e-4))
             .by(move |_| Ok(thrown()?.1)),
         setting("space-sliding/circle-way", title, COULOMB)
-            .quantity("distance until it stops", "m", absolute(exact, 1e-4))
+            .quantity("distance until the body stops", "m", absolute(exact, 1e-4))
             .by(move |_| {
                 let place = thrown()?.0.state.poses[1].position;
                 Ok(Vec3::new(place.x, place.y, 0.0).length())
             }),
         setting("space-sliding/circle-direction", title, COULOMB)
             .quantity(
-                "error of the direction of its displacement, or its rotation",
+                "error of the direction of the displacement, or rotation of the body",
                 "rad",
                 absolute(0.0, 1e-6),
             )
@@ -127,7 +128,7 @@ fn circle() -> [Problem; 3] {
 }
 
 fn slope(degrees: f64) -> [Problem; 2] {
-    let title = format!("block turned by {degrees}° on a slope of 25°, μ = 0.3");
+    let title = format!("block at an azimuth of {degrees}° on a slope of 25°, μ = 0.3");
     let start = move || -> Result<Scene<Spatial>, Failure> {
         let gravity = gravity_on_slope(G, 25_f64.to_radians(), 0.0);
         block(0.3, 0.15, degrees.to_radians(), gravity)
@@ -135,7 +136,7 @@ fn slope(degrees: f64) -> [Problem; 2] {
     [
         setting(format!("space-sliding/slope-{degrees}-acceleration"), title.clone(), COULOMB)
             .quantity(
-                "acceleration after its sticks are stretched",
+                "acceleration after the block has begun to slip",
                 "m/s2",
                 relative(2.0 * 0.739_310_665_2, 1e-4),
             )
@@ -148,7 +149,7 @@ fn slope(degrees: f64) -> [Problem; 2] {
             }),
         setting(format!("space-sliding/slope-{degrees}-turn"), title, COULOMB)
             .quantity(
-                "rotation, and lateral over downhill displacement",
+                "rotation, and ratio of lateral to downhill displacement",
                 "rad",
                 absolute(0.0, 1e-4),
             )
@@ -165,7 +166,8 @@ fn slope(degrees: f64) -> [Problem; 2] {
 const QUADRATURE: &str = "sliding and spinning on four points, by quadrature";
 
 fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3] {
-    let title = format!("block turned by {turned} rad, thrown at 1 m/s and 2 rad/s, μ = 0.4");
+    let title =
+        format!("block at an azimuth of {turned} rad, thrown with 1 m/s and 2 rad/s, μ = 0.4");
     let run = move || -> Result<(Scene<Spatial>, f64), Failure> {
         let mut scene = block(0.4, 0.0, turned, down())?;
         scene.state.twists[1].linear = Vec3::new(1.0, 0.0, 0.0);
@@ -175,22 +177,27 @@ fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3
     };
     [
         setting(format!("space-sliding/spinning-{turned}-time"), title.clone(), QUADRATURE)
-            .quantity("time until it stops", "s", absolute(time, 1e-4))
+            .quantity("time until the body stops", "s", absolute(time, 1e-4))
             .by(move |_| Ok(run()?.1)),
         setting(format!("space-sliding/spinning-{turned}-place"), title.clone(), QUADRATURE)
-            .quantity("distance from the exact place where it stops", "m", absolute(0.0, 2e-5))
+            .quantity(
+                "distance from the exact position at which the body stops",
+                "m",
+                absolute(0.0, 2e-5),
+            )
             .by(move |_| {
                 let found = run()?.0.state.poses[1].position;
                 let off = Vec3::new(found.x - place.0, found.y - place.1, 0.0);
                 Ok(off.length())
             }),
         setting(format!("space-sliding/spinning-{turned}-turn"), title, QUADRATURE)
-            .quantity("rotation until it stops", "rad", absolute(spun, 2e-5))
+            .quantity("rotation until the body stops", "rad", absolute(spun, 2e-5))
             .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation) - turned)),
     ]
 }
 
-/// Creates the problems of a ring that slides and spins: each motion reduces the friction against the other.
+/// Creates the problems of a ring that slides and spins: sliding reduces the friction that acts against the spin, and
+/// spinning reduces the friction that acts against the sliding.
 fn ring() -> [Problem; 3] {
     let title = "ring thrown at 1 m/s, spinning with a rim speed of 1.5 m/s, μ = 0.3";
     let source = "sliding ring: Farkas, Bartels, Unger and Wolf 2003";
@@ -210,18 +217,18 @@ fn ring() -> [Problem; 3] {
     };
     [
         setting("space-sliding/ring-time", title, source)
-            .quantity("time until it stops", "s", absolute(0.673_86, 2e-4))
+            .quantity("time until the body stops", "s", absolute(0.673_86, 2e-4))
             .by(move |_| Ok(run()?.1)),
         setting("space-sliding/ring-way", title, source)
-            .quantity("distance until it stops", "m", absolute(0.374_178, 2e-4))
+            .quantity("distance until the body stops", "m", absolute(0.374_178, 2e-4))
             .by(move |_| Ok(run()?.0.state.poses[1].position.x)),
         setting("space-sliding/ring-turn", title, source)
-            .quantity("rotation until it stops", "rad", absolute(1.576_485, 2e-4))
+            .quantity("rotation until the body stops", "rad", absolute(1.576_485, 2e-4))
             .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation))),
     ]
 }
 
-/// Ground that moves in a circle, with an acceleration (m/s²) that turns at ω (rad/s).
+/// Ground that moves in a circle; its acceleration (m/s²) rotates with ω (rad/s).
 struct Circling {
     acceleration: f64,
     omega: f64,
@@ -236,15 +243,22 @@ impl Drive<Spatial> for Circling {
     }
 }
 
-/// Creates the problems of steady slip on ground that moves in a circle.
+/// Creates the problems of a block that slips steadily on ground that moves in a circle.
 fn circling() -> [Problem; 2] {
     let problem = |name: &str, time: f64, place: (f64, f64)| {
         setting(
             format!("space-sliding/circling-{name}"),
-            format!("block on ground that circles with 5 m/s², 1 Hz, μ = 0.3, after {time} s"),
+            format!(
+                "block on ground that moves in a circle with 5 m/s² and 1 Hz, μ = 0.3, after \
+                 {time} s"
+            ),
             "steady slip: friction moves the block in a circle, too",
         )
-        .quantity("distance from its exact place on the ground", "m", absolute(0.0, 1e-4))
+        .quantity(
+            "distance from the exact position relative to the ground",
+            "m",
+            absolute(0.0, 1e-4),
+        )
         .by(move |_| {
             let drive = Circling { acceleration: 5.0, omega: TAU };
             let mut scene = block(0.3, 0.0, 0.0, down())?;
