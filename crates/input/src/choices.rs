@@ -1,4 +1,4 @@
-//! Closed sets in input files: plain names, and variants with fields of their own.
+//! Closed sets of values in input files: plain names, and variants with fields of their own.
 
 use crate::InputError;
 use crate::field::{Section, Variant};

@@ -1,4 +1,4 @@
-//! File system access: limited reading, atomic writing, and I/O errors in plain words.
+//! File system access: reading up to a size limit, atomic writing, and I/O errors in plain words.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -78,7 +78,8 @@ pub fn guard_inputs() {
     inputs().get_or_insert_default();
 }
 
-/// Returns an error if inputs are guarded and the path leads to an input, however it is written.
+/// Returns an error if inputs are guarded and the path leads to an input, regardless of how the
+/// path is written.
 ///
 /// # Errors
 /// If the file was opened as an input.
@@ -132,7 +133,7 @@ fn kind(of: &fs::Metadata) -> &'static str {
 /// Reads an input file of at most `limit` bytes.
 ///
 /// # Errors
-/// A message if the file cannot be opened ([`open`]) or read, or is larger.
+/// A message if the file cannot be opened ([`open`]) or read, or is larger than `limit`.
 pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     all_of(open(path)?, limit)
 }
@@ -155,7 +156,8 @@ fn all_of(file: File, limit: usize) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Creates a folder and the folders `below` it; returns the path of the last.
+/// Creates a folder and, inside it, the folders of the path `below`. Returns the path of the
+/// innermost folder.
 ///
 /// A link in place of one of the folders below is refused, because a results folder made by someone
 /// else must not redirect output to another place. The root itself was chosen by the user and may
@@ -203,7 +205,7 @@ pub fn begin(path: &Path) -> io::Result<File> {
 }
 
 /// Opens a file of a results folder for modification, or creates it. Links are refused, because
-/// they may lead to files of someone else.
+/// they may lead to files outside the folder.
 ///
 /// # Errors
 /// If the system refuses, or if the path is anything but a regular file.

@@ -73,7 +73,7 @@ impl GroundMotion {
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         let step = format!(
-            "Froude-scaled to length {length_scale}: time times {:.6}, acceleration unchanged",
+            "Froude-scaled to length {length_scale}: time multiplied by {:.6}, acceleration unchanged",
             length_scale.sqrt()
         );
         self.changed(|history| history.froude(length_scale), step)
@@ -91,7 +91,7 @@ impl GroundMotion {
     /// The vertical component is multiplied by the same factor.
     ///
     /// # Errors
-    /// If the measure does not grow with the amplitude, is zero for this motion, or if the target
+    /// If the measure does not grow with the amplitude or is zero for this motion, or if the target
     /// is not positive.
     pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
         let factor = self.scale_factor(measure, target)?;

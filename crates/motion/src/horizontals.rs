@@ -1,4 +1,4 @@
-//! Intensity measures of two horizontals, combined to one number.
+//! Intensity measures of two horizontals, combined into one number.
 
 use std::str::FromStr;
 
@@ -8,7 +8,7 @@ use crate::math::{self, PI};
 use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
 use crate::sampled::{Sampled, running_trapezoid};
 
-/// Combination of the intensity measures of two horizontals to one number.
+/// Combination of the intensity measures of two horizontals into one number.
 ///
 /// The text form is `rotd50`, `rotd100` or `geomean`.
 ///
@@ -101,7 +101,7 @@ impl Horizontals {
     }
 }
 
-/// Returns the measure in every direction, in ascending order.
+/// Returns the values of the measure for all directions, sorted in ascending order.
 fn turned(
     measure: IntensityMeasure,
     first: &Sampled,

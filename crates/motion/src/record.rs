@@ -157,8 +157,8 @@ impl Channel {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    /// Returns the reason why the channel cannot be a strong motion: its step, its number of
-    /// samples or its length.
+    /// Returns the reason why the channel cannot be a strong-motion record: its step, its number of
+    /// samples or its length. Returns `None` if all three are plausible.
     pub fn implausible(&self) -> Option<String> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
         let what = if !(1e-4..=0.1).contains(&step) {

@@ -9,14 +9,15 @@
 
 use barrelstack_report::{Cell, Table};
 
-/// Returns our name of the paper's body `number` in a stack with `columns` barrels per level.
+/// Returns our name of the body with the paper's `number`, in a stack with `columns` barrels per
+/// level.
 pub(super) fn name(number: u32, columns: u32) -> String {
     let level = (number - 1) / (columns + 1) + 1;
     let place = (number - 1) % (columns + 1) + 1;
     if place > columns { format!("R{level}") } else { format!("B{level}.{place}") }
 }
 
-/// Returns the paper's number of a body by our name; `None` for a body without number.
+/// Returns the paper's number of the body with our `name`; `None` for a body without number.
 pub(super) fn number(name: &str, columns: u32) -> Option<u32> {
     (1..=12 * (columns + 1)).find(|number| self::name(*number, columns) == name)
 }

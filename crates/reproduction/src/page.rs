@@ -326,8 +326,8 @@ fn studies(results: &Results) -> Vec<Block> {
         Block::heading(2, "Effects of single quantities"),
         text(
             "The paper gives neither the dimensions of its racks nor the number of its contact \
-             elements, and it does not state how its sine begins. Here each of these, and each parameter \
-             that it does state, is changed, one at a time.",
+             elements, and it does not state how its sine begins. Here each of these quantities, and \
+             each parameter that the paper does state, is changed, one at a time.",
         ),
     ];
     for study in &results.studies {

@@ -30,11 +30,11 @@ impl Job {
 
 /// A completed run.
 pub(super) struct Done {
-    /// Its summary.
+    /// Summary of the run.
     pub(super) summary: Summary,
-    /// The run, if kept.
+    /// The recorded run, if the job keeps it.
     pub(super) run: Option<Box<Run>>,
-    /// Its result, in one sentence.
+    /// Result of the run, in one sentence.
     pub(super) headline: String,
 }
 

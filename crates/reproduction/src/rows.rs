@@ -8,7 +8,7 @@ use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures, stress};
 
-/// The project's band of stress amplification.
+/// The wider band of the stress amplification that the project accepts.
 const STRESS_BAND: Option<Band> = Some((2.5, 3.5, "2.5 to 3.5"));
 
 /// Returns all rows, in the order of the paper.
@@ -25,7 +25,7 @@ fn seconds(value: f64) -> String {
     format!("{} s", significant(value, 3))
 }
 
-/// Describes the mode of collapse, or the outcome without one.
+/// Describes the mode of collapse, or the outcome if the stack does not collapse.
 fn mode_of(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.mode, outcome.from_level, outcome.to_level) {
@@ -40,17 +40,19 @@ fn body<'a>(summary: &'a Summary, name: &str) -> Option<&'a BodySummary> {
     summary.bodies.iter().find(|body| body.name == name)
 }
 
-/// Returns the time at which a body fell (s).
+/// Returns the time (s) at which a body fell.
 fn fell(summary: &Summary, name: &str) -> Option<f64> {
     body(summary, name)?.fell_at
 }
 
-/// Returns the time (s) at which both barrels of the top of four levels had fallen.
+/// Returns the time (s) at which both barrels of the top level had fallen, in a stack of four
+/// levels.
 fn top_gone(summary: &Summary) -> Option<f64> {
     Some(fell(summary, "B4.1")?.max(fell(summary, "B4.2")?))
 }
 
-/// Returns `true` if both barrels of the top of four levels fall before any other.
+/// Returns `true` if both barrels of the top level fall before any other barrel, in a stack of four
+/// levels.
 fn top_falls_before_others(summary: &Summary) -> bool {
     let others = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level != Some(4));
     top_gone(summary).is_some_and(|top| others.filter_map(|b| b.fell_at).all(|other| other > top))

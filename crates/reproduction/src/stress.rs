@@ -14,8 +14,8 @@ pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     run.stresses.of(body)
 }
 
-/// Returns the largest vertical force on barrel 1 until the first loss of seat over that at rest, exerted by the rack
-/// above or by the rack that carries the barrel.
+/// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the
+/// force at rest. The force is exerted by the rack above the barrel or by the rack that carries it.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
@@ -48,7 +48,7 @@ const DEFINITIONS: [Definition; 7] = [
     (
         "mean of the envelope where it is loaded over the mean at rest",
         |run| envelope(run, 1)?.mean_of_envelope(),
-        "the envelope averaged over the boundary that is loaded at any time, the stress at rest over that loaded at rest",
+        "the envelope averaged over the boundary that is loaded at any time, the stress at rest averaged over the boundary that is loaded at rest",
     ),
     (
         "upper boundary: largest force over that at rest",
@@ -67,13 +67,13 @@ const DEFINITIONS: [Definition; 7] = [
     ),
 ];
 
-/// Returns the mean of the largest stresses on barrel 1 until the first loss of seat over the mean of the stress at
-/// rest, both over the boundary that is loaded at rest.
+/// Returns the mean of the largest stresses on barrel 1 until the first loss of seat, divided by
+/// the mean of the stress at rest. Both means are taken over the boundary that is loaded at rest.
 pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// Returns one row for every definition, for a case of which the paper states an amplification.
+/// Returns one row for every definition, for a case for which the paper states an amplification.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

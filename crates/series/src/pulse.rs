@@ -164,7 +164,7 @@ impl Pulse {
         }
     }
 
-    /// Returns the time over which the pulse changes appreciably (s): its period or its length.
+    /// Returns the time (s) over which the pulse changes appreciably: its period or its length.
     pub fn time_scale(&self) -> f64 {
         *self.clone().time_scale_mut()
     }
@@ -337,7 +337,7 @@ fn one_sine(amplitude: f64, period: f64, t: f64) -> Kinematics {
 }
 
 /// Evaluates `d = A r(t) sin(w t)`, with a factor `r` that rises along a half cosine over the first
-/// `ramp` seconds and falls over the last.
+/// `ramp` seconds and falls over the last `ramp` seconds.
 fn ramped_sine(amplitude: f64, period: f64, duration: f64, ramp: f64, t: f64) -> Kinematics {
     let w = TAU / period;
     let (s, c) = math::sin_cos(w * t);

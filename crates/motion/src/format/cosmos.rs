@@ -86,7 +86,8 @@ fn damaged(source: &Source<'_>, line: usize, expected: &str) -> ReadError {
     )
 }
 
-/// Reads the header from its counts: text lines, integers, reals, comments, data line.
+/// Reads a header, which states how many text lines, integers, reals and comments it has; the data
+/// line follows.
 fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     if !source.has(first, "(Format v") {
         return Err(damaged(source, first, "\"... (Format v01.20 with 13 text lines)\""));

@@ -57,7 +57,8 @@ struct Trace {
     values: Vec<f64>,
 }
 
-/// Largest difference between the stated times and the sample count that is not a gap, in samples.
+/// Largest difference, in samples, between the stated times and the sample count that is not
+/// considered a gap.
 const LARGEST_OFFSET: f64 = 0.6;
 /// Largest relative error of the sampling rate caused by the recorder's clock.
 const LARGEST_CLOCK_ERROR: f64 = 2e-4;

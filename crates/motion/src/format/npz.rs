@@ -1,5 +1,5 @@
-//! Reader of NumPy archives written by this crate: arrays of accelerations, and the header in
-//! arrays of strings.
+//! Reader of NumPy archives written by this crate: arrays of accelerations, and arrays of strings
+//! that contain the header.
 //!
 //! Spec: NumPy enhancement proposal 1, the `.npy` format, versions 1.0 and 2.0;
 //! [`crate::write::npz`].

@@ -1,4 +1,4 @@
-//! Access to the files inside a zip archive, stored or deflated.
+//! Access to the files inside a zip archive; files may be stored or deflated.
 //!
 //! Spec: PKWARE, APPNOTE 6.3, sections 4.3.7, 4.3.12 and 4.3.16; encryption, multi-part archives
 //! and zip64 are not supported.

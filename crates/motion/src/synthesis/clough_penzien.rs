@@ -197,8 +197,8 @@ impl CloughPenzien {
         Ok((0..=steps).map(|k| envelope.at(k as f64 * time_step) * spectrum[k].re).collect())
     }
 
-    /// Returns a motion of the given duration (s) with closed ends, so that the ground returns to
-    /// rest at its initial position.
+    /// Returns a motion of the given duration (s) after which the ground is at rest at its initial
+    /// position.
     ///
     /// # Errors
     /// The same as for [`CloughPenzien::acceleration`].

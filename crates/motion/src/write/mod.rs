@@ -79,7 +79,7 @@ fn broken(text: &str, words: &[&str]) -> String {
 }
 
 /// Returns the provenance, one step per line. If there are too many steps, the last line contains
-/// the rest.
+/// all remaining steps.
 fn provenance(record: &Record) -> Vec<String> {
     let mut notes: Vec<String> = record
         .notes
@@ -94,7 +94,7 @@ fn provenance(record: &Record) -> Vec<String> {
     notes
 }
 
-/// Returns unique channel names without separators.
+/// Returns unique channel names that contain no separators.
 fn names(channels: &[Channel]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (k, channel) in channels.iter().enumerate() {

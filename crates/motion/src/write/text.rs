@@ -24,7 +24,7 @@
 //! ```
 //!
 //! Unknown values are omitted. `# initial_velocity:` (m/s, one per channel) is written if any of
-//! them is not zero.
+//! these velocities is not zero.
 //!
 //! In `# channels:`, `az=` is the azimuth (degrees clockwise from north); `vertical` means positive
 //! upward; `horizontal` is a horizontal direction of unknown azimuth; a name alone has an unknown

@@ -66,7 +66,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
 }
 
-/// Refuses a table whose first column contains periods, frequencies or spectral ordinates.
+/// Refuses a table that is a spectrum: its first column contains periods, frequencies or spectral
+/// ordinates.
 fn refuse_spectrum(
     source: &Source<'_>,
     line: usize,
@@ -317,7 +318,7 @@ fn accelerations(
 }
 
 /// Refuses placeholders for missing values among accelerations. `first` is the line of the first
-/// row, if each row is a line.
+/// row, or `None` if rows are not single lines.
 fn require_no_mark(
     source: &Source<'_>,
     table: &[Vec<f64>],
@@ -423,7 +424,8 @@ fn require_duration(
     ))
 }
 
-/// Cuts columns to the stated count, which must match the number of samples.
+/// Checks the number of samples against the number stated in the header, and cuts the columns to
+/// the number of samples to be used.
 fn counted(
     source: &Source<'_>,
     record: &mut Record,
@@ -467,8 +469,8 @@ fn initial_velocities(
     Ok(Vec::new())
 }
 
-/// Returns the SI factor of each column: from the unit next to its name, in the header, or from the
-/// caller.
+/// Returns the SI factor of each column: from the unit next to its name, from the header, or from
+/// the caller.
 fn units(
     source: &Source<'_>,
     first: usize,

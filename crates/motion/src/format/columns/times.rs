@@ -1,4 +1,4 @@
-//! Time columns: determines their unit and selects one of several.
+//! Time columns: determines their unit, and selects one column if there are several.
 
 use super::names::{Holds, Name};
 use super::{facts, shape};
@@ -15,7 +15,8 @@ const SMALLEST_BARE_STEP: f64 = 4e-4;
 /// days have smaller steps.
 const SMALLEST_STEP: f64 = 1e-5;
 
-/// Returns the time unit (s) of the first column, if it contains times.
+/// Returns the length (s) of the time unit of the first column, or `None` if the column does not
+/// contain times.
 pub(super) fn unit_of(
     source: &Source<'_>,
     first: usize,
@@ -105,7 +106,7 @@ pub(super) fn unit_of(
 /// it.
 ///
 /// # Errors
-/// If the time columns do not increase alike.
+/// If the time columns do not increase in proportion to each other.
 pub(super) fn one(
     source: &Source<'_>,
     record: &mut Record,

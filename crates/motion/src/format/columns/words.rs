@@ -100,7 +100,8 @@ pub(super) const RATE_KEYS: &[&str] = &[
     "サンプリング周波数",
 ];
 
-/// Names of a sampling interval or rate; the unit or the size of the number decides which.
+/// Names of a sampling interval or rate; the unit or the size of the number determines which of the
+/// two is meant.
 pub(super) const SAMPLING_KEYS: &[&str] = &[
     "sampling",
     "sampled at",
@@ -118,7 +119,7 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
     "increment",
 ];
 
-/// Keywords of [`SAMPLING_KEYS`] that may have a number without a unit.
+/// Keywords of [`SAMPLING_KEYS`] that may be followed by a number without a unit.
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
@@ -204,7 +205,7 @@ pub(super) const OTHER_MEANING: &[&str] = &[
     "instrument",
 ];
 
-/// Words after the number of samples per second.
+/// Words that follow the number of samples per second.
 pub(super) const RATE_MARKS: &[&str] = &[
     "sps",
     "samples/sec",
@@ -224,7 +225,8 @@ pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
-/// Returns `true` if a unit is that of a digitizer's output, which needs a sensitivity.
+/// Returns `true` for a unit of the output of a digitizer. Such an output must be converted by a
+/// sensitivity.
 pub(super) fn is_of_instrument(unit: &str) -> bool {
     const UNITS: &[&str] = &[
         "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit",
