@@ -73,9 +73,9 @@ macro_rules! named {
 /// Declares an enum whose variants have fields of their own in files.
 ///
 /// Each variant is listed with its name in files and its fields, which are written as in
-/// [`section!`](crate::section). Its doc comment is also its help text. The definitions of the
-/// variants are stored in the static that is declared after the enum. A type declared
-/// `among the fields of` a table can be used as the type of the tag field of that table.
+/// [`section!`](crate::section). The doc comment of a variant is also its help text. The
+/// definitions of the variants are stored in the static that is declared after the enum. A type
+/// declared `among the fields of` a table can be used as the type of the tag field of that table.
 ///
 /// ```
 /// use barrelstack_input::choices::Chosen;

@@ -95,7 +95,7 @@ pub fn replaceable(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns an error unless the metadata are those of a regular file.
+/// Returns an error unless the metadata describe a regular file.
 fn regular(of: &fs::Metadata) -> io::Result<()> {
     if of.is_file() {
         return Ok(());
@@ -159,13 +159,13 @@ fn all_of(file: File, limit: usize) -> Result<Vec<u8>, String> {
 /// Creates a folder and, inside it, the folders of the path `below`. Returns the path of the
 /// innermost folder.
 ///
-/// A link in place of one of the folders below is refused, because a results folder made by someone
+/// A link in place of a folder below the root is refused, because a results folder made by someone
 /// else must not redirect output to another place. The root itself was chosen by the user and may
 /// be a link. The check does not protect against a process that replaces a folder by a link
 /// afterwards; such a process could change every result in the root anyway.
 ///
 /// # Errors
-/// If the system refuses, or if a folder below the root is a link.
+/// If the operating system reports an error, or if a folder below the root is a link.
 pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     fs::create_dir_all(root)?;
     let mut folder = root.to_owned();
@@ -192,7 +192,7 @@ pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
 /// overwritten.
 ///
 /// # Errors
-/// If the system refuses.
+/// If the operating system reports an error.
 pub fn begin(path: &Path) -> io::Result<File> {
     let create = || File::options().read(true).write(true).create_new(true).open(path);
     match create() {
@@ -208,7 +208,7 @@ pub fn begin(path: &Path) -> io::Result<File> {
 /// they may lead to files outside the folder.
 ///
 /// # Errors
-/// If the system refuses, or if the path is anything but a regular file.
+/// If the operating system reports an error, or if the path is anything but a regular file.
 pub fn open_to_change(path: &Path) -> io::Result<File> {
     // Another process may create or remove the file between the two attempts.
     for _ in 0..100 {
@@ -232,8 +232,8 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
 
 /// Opens an existing regular file for modification.
 ///
-/// Something else may have replaced the file since it was checked. On Unix, the system therefore
-/// refuses links and does not wait for the other end of a pipe.
+/// The file may have been replaced since it was checked. On Unix, the system therefore refuses
+/// links and does not wait for the other end of a pipe.
 fn open_unfollowed(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     #[cfg(unix)]
@@ -253,8 +253,8 @@ pub fn temporary(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Returns `true` if the name is that of an incomplete file left by a killed process: a name
-/// accepted by `meant`, followed by the suffix of [`temporary`].
+/// Returns `true` if the path names an incomplete file left by a killed process. Such a name is a
+/// name accepted by `meant`, followed by the suffix of [`temporary`].
 pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some((whole, process)) = name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.'))
@@ -297,7 +297,7 @@ pub fn write_no_more() {
 /// Writes a file under a temporary name and renames it, so that the file is never incomplete.
 ///
 /// # Errors
-/// If the system refuses, or if the path is a guarded input ([`guard_inputs`]). No incomplete file
+/// If the operating system reports an error, or if the path is a guarded input ([`guard_inputs`]). No incomplete file
 /// is left.
 pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     store_all(&std::iter::once((path.to_owned(), bytes))).map_err(|(_, error)| error)

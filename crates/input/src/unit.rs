@@ -299,7 +299,7 @@ fn factor(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErro
     Ok(unit)
 }
 
-/// Parses a power and returns it in halves: `2` gives 4, `1.5` gives 3.
+/// Parses a power and returns twice its value: `2` gives 4, `1.5` gives 3.
 fn halves(power: &str) -> Result<i8, UnitError> {
     let value: f64 =
         power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;

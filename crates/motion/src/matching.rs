@@ -42,7 +42,7 @@ pub struct Matching {
     pub longest: f64,
     /// Largest accepted relative misfit at any matched period.
     pub tolerance: f64,
-    /// Maximum number of consecutive rounds of one method. If a method stalls, the other one
+    /// Maximum number of consecutive rounds of one method. If one method stalls, the other method
     /// continues.
     pub rounds: usize,
 }
@@ -67,8 +67,9 @@ const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
 /// samples, the limit is 400 rounds, which take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
-/// Time steps per shortest matched period. A peak between two samples is then underestimated by at
-/// most 1.2 %; with ten steps it would be 5 %, the entire tolerance of a match.
+/// Time steps per shortest matched period. With this number, a peak between two samples is
+/// underestimated by at most 1.2 %; with ten steps, the error would be 5 %, the entire tolerance of
+/// a match.
 pub(crate) const STEPS_A_PERIOD: f64 = 20.0;
 /// Number of matched periods per decade.
 const PER_DECADE: f64 = 60.0;
@@ -197,9 +198,9 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     MotionError::require((1..=10_000).contains(&rounds), "matching rounds", "1 to 10000", rounds)
 }
 
-/// Subdivides the steps of a piecewise-linear motion so that there are at least [`STEPS_A_PERIOD`]
-/// steps per shortest matched period, so that wavelets and peaks are resolved. Returns the new time
-/// step (s) and the accelerations.
+/// Subdivides the steps of a piecewise-linear motion, so that wavelets and peaks are resolved.
+/// There are then at least [`STEPS_A_PERIOD`] steps per shortest matched period. Returns the new
+/// time step (s) and the accelerations.
 pub(crate) fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     let parts = parts(motion.time_step(), shortest);
     let a = motion.acceleration();
@@ -317,8 +318,8 @@ impl<'a> Work<'a> {
         self.layers(acceleration).pseudo_accelerations(periods, self.damping)
     }
 
-    /// Returns the approximate largest misfit at the judged periods; it is fast enough for every
-    /// round.
+    /// Returns the approximate largest misfit at the judged periods; the computation is fast enough
+    /// for every round.
     pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.judged_goal, &self.nearly(&self.judged, acceleration))
     }

@@ -45,7 +45,7 @@ printed_as!(
     Displacement = "displacement"
 );
 
-/// A peak stated in a header, with the actual peak of the numbers that it describes.
+/// A peak stated in a header, with the actual peak of the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StatedPeak {
     /// Quantity of the peak.

@@ -87,9 +87,9 @@ pub(crate) fn match_in_time(
     Ok(best.acceleration)
 }
 
-/// Improves the best motion in rounds. Each round applies only a fraction of its correction, which
-/// is increased after a success and reduced after a failure. Gives up after [`PATIENCE`] rounds
-/// without improvement.
+/// Improves the best motion in rounds. Each round applies only a fraction of its correction. The
+/// fraction is doubled after a success and halved after a failure. Gives up after [`PATIENCE`]
+/// rounds without improvement.
 pub(crate) fn polish(
     work: &Work<'_>,
     mut best: Vec<f64>,

@@ -95,9 +95,9 @@ impl From<GroundError> for ReproduceError {
 /// with the program. Without this file, the six barrels are shaken by the bundled record of South
 /// Napa, and results that depend on the motion are not compared. If `studies` is `true`, the
 /// effects of single quantities and of contact parameters changed by 10 % are studied for each
-/// case, which is most of the work. `progress` is called with the numbers of completed and of all
-/// runs, from several threads, and may stop the work. If it stops the work after all cases are
-/// completed, the result has no studies.
+/// case, which is most of the work. `progress` is called with the number of completed runs and the
+/// total number of runs, from several threads, and may stop the work. If it stops the work after
+/// all cases are completed, the result has no studies.
 ///
 /// The result depends only on the program, the platform and the record.
 ///

@@ -1,11 +1,10 @@
 //! Correspondence between the paper's body numbers and our names.
 //!
-//! The paper shows numbers in its figures but does not list them.
-//! Its text explains some: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the top
-//! barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and along the
-//! barrels body 4 is "the rack from the second level".
-//! One rule satisfies all of these: count level by level from the bottom, first the barrels of a level from the
-//! left, then its rack.
+//! The paper shows numbers in its figures but does not list them. The text of the paper explains
+//! some of the numbers: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the
+//! top barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and
+//! along the barrels body 4 is "the rack from the second level". One rule satisfies all of these:
+//! count level by level from the bottom, first the barrels of a level from the left, then its rack.
 
 use barrelstack_report::{Cell, Table};
 

@@ -1,4 +1,5 @@
-//! The report: the paper's numbers and figures in its order, compared with ours, and the reasons for differences.
+//! The report: the numbers and figures of the paper, in the order of the paper, compared with ours,
+//! and the reasons for differences.
 
 use std::fmt::Write as _;
 

@@ -10,7 +10,7 @@ use super::ensemble;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// A rack: its description, and the function that changes the catalog's rack into it.
+/// A rack: a description, and the function that changes the rack of the catalog into this rack.
 type Rack = (&'static str, fn(&mut StackSpec));
 
 /// Other solid racks with feet, found by random searches over cradle, feet, clearance, rails, node

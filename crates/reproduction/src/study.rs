@@ -245,7 +245,8 @@ impl Study {
         known.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// Returns descriptions of the changes with the largest effect on a quantity, at most `count`, with their results.
+    /// Returns descriptions of at most `count` changes with the largest effect on a quantity, with
+    /// the results.
     pub(super) fn strongest(
         &self,
         count: usize,

@@ -4,7 +4,8 @@ use barrelstack::scenario::{
     Cradle, Fill, Friction, Interface, MotionSource, Scenario, Scene, StackSpec,
 };
 
-/// Returns a scenario with its stack changed; a free scene is unchanged.
+/// Returns a copy of a scenario with `change` applied to its stack; a free scene is returned
+/// unchanged.
 pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> Scenario {
     let mut changed = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut changed.scene {
@@ -13,7 +14,7 @@ pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> 
     changed
 }
 
-/// Returns a scenario that stops a time (s) after its collapse, with minimal recording.
+/// Returns a scenario that ends `after` seconds after the collapse, with minimal recording.
 pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
     let mut brief = scenario.clone();
     brief.run.stop_after_collapse = Some(after);

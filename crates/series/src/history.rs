@@ -15,7 +15,7 @@ pub enum History {
     Sampled(Sampled),
     /// A closed-form pulse.
     Analytic(Pulse),
-    /// Several histories, each delayed by its own time.
+    /// Sum of several histories, each with its own delay.
     Sum(Vec<Delayed>),
 }
 

@@ -222,7 +222,7 @@ impl IntensityMeasure {
 
     /// Returns the value of the measure for any history.
     ///
-    /// A history that is not sampled is first sampled at its natural step; except that PGA, PGV and
+    /// A history that is not sampled is first sampled at its natural step, except that PGA, PGV and
     /// PGD are found by a search on the exact history.
     ///
     /// # Errors

@@ -122,7 +122,7 @@ pub enum Pulse {
     },
 }
 
-/// Kind of amplitude of a pulse, which determines how it scales with length.
+/// Kind of amplitude of a pulse, which determines how the pulse is scaled with length.
 #[derive(Clone, Copy)]
 enum Amplitude {
     Displacement,

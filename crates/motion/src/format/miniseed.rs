@@ -378,7 +378,7 @@ fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
 /// Decodes Steim-1 and Steim-2 data.
 ///
 /// The data are frames of 16 words that hold first differences. The first word of a frame has a
-/// two-bit code for every word, which states how its differences are packed.
+/// two-bit code for every word, which states how the differences in that word are packed.
 fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64>> {
     let mut differences: Vec<i64> = Vec::with_capacity(samples);
     let (mut first, mut last) = (0_i64, 0_i64);

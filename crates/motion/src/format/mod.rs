@@ -62,8 +62,8 @@ pub struct ReadOptions {
     /// Metadata of single channels. The first entry that matches a channel takes precedence over
     /// the sensitivity for all channels.
     pub instruments: Vec<Instrument>,
-    /// Quantity recorded in SEED and SAC files, which overrides their channel codes. Velocity and
-    /// displacement are differentiated.
+    /// Quantity recorded in SEED and SAC files; takes precedence over the channel codes. Velocity
+    /// and displacement are differentiated.
     pub recorded: Option<Quantity>,
 }
 

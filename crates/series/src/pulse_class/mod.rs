@@ -27,8 +27,8 @@ const STEP: f64 = 0.01;
 pub struct ClassifiedPulse {
     /// `true` if the motion is pulse-like.
     pub pulse_like: bool,
-    /// Pulse indicator. A motion may be pulse-like if it is above 0.85 (Baker 2007) or above 0
-    /// (Shahi and Baker 2014).
+    /// Pulse indicator. A motion may be pulse-like if the indicator is above 0.85 (Baker 2007) or
+    /// above 0 (Shahi and Baker 2014).
     pub indicator: f64,
     /// Period of the pulse (s).
     pub period: f64,
@@ -63,9 +63,9 @@ pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionErr
 
 /// Classifies two horizontal components, separately and jointly.
 ///
-/// Each component is classified as by [`classify_component`]. The joint classification examines the
-/// directions of the five strongest wavelets (Shahi and Baker 2014, BSSA 104:2456-2466), with PGV
-/// in cm/s:
+/// Each component is classified as by [`classify_component`]. The joint classification examines
+/// five candidate pulses, in the directions of the five strongest wavelets (Shahi and Baker 2014,
+/// BSSA 104:2456-2466), with PGV in cm/s:
 ///
 /// ```text
 /// PC = 0.63 PGV ratio + 0.777 energy ratio

@@ -60,8 +60,8 @@ impl Name {
     }
 }
 
-/// Finds the line of column names directly above a table of `width` columns. Returns its number
-/// (counted from 0) and the names.
+/// Finds the line of column names directly above a table of `width` columns. Returns the number of
+/// this line (counted from 0) and the names.
 ///
 /// # Errors
 /// If the line is a row of units and some of the units are unknown.

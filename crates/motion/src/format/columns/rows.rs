@@ -199,9 +199,9 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
     source.ragged(line, width, found)
 }
 
-/// Interprets several values per line without times. They are channels if the header names the
-/// columns; they are one series, read row by row with a warning, if the stated count or the numbers
-/// indicate it.
+/// Interprets rows of several values without times. The columns are channels if the header names
+/// them. All values are one series, read row by row with a warning, if the stated count or the
+/// numbers indicate this.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,

@@ -102,8 +102,8 @@ pub(super) fn unit_of(
     Ok(Some(unit.unwrap_or(1.0)))
 }
 
-/// Keeps one time column, the first with a unit, and returns the number of columns removed before
-/// it.
+/// Keeps only the first time column that has a unit, or else the first time column. Returns the
+/// number of columns removed before it.
 ///
 /// # Errors
 /// If the time columns do not increase in proportion to each other.
