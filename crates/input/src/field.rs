@@ -17,13 +17,13 @@ pub struct Section {
     pub help: &'static str,
     /// Fields common to all variants.
     pub fields: &'static [Field],
-    /// Further fields, selected by the value of one field.
+    /// Further fields, which depend on the value of a tag field.
     pub variants: Option<Variants>,
     /// Groups of mutually exclusive fields.
     pub exclusive: &'static [&'static [&'static str]],
 }
 
-/// Sets of fields, one of them selected by the value of a tag field.
+/// Sets of fields. The value of a tag field selects one of the sets.
 #[derive(Debug)]
 pub struct Variants {
     /// Name of the field that selects the variant.

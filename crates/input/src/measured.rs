@@ -73,7 +73,7 @@ fn in_column(column: Option<&str>) -> String {
     column.map(|name| format!(", column \"{name}\"")).unwrap_or_default()
 }
 
-/// Content of a cell in a column that may have gaps.
+/// Content of a cell in a column that may have empty cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
     /// An empty cell.

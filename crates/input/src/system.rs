@@ -272,8 +272,8 @@ pub fn unfinished() -> String {
 /// Held while files are being written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Acquires a lock and never releases it, so that nothing guarded by it starts while the process
-/// ends.
+/// Acquires a lock and never releases it, so that no operation guarded by the lock starts while the
+/// process ends.
 ///
 /// Returns `None` after a fifth of a second, in case a disk hangs.
 pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'static, T>>> {
@@ -289,7 +289,8 @@ pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'stat
     ManuallyDrop::new(None)
 }
 
-/// Waits until the current file is written and blocks all further writing, before the process ends.
+/// Waits until the current file is written, and then blocks all further writing. Called before the
+/// process ends.
 pub fn write_no_more() {
     taken(&WRITING);
 }
@@ -330,7 +331,7 @@ pub fn store_all<'a>(
 /// Checks that files can be created in a folder, which need not exist yet. Nothing is left behind.
 ///
 /// # Errors
-/// A message if the system refuses.
+/// A message if the operating system reports an error.
 pub fn writable(folder: &Path) -> Result<(), String> {
     let folder = std::path::absolute(folder).map_err(|error| words(&error))?;
     let missing: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();

@@ -50,7 +50,7 @@ pub enum Value {
     Float(f64),
     /// `true` or `false`.
     Flag(bool),
-    /// A date or a time; no field accepts one.
+    /// A date or a time; no field accepts such a value.
     Date,
     /// A list.
     Array(Vec<Node>),

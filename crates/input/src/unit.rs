@@ -335,7 +335,8 @@ fn named(name: &str) -> Result<Unit, UnitError> {
 /// Units of mass with the corresponding units of weight; the two are often confused.
 const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("lb", "lbf"), ("t", "tonf")];
 
-/// Returns a unit expression with each name replaced by `replace`, where that returns a name.
+/// Returns a unit expression in which each name is replaced by the result of `replace`, if this
+/// function returns a name.
 fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String {
     let mut out = String::new();
     let mut rest = text;

@@ -151,8 +151,8 @@ impl Record {
     /// the tolerance is not reached.
     ///
     /// # Errors
-    /// The same as for [`Record::horizontal_pair`]; if a setting is out of range, the measure is
-    /// not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
+    /// The same as for [`Record::horizontal_pair`], and if a setting is out of range, the measure
+    /// is not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
     pub fn matched_pair(
         &self,
         measure: Horizontals,

@@ -27,7 +27,7 @@ pub struct Earthquake {
 }
 
 impl Earthquake {
-    /// Returns an earthquake with the first valid magnitude of several, and the scale of this
+    /// Returns an earthquake with the first valid magnitude in a list, and the scale of this
     /// magnitude. The values 0 and −999 mean unknown.
     pub(crate) fn of_magnitude<'a>(
         stated: impl IntoIterator<Item = (&'a str, Option<f64>)>,

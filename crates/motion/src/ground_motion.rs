@@ -67,9 +67,9 @@ impl GroundMotion {
         self.changed(|history| history.scaled(factor), step)
     }
 
-    /// Returns the motion for a model of `length_scale` times the size under the same gravity
-    /// (Froude scaling). Time and velocity are multiplied by `√length_scale` and displacement by
-    /// `length_scale`; acceleration is unchanged.
+    /// Returns the motion for a model whose lengths are multiplied by `length_scale` under the same
+    /// gravity (Froude scaling). Time and velocity are multiplied by `√length_scale` and
+    /// displacement by `length_scale`; acceleration is unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         let step = format!(

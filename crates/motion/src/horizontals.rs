@@ -86,8 +86,8 @@ impl Horizontals {
     /// (SI units).
     ///
     /// # Errors
-    /// The same as for [`Horizontals::of`]; if the measure does not grow with the amplitude or is
-    /// zero, or the target is not positive.
+    /// The same as for [`Horizontals::of`], and if the measure does not grow with the amplitude or
+    /// is zero, or if the target is not positive.
     pub fn scale_factor(
         self,
         measure: IntensityMeasure,

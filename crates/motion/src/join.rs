@@ -78,8 +78,8 @@ impl Record {
         Ok(gathered)
     }
 
-    /// Cuts all channels to the length of the shortest, so that they fit into columns of one file.
-    /// The notes list the samples that were cut.
+    /// Cuts all channels to the length of the shortest channel, so that they fit into columns of
+    /// one file. The notes list the samples that were cut.
     pub fn cut_to_shortest(&mut self) {
         let shortest = self.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
         for channel in &mut self.channels {
@@ -94,8 +94,8 @@ impl Record {
         }
     }
 
-    /// Returns the reason why two files are not components of one record, if their headers state
-    /// one.
+    /// Returns a reason, found in the headers, why two files are not components of one record;
+    /// `None` if there is no such reason.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;
         let files = format!("{} and {}", one.file, other.file);

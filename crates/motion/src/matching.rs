@@ -222,8 +222,8 @@ fn parts(time_step: f64, shortest: f64) -> f64 {
     (STEPS_A_PERIOD * time_step / shortest * (1.0 - 1e-9)).ceil().max(1.0)
 }
 
-/// Returns the number of matched intervals between the shortest and the longest period, from
-/// [`PER_DECADE`].
+/// Returns the number of intervals into which the range from the shortest to the longest period is
+/// divided, with [`PER_DECADE`] intervals per decade.
 fn intervals(settings: &Matching) -> usize {
     let decades = math::log10(settings.longest / settings.shortest);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, positive")]
@@ -306,7 +306,8 @@ impl<'a> Work<'a> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Returns the layers of a motion, for oscillators of up to the longest matched period.
+    /// Returns the layers of a motion, for oscillators with periods up to the longest matched
+    /// period.
     pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
         let longest = self.checked.last().copied().unwrap_or(0.0);
         Layers::new(self.time_step, acceleration, longest)

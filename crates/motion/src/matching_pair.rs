@@ -243,7 +243,8 @@ struct Aim {
     sample: usize,
     /// Direction in which the response is measured.
     direction: [f64; 2],
-    /// Direction of the wavelet, which is the direction of the response at its peak.
+    /// Direction of the wavelet, which is the direction of the response at the time of the peak
+    /// response.
     push: [f64; 2],
     /// Required change (m/s²).
     change: f64,

@@ -247,8 +247,8 @@ impl Record {
     /// Returns the channels of [`Record::horizontal_pair`], processed and cut to the same length.
     ///
     /// # Errors
-    /// The same as for [`Record::horizontal_pair`]; if the time steps differ or a setting is out of
-    /// range.
+    /// The same as for [`Record::horizontal_pair`], and if the time steps differ or a setting is
+    /// out of range.
     pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
         let (first, second) = self.horizontal_pair()?;
         let (mut first, mut second) = (first.clone(), second.clone());
@@ -317,7 +317,7 @@ fn cut_to_shorter(
 }
 
 /// Returns the motion along an azimuth from two horizontals of different azimuth, by solving for
-/// north and east. The two need not be perpendicular.
+/// the north and the east component. The two horizontals need not be perpendicular.
 fn rotate(
     first: (&Channel, f64),
     second: (&Channel, f64),

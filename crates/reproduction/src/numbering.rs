@@ -8,7 +8,7 @@
 
 use barrelstack_report::{Cell, Table};
 
-/// Returns our name of the body with the paper's `number`, in a stack with `columns` barrels per
+/// Returns our name for the body with the paper's `number`, in a stack with `columns` barrels per
 /// level.
 pub(super) fn name(number: u32, columns: u32) -> String {
     let level = (number - 1) / (columns + 1) + 1;

@@ -35,7 +35,7 @@ impl Subject {
         }
     }
 
-    /// Returns the time (s) of a run that is compared with the paper's time.
+    /// Returns, for a run, the time (s) that is compared with the paper's time.
     pub(super) fn time(self, summary: &Summary) -> Option<f64> {
         match self {
             Self::Six | Self::Along => summary.outcome.time,

@@ -1,4 +1,4 @@
-//! Motion of one component as a function of time: sampled, analytic, or a sum of both.
+//! Motion of one component as a function of time: sampled, analytic, or a sum of several histories.
 
 use crate::error::MotionError;
 use crate::pulse::Pulse;
@@ -24,7 +24,7 @@ pub enum History {
 pub struct Delayed {
     /// Start of the history (s), not negative.
     pub delay: f64,
-    /// The history, with its own time counted from the start.
+    /// The history; its time is counted from its own start.
     pub history: History,
 }
 
@@ -62,9 +62,9 @@ impl History {
         self.stretched(1.0, factor)
     }
 
-    /// Returns the history for a model of `length_scale` times the size under the same gravity
-    /// (Froude scaling). Time is multiplied by `√length_scale` and displacement by `length_scale`;
-    /// acceleration is unchanged.
+    /// Returns the history for a model whose lengths are multiplied by `length_scale` under the
+    /// same gravity (Froude scaling). Time is multiplied by `√length_scale` and displacement by
+    /// `length_scale`; acceleration is unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         self.stretched(length_scale.sqrt(), 1.0)

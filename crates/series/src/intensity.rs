@@ -160,7 +160,7 @@ impl IntensityMeasure {
     /// Checks the parameters of the measure.
     ///
     /// # Errors
-    /// Names the first parameter that is out of range.
+    /// If a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), MotionError> {
         match *self {
             Self::SignificantDuration { from, to } => {

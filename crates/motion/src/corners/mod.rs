@@ -61,8 +61,8 @@ impl Corners {
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
         let unknown = 1.0 / self.arrival;
         format!(
-            "corners {:.4} and {:.2} Hz, between which the signal is at least {} times the noise of \
-             the first {:.2} s, and {:.1} times from {} to {} Hz{}",
+            "corners {:.4} and {:.2} Hz; between them, the signal is at least {} times the noise of \
+             the first {:.2} s, and at least {:.1} times this noise from {} to {} Hz{}",
             self.high_pass,
             self.low_pass,
             criterion.ratio,
@@ -147,8 +147,8 @@ pub fn noise_corners(
 impl Record {
     /// Returns the filter corners of every channel, in order.
     ///
-    /// Both horizontals get the narrower of their two bands, so that they can be rotated jointly.
-    /// All channels use the earliest arrival of any channel.
+    /// Both horizontals get the frequency band that their two bands have in common, so that they
+    /// can be rotated jointly. All channels use the earliest arrival of any channel.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self
             .channels

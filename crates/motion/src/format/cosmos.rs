@@ -235,8 +235,8 @@ fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
     site.at(header.real(1).zip(header.real(2)))
 }
 
-/// Returns the counts-to-acceleration factor `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the
-/// caller's counts per m/s².
+/// Returns the factor that converts counts to accelerations: the reciprocal of the sensitivity
+/// given by the caller (counts per m/s²), or else `LSB (µV) / (sensor sensitivity (V/g) × gain)`.
 fn counts_to_si(
     source: &Source<'_>,
     hints: &Hints<'_>,

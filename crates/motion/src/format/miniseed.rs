@@ -303,7 +303,7 @@ fn joined(
                     piece.start,
                     values.len(),
                 ),
-                "get the record again without gaps, or cut the file into parts without them",
+                "get the record again without gaps, or cut the file into parts without gaps",
             ));
         }
         drift = if off.abs() > drift.abs() { off } else { drift };

@@ -150,7 +150,7 @@ impl<'a> Source<'a> {
         Err(self.damaged(line, expected, quoted(&self.text(line)), remedy))
     }
 
-    /// Checks that all header lines of a block exist, with data after them.
+    /// Checks that all header lines of a block exist and are followed by data.
     pub(crate) fn require_header(&self, first: usize, lines: usize) -> Result<(), ReadError> {
         let found = self.lines.len() - first;
         if found > lines {
@@ -501,7 +501,7 @@ impl<'a> Source<'a> {
         )
     }
 
-    /// Refuses the first byte that is not valid in text.
+    /// Returns an error that locates the first byte that is not valid in text, if there is one.
     pub(crate) fn require_text(&self) -> Result<(), ReadError> {
         for (line, raw) in self.lines.iter().enumerate() {
             if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {

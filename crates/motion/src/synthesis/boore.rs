@@ -78,7 +78,7 @@ impl BooreSource {
         }
     }
 
-    /// Returns the seismic moment (dyne cm) by Hanks and Kanamori (1979).
+    /// Returns the seismic moment (dyne cm) according to Hanks and Kanamori (1979).
     pub fn moment(&self) -> f64 {
         math::powf(10.0, 1.5 * self.magnitude + 16.05)
     }

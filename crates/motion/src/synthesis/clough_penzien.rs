@@ -108,17 +108,17 @@ pub struct CloughPenzien {
 }
 
 impl CloughPenzien {
-    /// Returns the model of firm soil by Der Kiureghian and Neuenhofer (1992).
+    /// Returns the firm-soil model of Der Kiureghian and Neuenhofer (1992).
     pub fn firm(rms: f64) -> Self {
         Self::new(rms, 15.0, 0.6, 1.5, 0.6)
     }
 
-    /// Returns the model of medium soil by Der Kiureghian and Neuenhofer (1992).
+    /// Returns the medium-soil model of Der Kiureghian and Neuenhofer (1992).
     pub fn medium(rms: f64) -> Self {
         Self::new(rms, 10.0, 0.4, 1.0, 0.6)
     }
 
-    /// Returns the model of soft soil by Der Kiureghian and Neuenhofer (1992).
+    /// Returns the soft-soil model of Der Kiureghian and Neuenhofer (1992).
     pub fn soft(rms: f64) -> Self {
         Self::new(rms, 5.0, 0.2, 0.5, 0.6)
     }

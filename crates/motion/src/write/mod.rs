@@ -24,11 +24,12 @@ use crate::error::MotionError;
 use crate::join::require_step;
 use crate::record::{Channel, Record};
 
-/// Largest number of provenance lines in a header, because readers look for numbers only in the
-/// first lines of a file.
+/// Largest number of provenance lines in a header. The number is limited, because readers look for
+/// numbers only in the first lines of a file.
 const MOST_NOTES: usize = 40;
 
-/// Returns the common time step (s) of all channels and the number of samples of the shortest.
+/// Returns the common time step (s) of all channels and the number of samples of the shortest
+/// channel.
 fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     let Some(first) = record.channels.first() else {
         return Err(MotionError::parameter("channels to write", "at least 1", 0));

@@ -41,7 +41,7 @@ pub struct ClassifiedPulse {
     pub pgv: f64,
 }
 
-/// Classifies one component by Baker (2007, BSSA 97:1486-1501):
+/// Classifies one component by the method of Baker (2007, BSSA 97:1486-1501):
 ///
 /// ```text
 /// PI = 1/(1 + exp(−23.3 + 14.6 PGV ratio + 20.5 energy ratio))

@@ -159,7 +159,7 @@ impl TargetSpectrum {
     /// Checks that all parameters are in range.
     ///
     /// # Errors
-    /// Names the first parameter that is out of range.
+    /// If a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), MotionError> {
         let positive = MotionError::require_positive;
         match self {

@@ -301,8 +301,8 @@ fn unnamed_step(text: &str) -> Option<f64> {
     by_key.or_else(alone).or_else(beside)
 }
 
-/// Returns a frequency (Hz) that could be the sampling rate from a line that names no other
-/// frequency, in any language.
+/// Returns, from a line in any language, a frequency (Hz) that could be the sampling rate; `None`
+/// if the line names another frequency.
 fn possible_rate(text: &str) -> Option<f64> {
     if OTHER_FREQUENCIES.iter().any(|word| text.contains(word)) {
         return None;

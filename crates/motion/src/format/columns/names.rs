@@ -234,7 +234,7 @@ fn names(text: &str, width: usize) -> Option<Vec<Name>> {
     })
 }
 
-/// Merges separate units (`Time, s, Acceleration, g`) with the name before them.
+/// Merges each separate unit (`Time, s, Acceleration, g`) with the name before it.
 fn merged(parts: Vec<String>) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for part in parts {
