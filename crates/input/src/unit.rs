@@ -167,7 +167,9 @@ fn whole(tokens: &[Token]) -> Result<Unit, UnitError> {
     let mut at = 0;
     let unit = product(tokens, &mut at, 0)?;
     if at < tokens.len() {
-        return Err(UnitError::Malformed("a closing parenthesis has no opening one"));
+        return Err(UnitError::Malformed(
+            "a closing parenthesis has no matching opening parenthesis",
+        ));
     }
     Ok(unit)
 }

@@ -132,9 +132,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         (2.9, ""),
         stress::average(&results.six.run),
         STRESS_BAND,
-        "The paper reads an average off the envelope of barrel 1; here it is the mean of the largest stresses until the \
-         first loss of seat over the mean of the stress at rest, both over the boundary that is loaded at rest. This \
-         definition follows the words of the paper; it is not the one of the rows below that comes nearest.",
+        "The paper reads an average off the envelope of barrel 1; here, the amplification is the mean of the largest stresses until the first loss of seat divided by the mean of the stress at rest, both for the boundary that is loaded at rest. This definition follows the words of the paper; another definition in the rows below comes nearer to the published value.",
     ));
     rows.extend(stress::definitions(&results.six.run, "section 3, Fig. 6b", "six barrels, μ 0.4"));
     let top = figures::footprint(&results.six.run, "B1.1", true);
@@ -153,7 +151,7 @@ fn six(results: &Results) -> Vec<Comparison> {
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
             "Length of boundary under stress, at rest → at any time while the stack stands; on top the rack \
-             slides. Agrees if the length on top grows by more than a fifth and by more than twice that at the bottom.",
+             slides. Agrees if the length on top grows by more than a fifth and by more than twice the growth at the bottom.",
         ));
     }
     rows.push(number(
@@ -231,7 +229,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
         let changes = study.holding(top_falls_before_others);
         let changes = if changes.is_empty() { "none".into() } else { changes.join(", ") };
         format!(
-            " Changes of the study with which both top barrels fall before any other: {changes}."
+            " Changes of the study for which both top barrels fall before any other barrel: {changes}."
         )
     });
     let mut rows = vec![
@@ -257,8 +255,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (2.5, "s"),
             second,
             None,
-            "Second fall of a barrel of the top level. The first barrel and a rack that turns over are in \
-                  its path, so this time is less certain than the first.",
+            "Second fall of a barrel of the top level. The first barrel and a rack that turns over are in the path of the second barrel, so this time is less certain than the first.",
         ),
         finding(
             "section 4",
@@ -289,8 +286,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if others.is_empty() { "nothing".into() } else { others.join(", ") },
             others.is_empty(),
             format!(
-                "Until the second barrel of the top level has fallen. The ground still moves then and the run goes \
-                 on; the paper does not state when its run ends.{}",
+                "Until the second barrel of the top level has fallen. At that time, the ground still moves and the run continues; the paper does not state when its run ends.{}",
                 alone.unwrap_or_default()
             ),
         ),
@@ -300,8 +296,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (5.2, "%"),
             demands.top_drift_ratio.map(|d| 100.0 * d),
             Some((4.0, 7.0, "4 to 7 %")),
-            "Largest displacement of a top barrel relative to the ground while the stack stands, over \
-                  the height of the stack.",
+            "Largest displacement of a top barrel relative to the ground while the stack stands, divided by the height of the stack.",
         ),
         number(
             "section 4, Fig. 7c",
@@ -309,8 +304,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (3.0, ""),
             demands.stress_amplification,
             STRESS_BAND,
-            "The paper compares maximum stresses: the largest stress until the first loss of seat over the largest \
-                  at rest, for the bottom barrel with the greater ratio. The rows below have all other definitions.",
+            "The paper compares maximum stresses. Here, the amplification is the largest stress until the first loss of seat divided by the largest stress at rest, for the bottom barrel with the greater ratio. The rows below show all other definitions.",
         ),
     ];
     rows.extend(stress::definitions(&results.eight.run, "section 4, Fig. 7c", "eight barrels"));
@@ -354,7 +348,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 format!("{} mm apart at most", significant(1e3 * apart, 3))
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
-            "Largest distance of any body at full scale up to the first loss of seat. The paper compares \
+            "Largest distance between the two positions of any body, at full scale, up to the first loss of seat. The paper compares \
              its model with photographs of the test; here both runs are of the model, and similitude makes \
              them equal except for rounding.",
         ),
@@ -387,7 +381,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         String::new()
     } else {
         format!(
-            " With other racks the number that keeps the mode of the case as stated is: {}.",
+            " With other racks, the number of combinations that keep the mode of the case as stated is: {}.",
             robust.join("; ")
         )
     };

@@ -51,17 +51,17 @@ const DEFINITIONS: [Definition; 7] = [
         "the envelope averaged over the boundary that is loaded at any time, the stress at rest averaged over the boundary that is loaded at rest",
     ),
     (
-        "upper boundary: largest force over that at rest",
+        "upper boundary: largest force over force at rest",
         |run| of_boundary(run, true),
         "the vertical force of the rack above",
     ),
     (
-        "lower boundary: largest force over that at rest",
+        "lower boundary: largest force over force at rest",
         |run| of_boundary(run, false),
         "the vertical force of the barrel on its own rack",
     ),
     (
-        "all forces: largest sum over that at rest",
+        "all forces: largest sum over sum at rest",
         |run| envelope(run, 1)?.total_amplification(),
         "the sum of all normal forces on the barrel at one instant, which is the integral of the stress",
     ),

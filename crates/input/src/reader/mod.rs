@@ -277,7 +277,10 @@ impl<'a> Reader<'a> {
 
     /// Panics: reading a field as a kind that differs from its definition is a bug in this library.
     fn defined_otherwise(&self, name: &str) -> ! {
-        panic!("field `{name}` of {} is defined as another kind than it is read", self.label())
+        panic!(
+            "field `{name}` of {} is read as a kind that differs from its definition",
+            self.label()
+        )
     }
 }
 

@@ -190,7 +190,7 @@ fn read_channel(
     for value in &mut values {
         *value *= factor;
         if value.abs() > 100.0 * LARGEST_ACCELERATION {
-            return Err(damaged(source, line, "accelerations of a possible size"));
+            return Err(damaged(source, line, "accelerations of a plausible size"));
         }
     }
     if record.channels.is_empty() {
@@ -212,7 +212,7 @@ fn read_channel(
     if unit == Some(UNIT_COUNTS) {
         let offset = math::take_mean(&mut channel.acceleration);
         record.notes.push(format!(
-            "channel {}: counts times {factor:.6e} m/s2; digitizer offset of {offset:.4} m/s2 (mean \
+            "channel {}: counts multiplied by {factor:.6e} m/s2; digitizer offset of {offset:.4} m/s2 (mean \
              of the record) removed",
             channel.name
         ));

@@ -84,7 +84,7 @@ pub(super) fn channel(
                     (),
                     Refusal::OtherInstrument,
                     "a channel of accelerations",
-                    format!("{name}, whose unit is one of {quantity}"),
+                    format!("{name}, whose unit is a unit of {quantity}"),
                     "give the accelerations of the same station, or state that this is to be \
                      differentiated",
                 ));

@@ -47,7 +47,7 @@ fn read_component(
         return Err(source.damaged(first,
             "\"Corrected accelerogram\" or \"Uncorrected accelerogram\" at the start of a component",
             quoted(&source.text(first)),
-            "a header states another number of points than the file contains; get the file again \
+            "a header states a different number of points than the file contains; get the file again \
              from its source",
         ));
     }

@@ -272,7 +272,9 @@ fn joined(
         let repeated = found - pieces.len();
         record.warn(
             None,
-            format!("channel {channel}: {repeated} data records that repeat another were left out"),
+            format!(
+                "channel {channel}: {repeated} data records that repeat earlier ones were left out"
+            ),
         );
     }
     let mut pieces = pieces.into_iter();
@@ -297,7 +299,7 @@ fn joined(
                 (),
                 format!("channel {channel} without gaps and overlaps"),
                 format!(
-                    "{what}s of {:.4} s in sum up to {}: {} samples at {rate} Hz last {counted:.4} s, \
+                    "{what}s of {:.4} s in total up to {}: {} samples at {rate} Hz last {counted:.4} s, \
                      and the times of their data records span {stated:.4} s",
                     off.abs(),
                     piece.start,

@@ -105,7 +105,7 @@ impl Format {
             return Err(source.error(
                 (),
                 Refusal::Options,
-                "one sensitivity for each channel in the metadata given",
+                "one sensitivity for each channel in the given metadata",
                 found,
                 "give only the StationXML valid at the time of the record",
             ));

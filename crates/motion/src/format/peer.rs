@@ -58,7 +58,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         for (line, column) in blanks {
             record.warn(
                 line + 1,
-                format!("column {}: a blank field, read as 0 like in Fortran", column + 1),
+                format!("column {}: a blank field, read as 0 as in Fortran", column + 1),
             );
         }
         values = by_column;

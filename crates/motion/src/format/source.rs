@@ -175,7 +175,7 @@ impl<'a> Source<'a> {
             line,
             "the end of the channel, \"/&\"",
             quoted(&self.text(line)),
-            "the header states another number of points than the file contains; get the file again \
+            "the header states a different number of points than the file contains; get the file again \
              from its source",
         ))
     }

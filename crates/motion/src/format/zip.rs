@@ -82,7 +82,7 @@ impl Entry<'_> {
             return Err(format!("{} with more than {} MB", self.name, limit >> 20));
         }
         if crc32fast::hash(&bytes) != self.sum {
-            return Err(format!("{} with another checksum than stated", self.name));
+            return Err(format!("{} whose checksum differs from the stated one", self.name));
         }
         Ok(bytes)
     }

@@ -46,7 +46,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         Commas::Separate => read_table(source, first, end, hints),
         Commas::Both => Err(source.damaged(
             first,
-            "decimal points, or another separator than a comma",
+            "decimal points, or a separator other than a comma",
             quoted(&source.text(first)),
             "write the numbers with decimal points, or with semicolons between them",
         )),
@@ -362,7 +362,7 @@ fn step(
     stated.or_else(|| hints.time_step()).ok_or_else(|| {
         let remedy = match facts.step_by_duration() {
             Some(step) => format!(
-                "state the time step (s), which is about {step:.4} s by the count and the duration in the header"
+                "state the time step (s), which is about {step:.4} s according to the count and the duration in the header"
             ),
             None => "state the time step (s)".to_owned(),
         };
@@ -492,7 +492,7 @@ fn units(
             names_line,
             "a unit of acceleration",
             format!("{}, the unit of the instrument's output", quoted(word)),
-            "convert the values by the sensitivity of the sensor, and write the resulting unit",
+            "convert the values with the sensitivity of the sensor, and write the resulting unit",
         )
     };
     let missing = |found: String| {

@@ -83,7 +83,7 @@ pub(super) fn unit_of(
         let (found, remedy) = if unit.is_some() {
             (
                 format!("steps of {seconds:.3e} s"),
-                "write seconds since the first sample; days times 86400 are seconds",
+                "write seconds since the first sample; multiply days by 86400",
             )
         } else {
             (
