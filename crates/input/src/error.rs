@@ -140,7 +140,7 @@ pub enum Problem {
         field: String,
         /// Label of the table that lacks the field, such as `[run]`.
         section: String,
-        /// Text to add, with a valid value.
+        /// Example of the text to add, with a valid value.
         example: String,
     },
     /// A value of the wrong type.
@@ -160,7 +160,7 @@ pub enum Problem {
         field: String,
         /// Value found.
         found: String,
-        /// Text to write instead, with a valid value.
+        /// Example of the text to write instead, with a valid value.
         example: String,
     },
     /// A text that is not a quantity of the required dimension.

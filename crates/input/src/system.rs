@@ -269,7 +269,7 @@ pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }
 
-/// Held while files are being written.
+/// Lock that is held while files are being written.
 static WRITING: Mutex<()> = Mutex::new(());
 
 /// Acquires a lock and never releases it, so that no operation guarded by the lock starts while the
@@ -308,7 +308,7 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// earlier versions untouched.
 ///
 /// # Errors
-/// The same as for [`store`], with the path that failed.
+/// The same as for [`store`]. The error also contains the path that failed.
 pub fn store_all<'a>(
     files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
 ) -> Result<(), (PathBuf, io::Error)> {

@@ -66,7 +66,7 @@ pub struct ReadFailure {
     pub line: Option<usize>,
     /// Column of the first offending character, counted from 1.
     pub column: Option<usize>,
-    /// Kind of refusal, for programs.
+    /// Category of the refusal, for evaluation by programs.
     pub refusal: Refusal,
     /// Content expected by the reader.
     pub expected: String,

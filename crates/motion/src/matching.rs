@@ -48,7 +48,8 @@ pub struct Matching {
 }
 
 impl Default for Matching {
-    /// Time domain, 0.1 to 3 s, 5 %, at most 100 rounds.
+    /// Returns settings for the time domain, with periods from 0.1 to 3 s, a tolerance of 5 % and
+    /// at most 100 rounds.
     fn default() -> Self {
         Self {
             method: MatchMethod::Time,

@@ -273,7 +273,7 @@ impl Processing {
     }
 }
 
-/// Processed accelerations, with the steps applied.
+/// Processed accelerations, with a description of the applied steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Processed {
     /// Acceleration (m/s²).

@@ -54,7 +54,7 @@ pub struct StatedPeak {
     pub stated: f64,
     /// One unit of the last printed digit (SI).
     pub resolution: f64,
-    /// Absolute peak of the file's own numbers (SI).
+    /// Absolute peak of the samples in the file (SI).
     pub measured: f64,
 }
 

@@ -29,7 +29,7 @@ const QUESTIONS: [&str; 5] = [
 ];
 
 /// For each finding, `true` if a sample reproduces it; `None` if the finding needs the paper's
-/// record and this was not given.
+/// record, but this record was not given.
 pub(super) type Kept = [Option<bool>; 5];
 
 /// Returns a coordinate of a sample, between −1 and 1.

@@ -15,7 +15,7 @@ use super::{ReproduceError, ensemble, vary};
 /// than the measured values.
 pub(super) const MEASURED: (f64, f64) = (1.0 / 1.10, 1.0 / 1.16);
 
-/// All runs to be done.
+/// All planned runs.
 pub(super) struct Plan {
     /// The jobs, the longest first.
     pub(super) jobs: Vec<Job>,

@@ -35,7 +35,7 @@ fn mode_of(summary: &Summary) -> String {
     }
 }
 
-/// Returns a body by its name.
+/// Returns the body with the given name.
 fn body<'a>(summary: &'a Summary, name: &str) -> Option<&'a BodySummary> {
     summary.bodies.iter().find(|body| body.name == name)
 }

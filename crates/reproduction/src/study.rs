@@ -78,7 +78,7 @@ pub(super) struct Study {
 /// The two changes of a quantity, each with its name.
 type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
 
-/// Returns the factors of a case.
+/// Returns the factors that the study of a case changes.
 pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let (duration, after) = subject.duration();
     let mut base = brief(base, after);

@@ -29,31 +29,32 @@ fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
     [&mut all.rack_ground, &mut all.barrel_rack, &mut all.rack_rack]
 }
 
-/// Multiplies the contact stiffness of all seats.
+/// Multiplies the contact stiffness of all seats by `factor`.
 pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.stiffen(factor);
     }
 }
 
-/// Multiplies the contact damping of all seats; damping that is stated as a restitution is unchanged.
+/// Multiplies the contact damping of all seats by `factor`; damping that is stated as a restitution
+/// is unchanged.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.damp(factor);
     }
 }
 
-/// Multiplies the friction between barrels and racks.
+/// Multiplies the friction between barrels and racks by `factor`.
 pub(super) fn barrel_rack_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.barrel_rack.roughen(factor);
 }
 
-/// Multiplies the friction between the bottom rack and the ground.
+/// Multiplies the friction between the bottom rack and the ground by `factor`.
 pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.rack_ground.roughen(factor);
 }
 
-/// Multiplies the ratio of tangential to normal stiffness of all sticks.
+/// Multiplies the ratio of tangential to normal stiffness of all sticks by `factor`.
 pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {

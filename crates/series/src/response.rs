@@ -216,7 +216,7 @@ pub fn pseudo_accelerations(
     out
 }
 
-/// Peak responses over a list of periods.
+/// Peak responses at a list of periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseSpectrum {
     /// Damping ratio.

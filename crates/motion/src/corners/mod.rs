@@ -37,7 +37,7 @@ pub struct NoiseCriterion {
 }
 
 impl Default for NoiseCriterion {
-    /// A ratio of 3 from 0.2 to 5 Hz, smoothed with `b` = 20.
+    /// Returns a criterion with a ratio of 3 from 0.2 to 5 Hz, smoothed with `b` = 20.
     fn default() -> Self {
         Self { ratio: 3.0, from: 0.2, to: 5.0, bandwidth: 20.0 }
     }

@@ -44,7 +44,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
                 Some(head) => shorten(&latin1(head)),
                 None => format!("{} bytes", bytes.len()),
             };
-            damaged(&format!("numbers or strings in a row as array {name}"), found)
+            damaged(&format!("a one-dimensional array {name} of numbers or strings"), found)
         })?;
         arrays.insert(name, array);
     }

@@ -7,7 +7,7 @@ use crate::error::ReadError;
 use crate::format::source::{Source, leading_text, quoted};
 use crate::units::MotionUnit;
 
-/// Names of a factor by which the values are to be multiplied.
+/// Keywords for a factor by which the values are to be multiplied.
 const FACTOR_KEYS: &[&str] = &[
     "scale factor",
     "scale_factor",
@@ -22,7 +22,7 @@ const FACTOR_KEYS: &[&str] = &[
     "gain",
 ];
 
-/// Names that mean a factor only at the beginning of a line; elsewhere, they may refer to an
+/// Keywords that mean a factor only at the beginning of a line; elsewhere, they may refer to an
 /// instrument.
 const AT_THE_BEGIN: [&str; 2] = ["scale", "gain"];
 

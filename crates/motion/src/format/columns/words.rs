@@ -1,6 +1,6 @@
 //! Header keywords in the languages of the agencies, in lower case and without accents.
 
-/// Names of the time between samples.
+/// Keywords for the time between samples.
 pub(super) const STEP_KEYS: &[&str] = &[
     "dt",
     "delta t",
@@ -54,7 +54,7 @@ pub(super) const STEP_KEYS: &[&str] = &[
     "サンプリング間隔",
 ];
 
-/// Names of the sampling rate.
+/// Keywords for the sampling rate.
 pub(super) const RATE_KEYS: &[&str] = &[
     "sampling rate",
     "sample rate",
@@ -100,7 +100,7 @@ pub(super) const RATE_KEYS: &[&str] = &[
     "サンプリング周波数",
 ];
 
-/// Names of a sampling interval or rate; the unit or the size of the number determines which of the
+/// Keywords for a sampling interval or rate; the unit or the size of the number determines which of the
 /// two is meant.
 pub(super) const SAMPLING_KEYS: &[&str] = &[
     "sampling",
@@ -126,7 +126,7 @@ pub(super) const BARE: &[&str] =
 /// Words next to a number with a unit of time that identify the number as the step.
 pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 
-/// Names of the number of samples.
+/// Keywords for the number of samples.
 pub(super) const COUNT_KEYS: &[&str] = &[
     "npts",
     "ndata",
@@ -167,11 +167,11 @@ pub(super) const COUNT_KEYS: &[&str] = &[
     "データ数",
 ];
 
-/// Names of the duration of a record.
+/// Keywords for the duration of a record.
 pub(super) const DURATION_KEYS: &[&str] =
     &["duration", "record length", "length of record", "total time", "length"];
 
-/// Names of the peak acceleration.
+/// Keywords for the peak acceleration.
 pub(super) const PEAK_KEYS: &[&str] = &[
     "pga",
     "peak ground acceleration",
@@ -185,7 +185,7 @@ pub(super) const PEAK_KEYS: &[&str] = &[
     "max acceleration",
 ];
 
-/// Names of a component.
+/// Keywords for a component.
 pub(super) const COMPONENT_KEYS: &[&str] =
     &["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
 
