@@ -7,7 +7,7 @@ use barrelstack_report::significant;
 use super::compare::{Comparison, Verdict};
 use super::numbering;
 
-/// Returns the stress envelope of a barrel by the paper's number.
+/// Returns the stress envelope of the barrel with the given number of the paper.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;

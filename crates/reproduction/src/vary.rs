@@ -70,7 +70,7 @@ pub(super) fn cradle_angle(stack: &mut StackSpec, more: f64) {
     }
 }
 
-/// Changes barrels so that their wine does not rotate with the wood, at the same mass.
+/// Changes the barrels so that the wine does not rotate with the wood. The mass is unchanged.
 pub(super) fn fluid(stack: &mut StackSpec) {
     stack.barrel.fill = Fill::FullFluid;
 }

@@ -44,7 +44,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Marks all options as used that another reader has used.
+    /// Also marks as used the options that another reader has used.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),

@@ -138,7 +138,7 @@ fn start(source: &Source<'_>) -> Option<Utc> {
 }
 
 /// Returns the earthquake. Of several magnitudes, such as `/Mb=5.2/Ms=5.8`, the moment magnitude is
-/// used, else the surface-wave magnitude, else the first.
+/// used, else the surface-wave magnitude, else the first magnitude.
 fn earthquake(source: &Source<'_>) -> Earthquake {
     let stated = field(source, "MAGNITUD").map(|(_, text)| list(&text)).unwrap_or_default();
     let all: Vec<(&str, Option<f64>)> = stated

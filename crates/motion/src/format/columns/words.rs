@@ -235,7 +235,7 @@ pub(super) fn is_of_instrument(unit: &str) -> bool {
     UNITS.contains(&unit.trim().to_lowercase().as_str())
 }
 
-/// Beginnings of the word "unit".
+/// Beginnings of the word for "unit" in several languages.
 pub(super) const UNIT_WORDS: &[&str] =
     &["unit", "unidad", "einheit", "satuan", "birim", "jednostk", "единиц", "单位"];
 
