@@ -30,7 +30,8 @@ impl Record {
             first: self.named_along(strike + 90.0, "FN")?,
             second: self.named_along(strike, "FP")?,
             note: format!(
-                "rotated to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) for a strike of {strike} degrees",
+                "rotated to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) for a \
+                 strike of {strike} degrees",
                 (strike + 90.0).rem_euclid(360.0),
                 strike.rem_euclid(360.0)
             ),

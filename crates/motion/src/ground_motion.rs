@@ -73,7 +73,8 @@ impl GroundMotion {
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         let step = format!(
-            "Froude-scaled to length {length_scale}: time multiplied by {:.6}, acceleration unchanged",
+            "Froude-scaled to length {length_scale}: time multiplied by {:.6}, acceleration \
+             unchanged",
             length_scale.sqrt()
         );
         self.changed(|history| history.froude(length_scale), step)

@@ -68,7 +68,8 @@ fn warnings(motion: &Motion) -> Vec<String> {
     match motion {
         Motion::Paper { .. } => Vec::new(),
         Motion::Other { file, pga } => vec![format!(
-            "{file} is not the paper's record: its peak is {} g, and the peak of PEL360 is 0.358 g. Results that \
+            "{file} is not the paper's record: its peak is {} g, and the peak of PEL360 is 0.358 \
+             g. Results that \
              depend on the motion are shown but not compared. To get the paper's record, {OBTAIN}.",
             significant(pga / barrelstack_motion::STANDARD_GRAVITY, 3)
         )],
@@ -88,7 +89,9 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     let mut blocks =
         vec![Block::heading(2, "Published against ours"), Block::Table(overview(rows))];
     blocks.push(text(
-        "A number agrees if it is within ±20 % of the published number; a finding agrees if the same event occurs. Some numbers also have a wider band that the project accepts, since the paper does \
+        "A number agrees if it is within ±20 % of the published number; a finding agrees if the \
+         same event occurs. Some numbers also have a wider band that the project accepts, since \
+         the paper does \
          not state its geometry.",
     ));
     let reasons = vec![Block::Table(reasons(rows))];

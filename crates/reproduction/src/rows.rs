@@ -132,7 +132,11 @@ fn six(results: &Results) -> Vec<Comparison> {
         (2.9, ""),
         stress::average(&results.six.run),
         STRESS_BAND,
-        "The paper reads an average off the envelope of barrel 1; here, the amplification is the mean of the largest stresses until the first loss of seat divided by the mean of the stress at rest, both for the boundary that is loaded at rest. This definition follows the words of the paper; another definition in the rows below comes nearer to the published value.",
+        "The paper reads an average off the envelope of barrel 1; here, the amplification is the \
+         mean of the largest stresses until the first loss of seat divided by the mean of the \
+         stress at rest, both for the boundary that is loaded at rest. This definition follows \
+         the words of the paper; another definition in the rows below comes nearer to the \
+         published value.",
     ));
     rows.extend(stress::definitions(&results.six.run, "section 3, Fig. 6b", "six barrels, μ 0.4"));
     let top = figures::footprint(&results.six.run, "B1.1", true);
@@ -229,7 +233,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
         let changes = study.holding(top_falls_before_others);
         let changes = if changes.is_empty() { "none".into() } else { changes.join(", ") };
         format!(
-            " Changes of the study for which both top barrels fall before any other barrel: {changes}."
+            " Changes of the study for which both top barrels fall before any other barrel: \
+             {changes}."
         )
     });
     let mut rows = vec![
@@ -255,7 +260,9 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (2.5, "s"),
             second,
             None,
-            "Second fall of a barrel of the top level. The first barrel and a rack that turns over are in the path of the second barrel, so this time is less certain than the first.",
+            "Second fall of a barrel of the top level. The first barrel and a rack that turns \
+             over are in the path of the second barrel, so this time is less certain than the \
+             first.",
         ),
         finding(
             "section 4",
@@ -286,7 +293,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if others.is_empty() { "nothing".into() } else { others.join(", ") },
             others.is_empty(),
             format!(
-                "Until the second barrel of the top level has fallen. At that time, the ground still moves and the run continues; the paper does not state when its run ends.{}",
+                "Until the second barrel of the top level has fallen. At that time, the ground \
+                 still moves and the run continues; the paper does not state when its run ends.{}",
                 alone.unwrap_or_default()
             ),
         ),
@@ -296,7 +304,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (5.2, "%"),
             demands.top_drift_ratio.map(|d| 100.0 * d),
             Some((4.0, 7.0, "4 to 7 %")),
-            "Largest displacement of a top barrel relative to the ground while the stack stands, divided by the height of the stack.",
+            "Largest displacement of a top barrel relative to the ground while the stack stands, \
+             divided by the height of the stack.",
         ),
         number(
             "section 4, Fig. 7c",
@@ -304,7 +313,9 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (3.0, ""),
             demands.stress_amplification,
             STRESS_BAND,
-            "The paper compares maximum stresses. Here, the amplification is the largest stress until the first loss of seat divided by the largest stress at rest, for the bottom barrel with the greater ratio. The rows below show all other definitions.",
+            "The paper compares maximum stresses. Here, the amplification is the largest stress \
+             until the first loss of seat divided by the largest stress at rest, for the bottom \
+             barrel with the greater ratio. The rows below show all other definitions.",
         ),
     ];
     rows.extend(stress::definitions(&results.eight.run, "section 4, Fig. 7c", "eight barrels"));
@@ -348,7 +359,8 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 format!("{} mm apart at most", significant(1e3 * apart, 3))
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
-            "Largest distance between the two positions of any body, at full scale, up to the first loss of seat. The paper compares \
+            "Largest distance between the two positions of any body, at full scale, up to the \
+             first loss of seat. The paper compares \
              its model with photographs of the test; here both runs are of the model, and similitude makes \
              them equal except for rounding.",
         ),
@@ -381,7 +393,8 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         String::new()
     } else {
         format!(
-            " With other racks, the number of combinations that keep the mode of the case as stated is: {}.",
+            " With other racks, the number of combinations that keep the mode of the case as \
+             stated is: {}.",
             robust.join("; ")
         )
     };

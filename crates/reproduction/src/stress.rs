@@ -48,7 +48,8 @@ const DEFINITIONS: [Definition; 7] = [
     (
         "mean of the envelope where it is loaded over the mean at rest",
         |run| envelope(run, 1)?.mean_of_envelope(),
-        "the envelope averaged over the boundary that is loaded at any time, the stress at rest averaged over the boundary that is loaded at rest",
+        "the envelope averaged over the boundary that is loaded at any time, the stress at rest \
+         averaged over the boundary that is loaded at rest",
     ),
     (
         "upper boundary: largest force over force at rest",

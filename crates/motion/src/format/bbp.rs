@@ -17,8 +17,8 @@ use crate::units::{AccelerationUnit, MotionUnit};
 pub(crate) const FORMAT: Format =
     Format { name: "bbp", title: "Broadband Platform text (SCEC)", sniff, read };
 
-/// Number of values on the second line, which are count, step, hour, minute, second, epicentral
-/// distance, azimuth, back azimuth.
+/// Number of values on the second line. The values are count, step, hour, minute, second,
+/// epicentral distance, azimuth and back azimuth.
 const NUMBERS: usize = 8;
 
 /// Parses the count and the step on the second line.

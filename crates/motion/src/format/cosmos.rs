@@ -212,7 +212,8 @@ fn read_channel(
     if unit == Some(UNIT_COUNTS) {
         let offset = math::take_mean(&mut channel.acceleration);
         record.notes.push(format!(
-            "channel {}: counts multiplied by {factor:.6e} m/s2; digitizer offset of {offset:.4} m/s2 (mean \
+            "channel {}: counts multiplied by {factor:.6e} m/s2; digitizer offset of {offset:.4} \
+             m/s2 (mean \
              of the record) removed",
             channel.name
         ));

@@ -299,7 +299,8 @@ fn joined(
                 (),
                 format!("channel {channel} without gaps and overlaps"),
                 format!(
-                    "{what}s of {:.4} s in total up to {}: {} samples at {rate} Hz last {counted:.4} s, \
+                    "{what}s of {:.4} s in total up to {}: {} samples at {rate} Hz last \
+                     {counted:.4} s, \
                      and the times of their data records span {stated:.4} s",
                     off.abs(),
                     piece.start,

@@ -177,7 +177,10 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     if let Some(scale) = real(bytes, 3, big).filter(|scale| *scale != 1.0 && *scale != 0.0) {
         record.warn(
             None,
-            format!("the header states a scale of {scale}, which was not applied: check that the given unit or sensitivity applies to the numbers as stored"),
+            format!(
+                "the header states a scale of {scale}, which was not applied: check that the \
+                     given unit or sensitivity applies to the numbers as stored"
+            ),
         );
     }
     let name = codes.channel.clone();

@@ -175,7 +175,8 @@ impl<'a> Source<'a> {
             line,
             "the end of the channel, \"/&\"",
             quoted(&self.text(line)),
-            "the header states a different number of points than the file contains; get the file again \
+            "the header states a different number of points than the file contains; get the file \
+             again \
              from its source",
         ))
     }
@@ -237,7 +238,8 @@ impl<'a> Source<'a> {
         .into()
     }
 
-    /// Returns an error about a field that is not a number, with a remedy that depends on its text.
+    /// Returns an error about a field that is not a number, with a remedy that depends on the text
+    /// of the field.
     pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
         let text = latin1(field.trim_ascii());
         let begins = self.raw(line)[..column.min(self.raw(line).len())].trim_ascii().is_empty();

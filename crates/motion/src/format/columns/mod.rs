@@ -362,7 +362,8 @@ fn step(
     stated.or_else(|| hints.time_step()).ok_or_else(|| {
         let remedy = match facts.step_by_duration() {
             Some(step) => format!(
-                "state the time step (s), which is about {step:.4} s according to the count and the duration in the header"
+                "state the time step (s), which is about {step:.4} s according to the count and \
+                 the duration in the header"
             ),
             None => "state the time step (s)".to_owned(),
         };

@@ -189,7 +189,7 @@ pub(super) const PEAK_KEYS: &[&str] = &[
 pub(super) const COMPONENT_KEYS: &[&str] =
     &["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
 
-/// Words that change the meaning of the key after them.
+/// Words that change the meaning of the keyword that follows.
 pub(super) const OTHER_MEANING: &[&str] = &[
     "original",
     "orig",
