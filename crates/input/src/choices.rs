@@ -1,4 +1,4 @@
-//! Closed sets in input files: plain names, and variants with fields of their own.
+//! Closed sets of values in input files: plain names, and variants with fields of their own.
 
 use crate::InputError;
 use crate::field::{Section, Variant};
@@ -6,8 +6,8 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A closed set of variants, each with its own fields in the table that selects it. Declared with
-/// [`choices!`](crate::choices!).
+/// A closed set of variants. The table that selects a variant contains the fields of this variant.
+/// Such a set is declared with [`choices!`](crate::choices!).
 pub trait Chosen: Sized {
     /// Returns all variants.
     fn variants() -> &'static [Variant];
@@ -73,9 +73,9 @@ macro_rules! named {
 /// Declares an enum whose variants have fields of their own in files.
 ///
 /// Each variant is listed with its name in files and its fields, which are written as in
-/// [`section!`](crate::section). Its doc comment is also its help text. The definitions of the
-/// variants are stored in the static that is declared after the enum. A type declared
-/// `among the fields of` a table can be used as the type of the tag field of that table.
+/// [`section!`](crate::section). The doc comment of a variant is also its help text. The
+/// definitions of the variants are stored in the static that is declared after the enum. A type
+/// declared `among the fields of` a table can be used as the type of the tag field of that table.
 ///
 /// ```
 /// use barrelstack_input::choices::Chosen;

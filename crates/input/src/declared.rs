@@ -6,7 +6,8 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A type declared together with the fields of its table by [`section!`](crate::section).
+/// A type that is declared together with its table in an input file by
+/// [`section!`](crate::section).
 pub trait Declared: Sized {
     /// Returns the definition of the table.
     fn section() -> &'static Section;
@@ -14,7 +15,7 @@ pub trait Declared: Sized {
     /// Reads the fields. The caller checks that they are consistent and calls [`Reader::finish`].
     fn read_fields(reader: &Reader<'_>) -> Result<Self, InputError>;
 
-    /// Writes the common fields, without those of the selected variant.
+    /// Writes the common fields only, not the fields of the selected variant.
     fn write_fields(&self, writer: &mut Writer);
 
     /// Creates a writer for the table.
@@ -25,14 +26,14 @@ pub trait Declared: Sized {
     /// Writes the fields of the selected variant.
     fn write_chosen(&self, _: &mut Writer) {}
 
-    /// Reads a table without constraints between its fields.
+    /// Reads the complete table, without checking that the fields are consistent.
     fn read(reader: Reader<'_>) -> Result<Self, InputError> {
         let read = Self::read_fields(&reader)?;
         reader.finish();
         Ok(read)
     }
 
-    /// Writes the complete table: the common fields, then those of the selected variant.
+    /// Writes the complete table: the common fields, then the fields of the selected variant.
     fn write(&self) -> Table {
         let mut writer = self.start();
         self.write_fields(&mut writer);
@@ -124,7 +125,7 @@ fn has_word(kind: Kind) -> bool {
     matches!(kind, Kind::WordOr(..))
 }
 
-/// Implements [`Held`] for types, each with its reading and its writing function.
+/// Implements [`Held`] for each listed type, using the given functions for reading and writing.
 macro_rules! held {
     ($($type:ty: $read:expr, $write:expr;)*) => {$(
         impl Held for $type {
@@ -356,8 +357,9 @@ macro_rules! table {
     };
 }
 
-/// Expands to an array of fields in the syntax of [`table!`](crate::table), between the existing
-/// fields listed after `with` and `then`.
+/// Expands to an array of fields declared in the syntax of [`table!`](crate::table). Existing
+/// fields listed after `with` come before these fields, and those listed after `then` come after
+/// them.
 #[macro_export]
 macro_rules! fields {
     (

@@ -30,7 +30,7 @@ pub enum Place {
         /// Name of the file as given.
         file: String,
     },
-    /// A default value, which has no place in the user's texts.
+    /// A default value, which appears nowhere in the input.
     Unknown,
 }
 
@@ -91,7 +91,7 @@ pub enum Problem {
         /// Offset of the first bad byte.
         offset: usize,
     },
-    /// The file is far larger than any valid one.
+    /// The file is far larger than any valid file.
     #[error("the file has {size} bytes, at most {limit} are read; is it a motion record?")]
     TooLarge {
         /// Size in bytes.
@@ -117,7 +117,7 @@ pub enum Problem {
         /// All valid keys.
         valid: Vec<String>,
     },
-    /// A key that belongs to another variant than the selected one.
+    /// A key that belongs to a variant other than the selected one.
     #[error("`{key}` does not belong to `{tag} = \"{variant}\"` in {section}, only to {owners}")]
     ForeignKey {
         /// The key.
@@ -140,7 +140,7 @@ pub enum Problem {
         field: String,
         /// Label of the table that lacks the field, such as `[run]`.
         section: String,
-        /// Text to add, with a valid value.
+        /// Example of the text to add, with a valid value.
         example: String,
     },
     /// A value of the wrong type.
@@ -160,7 +160,7 @@ pub enum Problem {
         field: String,
         /// Value found.
         found: String,
-        /// Text to write instead, with a valid value.
+        /// Example of the text to write instead, with a valid value.
         example: String,
     },
     /// A text that is not a quantity of the required dimension.
@@ -324,8 +324,8 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// Returns the part of a line around the column that fits a terminal. Control characters are
-/// replaced by spaces.
+/// Returns a part of a line that includes the column and fits a terminal, and the column and the
+/// width within this part. Control characters are replaced by spaces.
 fn window(line: &str, column: usize, width: usize) -> (String, usize, usize) {
     const BEFORE: usize = 60;
     const TOTAL: usize = 100;

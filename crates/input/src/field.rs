@@ -17,13 +17,13 @@ pub struct Section {
     pub help: &'static str,
     /// Fields common to all variants.
     pub fields: &'static [Field],
-    /// Further fields, selected by the value of one field.
+    /// Further fields, which depend on the value of a tag field.
     pub variants: Option<Variants>,
     /// Groups of mutually exclusive fields.
     pub exclusive: &'static [&'static [&'static str]],
 }
 
-/// Sets of fields, one of them selected by the value of a tag field.
+/// Sets of fields. The value of a tag field selects one of the sets.
 #[derive(Debug)]
 pub struct Variants {
     /// Name of the field that selects the variant.
@@ -50,13 +50,13 @@ pub struct Field {
     pub name: &'static str,
     /// Kind of value that the field accepts.
     pub kind: Kind,
-    /// What the reader uses when the field is absent.
+    /// The value that the reader uses if the field is absent.
     pub default: Default,
     /// Meaning of the field, in one sentence.
     pub help: &'static str,
 }
 
-/// What the reader uses when a field is absent.
+/// The value that the reader uses if a field is absent.
 #[derive(Debug, Clone, Copy)]
 pub enum Default {
     /// The field is required.
@@ -126,8 +126,8 @@ pub struct Range {
     pub greatest: f64,
 }
 
-/// Largest magnitude of a number without a limit of its own. It is far above any physical value and
-/// far below overflow.
+/// Limit for the magnitude of numbers that have no limit of their own. The limit is far above any
+/// physical value and far below overflow.
 const VAST: f64 = 1e12;
 
 impl Range {
@@ -192,7 +192,7 @@ impl Field {
         Self { name, kind, default, help }
     }
 
-    /// Returns the field with a valid value, as it would be written in a file.
+    /// Returns an example: the field with a valid value, as written in a file.
     pub fn example(&self) -> String {
         if let Kind::Table(_) = self.kind {
             format!("a table `{}`", self.name)
@@ -305,7 +305,7 @@ impl fmt::Display for Kind {
 }
 
 impl Section {
-    /// Returns the common fields, followed by those of the variant, if there is one.
+    /// Returns the common fields, followed by the fields of `variant` unless it is `None`.
     pub fn fields_of(
         &'static self,
         variant: Option<&'static Variant>,

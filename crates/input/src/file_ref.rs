@@ -23,7 +23,7 @@ pub struct FileRef {
     pub path: String,
     /// Folder of the referring file; empty for the current folder.
     pub folder: PathBuf,
-    /// `true` if the path was given by the caller, not by a file.
+    /// `true` if the path was given by the caller instead of read from a file.
     is_of_caller: bool,
     /// Content of the file, if loaded.
     bytes: Option<Arc<[u8]>>,
@@ -40,8 +40,8 @@ impl FileRef {
         Self { is_of_caller: true, ..Self::new(path, PathBuf::new()) }
     }
 
-    /// Returns `true` if the path was given by the caller. A path in a file may come from someone
-    /// else.
+    /// Returns `true` if the path was given by the caller. A path read from a file may have been
+    /// written by somebody else.
     pub fn is_of_caller(&self) -> bool {
         self.is_of_caller
     }
@@ -72,8 +72,8 @@ impl FileRef {
         }
     }
 
-    /// Returns a reference that identifies the file by its content instead of its path. Returned
-    /// unchanged if the content is not loaded.
+    /// Returns a reference that identifies the file by its content instead of its path. If the
+    /// content is not loaded, the reference is returned unchanged.
     #[must_use]
     pub fn by_content(&self) -> Self {
         match &self.bytes {

@@ -19,7 +19,7 @@ pub struct Setting {
     pub source: Source,
 }
 
-/// Source of a value, as far as it can be told from the value itself.
+/// Source of a value, as far as it can be determined from the value itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The value is written in the file, or in a file that it extends.
@@ -42,7 +42,8 @@ impl Source {
     }
 }
 
-/// Lists every value of a table in which all defaults are written out, in the order of the table.
+/// Lists every value of a table, in the order of the table. All defaults must be written out in the
+/// table.
 ///
 /// Items of lists are identified by their name or by the pair they join, otherwise by their number
 /// from 1, as in overrides.
@@ -91,8 +92,8 @@ fn source(field: &Field, value: &Value) -> Source {
     }
 }
 
-/// Returns `true` if two values have the same meaning: quantities are compared in SI units, and
-/// integers equal floats.
+/// Returns `true` if two values have the same meaning: quantities are compared in SI units, and an
+/// integer equals a float with the same value.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |value: &Value| match value {
         Value::Integer(Some(value)) => Some(*value as f64),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::system;
 use crate::{Dimension, Quantity};
 
-/// Remedy for a cell that holds no number.
+/// Remedy suggested for a cell that does not hold a number.
 const CORRECT: &str = "correct it, or remove the row (the decimal mark is a point)";
 
 /// Largest size of a file of measurements (bytes).
@@ -73,7 +73,7 @@ fn in_column(column: Option<&str>) -> String {
     column.map(|name| format!(", column \"{name}\"")).unwrap_or_default()
 }
 
-/// Content of a cell in a column that may have gaps.
+/// Content of a cell in a column that may have empty cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
     /// An empty cell.
@@ -210,11 +210,11 @@ impl Table {
         self.rows.iter().map(value).collect()
     }
 
-    /// Returns the cells of a required column. Each is a number (SI units), the `word` that
+    /// Returns the cells of a required column. Each cell is a number (SI units), the `word` that
     /// replaces a number, or empty.
     ///
     /// # Errors
-    /// The same as for [`Table::required`]; empty cells and the word are accepted.
+    /// The same as for [`Table::required`], except that empty cells and the word are accepted.
     pub fn entries(
         &self,
         name: &str,

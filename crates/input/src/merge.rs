@@ -1,8 +1,8 @@
 //! Merges files and overrides in layers.
 //!
 //! Tables are merged key by key; any other value is replaced. A field removes the fields that it
-//! excludes, and a new variant removes the fields of the old one, so that an upper layer never has
-//! to undo a lower one.
+//! excludes, and a new variant removes the fields of the old variant, so that an upper layer never
+//! has to undo a lower layer.
 
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
@@ -35,8 +35,8 @@ pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>)
 
 /// Prepares `base` for a key and returns the section of the key.
 ///
-/// Removes mutually exclusive fields and the fields of a replaced variant, and expands a name to
-/// its table if a table is merged into it.
+/// Removes the fields that the key excludes and the fields of a replaced variant. Expands a name to
+/// its table if a table is merged into the value.
 fn place_for(
     base: &mut Table,
     section: Option<&'static Section>,
@@ -100,7 +100,7 @@ fn expand_name(node: &mut Node, key: &str) {
     }
 }
 
-/// Expands every name that is short for a table, in this table and all nested ones.
+/// Expands every name that is short for a table, in this table and all nested tables.
 pub fn expand_names(table: &mut Table, section: &'static Section) {
     let variant = variant_of(table, section);
     for field in section.fields_of(variant) {
@@ -121,7 +121,7 @@ pub fn expand_names(table: &mut Table, section: &'static Section) {
     }
 }
 
-/// Applies one override, written `path=value`; `index` is its index in the sources.
+/// Applies one override, written `path=value`; `index` is the index of the override in the sources.
 fn apply_override(
     table: &mut Table,
     section: &'static Section,
@@ -139,7 +139,7 @@ fn apply_override(
     let keys: Vec<&str> = path.split('.').map(str::trim).collect();
     if keys.iter().any(|key| key.is_empty()) || keys.len() > 12 {
         return Err(wrong(format!(
-            "`{}` is not a path to a field; write keys joined by points, such as `run.step`",
+            "`{}` is not a path to a field; write keys joined by dots, such as `run.step`",
             crate::quantity::shorten(path)
         )));
     }
@@ -220,7 +220,7 @@ fn holds(table: &Table, origin: Origin) -> bool {
     table.entries.iter().any(|entry| inside(&entry.node, origin))
 }
 
-/// Applies the overrides from index `first` on, in order.
+/// Applies the overrides with index `first` and above, in order.
 ///
 /// An override that contradicts an earlier one is an error; a repetition is accepted.
 pub fn apply_overrides(
@@ -248,7 +248,7 @@ pub fn apply_overrides(
     Ok(())
 }
 
-/// Sets the value at a path, creating the tables along it.
+/// Sets the value at a path, creating missing tables along the path.
 pub fn set(
     table: &mut Table,
     section: Option<&'static Section>,
@@ -303,5 +303,5 @@ fn set_in_item(
     {
         return set(below, section, rest, value);
     }
-    Err(format!("name a field of `{key}.{wanted}` after a point"))
+    Err(format!("name a field of `{key}.{wanted}` after a dot"))
 }

@@ -54,18 +54,18 @@ pub enum QuantityError {
         /// Reason, in words.
         reason: &'static str,
     },
-    /// The unit `gal` has two meanings, and neither is expected.
+    /// The unit `gal` has two meanings, and neither has an expected dimension.
     #[error("the unit `gal` in `{text}` may be a US gallon or cm/s^2; write `gallon` or `Gal`")]
     Ambiguous {
         /// Text as given, shortened.
         text: String,
     },
-    /// The quantity has another dimension than expected.
+    /// The quantity does not have the expected dimension.
     #[error("`{text}` is {found}, expected {expected}")]
     WrongDimension {
         /// Text as given, shortened.
         text: String,
-        /// Dimension of the text.
+        /// Dimension of the given quantity.
         found: String,
         /// Expected dimensions.
         expected: String,
@@ -98,8 +98,8 @@ impl Quantity {
         }
     }
 
-    /// Returns all possible meanings of a text. A number without a unit is accepted only if a plain
-    /// number is wanted.
+    /// Returns all possible interpretations of a text as a quantity. A number without a unit is
+    /// accepted only if a plain number is wanted.
     fn readings(text: &str, wanted: &[Dimension]) -> Result<Vec<Self>, QuantityError> {
         let trimmed = text.trim();
         let shown = || shorten(trimmed);
@@ -151,8 +151,9 @@ impl Quantity {
 
     /// Suggests a replacement for a text that is not a quantity of a dimension in `wanted`.
     ///
-    /// The suggestion adds the missing unit or corrects it to the unit probably meant; otherwise it
-    /// is an example. It always parses as a quantity of one of the dimensions.
+    /// The suggestion adds the missing unit or corrects it to the unit probably meant; otherwise
+    /// the suggestion is an example. The suggestion always parses as a quantity of one of the
+    /// dimensions.
     pub fn suggestion(text: &str, wanted: &[Dimension]) -> String {
         let trimmed = text.trim();
         let reads = |text: &String| text.len() <= 60 && Self::parse_as(text, wanted).is_ok();
@@ -212,7 +213,7 @@ pub fn shorten(text: &str) -> String {
     }
 }
 
-/// A decimal number as digits and a power of ten, so that conversion by decimal units is exact.
+/// A decimal number as digits and a power of ten, so that conversion from decimal units is exact.
 struct Decimal<'a> {
     negative: bool,
     /// All digits in order, without the decimal point; empty for zero.

@@ -7,8 +7,8 @@ use crate::unit;
 
 /// Returns the reference of a file with the given top-level section.
 ///
-/// Sections in `elsewhere` are documented on another page, named by `there`, and are only referred
-/// to.
+/// Sections in `elsewhere` are documented on another page. For these sections, the text only refers
+/// to the page with the name `there`.
 pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str) -> String {
     let mut text = String::new();
     let mut documented: Vec<(&str, String)> =

@@ -1,4 +1,4 @@
-//! File system access: limited reading, atomic writing, and I/O errors in plain words.
+//! File system access: reading up to a size limit, atomic writing, and I/O errors in plain words.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -78,7 +78,8 @@ pub fn guard_inputs() {
     inputs().get_or_insert_default();
 }
 
-/// Returns an error if inputs are guarded and the path leads to an input, however it is written.
+/// Returns an error if inputs are guarded and the path leads to an input, regardless of how the
+/// path is written.
 ///
 /// # Errors
 /// If the file was opened as an input.
@@ -94,7 +95,7 @@ pub fn replaceable(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns an error unless the metadata are those of a regular file.
+/// Returns an error unless the metadata describe a regular file.
 fn regular(of: &fs::Metadata) -> io::Result<()> {
     if of.is_file() {
         return Ok(());
@@ -132,7 +133,7 @@ fn kind(of: &fs::Metadata) -> &'static str {
 /// Reads an input file of at most `limit` bytes.
 ///
 /// # Errors
-/// A message if the file cannot be opened ([`open`]) or read, or is larger.
+/// A message if the file cannot be opened ([`open`]) or read, or is larger than `limit`.
 pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     all_of(open(path)?, limit)
 }
@@ -155,15 +156,16 @@ fn all_of(file: File, limit: usize) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Creates a folder and the folders `below` it; returns the path of the last.
+/// Creates a folder and, inside it, the folders of the path `below`. Returns the path of the
+/// innermost folder.
 ///
-/// A link in place of one of the folders below is refused, because a results folder made by someone
+/// A link in place of a folder below the root is refused, because a results folder made by someone
 /// else must not redirect output to another place. The root itself was chosen by the user and may
 /// be a link. The check does not protect against a process that replaces a folder by a link
 /// afterwards; such a process could change every result in the root anyway.
 ///
 /// # Errors
-/// If the system refuses, or if a folder below the root is a link.
+/// If the operating system reports an error, or if a folder below the root is a link.
 pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     fs::create_dir_all(root)?;
     let mut folder = root.to_owned();
@@ -190,7 +192,7 @@ pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
 /// overwritten.
 ///
 /// # Errors
-/// If the system refuses.
+/// If the operating system reports an error.
 pub fn begin(path: &Path) -> io::Result<File> {
     let create = || File::options().read(true).write(true).create_new(true).open(path);
     match create() {
@@ -203,10 +205,10 @@ pub fn begin(path: &Path) -> io::Result<File> {
 }
 
 /// Opens a file of a results folder for modification, or creates it. Links are refused, because
-/// they may lead to files of someone else.
+/// they may lead to files outside the folder.
 ///
 /// # Errors
-/// If the system refuses, or if the path is anything but a regular file.
+/// If the operating system reports an error, or if the path is anything but a regular file.
 pub fn open_to_change(path: &Path) -> io::Result<File> {
     // Another process may create or remove the file between the two attempts.
     for _ in 0..100 {
@@ -230,8 +232,8 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
 
 /// Opens an existing regular file for modification.
 ///
-/// Something else may have replaced the file since it was checked. On Unix, the system therefore
-/// refuses links and does not wait for the other end of a pipe.
+/// The file may have been replaced since it was checked. On Unix, the system therefore refuses
+/// links and does not wait for the other end of a pipe.
 fn open_unfollowed(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     #[cfg(unix)]
@@ -251,8 +253,8 @@ pub fn temporary(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Returns `true` if the name is that of an incomplete file left by a killed process: a name
-/// accepted by `meant`, followed by the suffix of [`temporary`].
+/// Returns `true` if the path names an incomplete file left by a killed process. Such a name is a
+/// name accepted by `meant`, followed by the suffix of [`temporary`].
 pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some((whole, process)) = name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.'))
@@ -267,11 +269,11 @@ pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }
 
-/// Held while files are being written.
+/// Lock that is held while files are being written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Acquires a lock and never releases it, so that nothing guarded by it starts while the process
-/// ends.
+/// Acquires a lock and never releases it, so that no operation guarded by the lock starts while the
+/// process ends.
 ///
 /// Returns `None` after a fifth of a second, in case a disk hangs.
 pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'static, T>>> {
@@ -287,7 +289,8 @@ pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'stat
     ManuallyDrop::new(None)
 }
 
-/// Waits until the current file is written and blocks all further writing, before the process ends.
+/// Waits until the current file is written, and then blocks all further writing. Called before the
+/// process ends.
 pub fn write_no_more() {
     taken(&WRITING);
 }
@@ -295,7 +298,7 @@ pub fn write_no_more() {
 /// Writes a file under a temporary name and renames it, so that the file is never incomplete.
 ///
 /// # Errors
-/// If the system refuses, or if the path is a guarded input ([`guard_inputs`]). No incomplete file
+/// If the operating system reports an error, or if the path is a guarded input ([`guard_inputs`]). No incomplete file
 /// is left.
 pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     store_all(&std::iter::once((path.to_owned(), bytes))).map_err(|(_, error)| error)
@@ -305,7 +308,7 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// earlier versions untouched.
 ///
 /// # Errors
-/// The same as for [`store`], with the path that failed.
+/// The same as for [`store`]. The error also contains the path that failed.
 pub fn store_all<'a>(
     files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
 ) -> Result<(), (PathBuf, io::Error)> {
@@ -328,7 +331,7 @@ pub fn store_all<'a>(
 /// Checks that files can be created in a folder, which need not exist yet. Nothing is left behind.
 ///
 /// # Errors
-/// A message if the system refuses.
+/// A message if the operating system reports an error.
 pub fn writable(folder: &Path) -> Result<(), String> {
     let folder = std::path::absolute(folder).map_err(|error| words(&error))?;
     let missing: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();

@@ -19,14 +19,14 @@ pub enum Origin {
         file: usize,
         /// Offset of the first byte.
         start: usize,
-        /// Offset of the byte after the last.
+        /// Offset of the byte after the range.
         end: usize,
     },
-    /// A file as a whole, by its index.
+    /// A file as a whole, identified by its index in [`Sources`].
     Whole(usize),
-    /// An override, by its index.
+    /// An override, identified by its index in [`Sources`].
     Override(usize),
-    /// A default, which is written in no file.
+    /// A default, which does not appear in any file.
     Default,
 }
 
@@ -50,7 +50,7 @@ pub enum Value {
     Float(f64),
     /// `true` or `false`.
     Flag(bool),
-    /// A date or a time; no field accepts one.
+    /// A date or a time; no field accepts such a value.
     Date,
     /// A list.
     Array(Vec<Node>),
@@ -98,7 +98,7 @@ impl Table {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    /// Returns the entry of a key, mutably.
+    /// Returns a mutable reference to the entry of a key.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
@@ -124,7 +124,7 @@ pub struct SourceFile {
     pub name: String,
     /// Content of the file.
     pub text: String,
-    /// Folder against which its relative paths are resolved.
+    /// Folder against which relative paths in the file are resolved.
     pub folder: PathBuf,
 }
 

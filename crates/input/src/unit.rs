@@ -167,7 +167,9 @@ fn whole(tokens: &[Token]) -> Result<Unit, UnitError> {
     let mut at = 0;
     let unit = product(tokens, &mut at, 0)?;
     if at < tokens.len() {
-        return Err(UnitError::Malformed("a closing parenthesis has no opening one"));
+        return Err(UnitError::Malformed(
+            "a closing parenthesis has no matching opening parenthesis",
+        ));
     }
     Ok(unit)
 }
@@ -299,7 +301,7 @@ fn factor(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErro
     Ok(unit)
 }
 
-/// Parses a power and returns it in halves: `2` gives 4, `1.5` gives 3.
+/// Parses a power and returns twice its value: `2` gives 4, `1.5` gives 3.
 fn halves(power: &str) -> Result<i8, UnitError> {
     let value: f64 =
         power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;
@@ -335,7 +337,8 @@ fn named(name: &str) -> Result<Unit, UnitError> {
 /// Units of mass with the corresponding units of weight; the two are often confused.
 const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("lb", "lbf"), ("t", "tonf")];
 
-/// Returns a unit expression with each name replaced by `replace`, where that returns a name.
+/// Returns a unit expression in which each name is replaced by the result of `replace`, if this
+/// function returns a name.
 fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String {
     let mut out = String::new();
     let mut rest = text;

@@ -202,7 +202,8 @@ fn point<const N: usize>(value: [f64; N], dimension: Dimension) -> Value {
     Value::Array(value.map(text).into())
 }
 
-/// Formats a table as TOML: values first, then nested tables, each in their order.
+/// Formats a table as TOML: first the values, then the nested tables, each group in the order of
+/// the table.
 pub fn to_toml(table: &Table) -> String {
     let mut text = String::new();
     write_table(&mut text, table, "");

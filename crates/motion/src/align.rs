@@ -102,7 +102,7 @@ impl Record {
 }
 
 /// Makes a channel begin `late` seconds later and last `length` seconds. Returns the fraction of a
-/// step by which the channel was interpolated.
+/// step by which the channel was shifted by interpolation, if any.
 fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -> Option<f64> {
     let steps = late / channel.time_step;
     let part = steps - steps.round();

@@ -198,7 +198,7 @@ impl Archive {
         if found.len() as u64 > limit { Err(too_large()) } else { Ok(found) }
     }
 
-    /// Calls `take` with the name and the content of every file until it returns `true`.
+    /// Calls `take` with the name and the content of every file until `take` returns `false`.
     fn each_of_tar(&self, mut take: impl FnMut(&str, &[u8]) -> bool) -> Result<(), ReadError> {
         tape::each_file(&self.bytes, |name, bytes| match bytes {
             Some(bytes) => Ok(take(name, bytes)),

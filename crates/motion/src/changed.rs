@@ -72,10 +72,10 @@ impl Record {
         out
     }
 
-    /// Matches one channel (counted from 0) to a target spectrum, named `named` in the notes. All
+    /// Matches one channel (counted from 0) to a target spectrum, which the notes call `named`. All
     /// other channels are only multiplied by the first scale factor.
     ///
-    /// With `nearly`, the best motion is accepted if the tolerance is not reached.
+    /// If `nearly` is `true`, the best motion is accepted even if the tolerance is not reached.
     ///
     /// # Errors
     /// The same as for [`GroundMotion::match_spectrum`], and if there is no such channel.
@@ -142,17 +142,17 @@ impl Record {
     }
 
     /// Matches the response of both horizontal components over all directions (`RotD50` or
-    /// `RotD100`) to a target spectrum, named `named` in the notes. All other channels are only
+    /// `RotD100`) to a target spectrum, which the notes call `named`. All other channels are only
     /// multiplied by the first scale factor.
     ///
     /// The amplitudes of both components are multiplied by one gain, which keeps their
     /// polarization. Then wavelets are added along the directions of the measured response;
-    /// `settings.method` is not used. With `nearly`, the best motion is accepted if the tolerance
-    /// is not reached.
+    /// `settings.method` is not used. If `nearly` is `true`, the best motion is accepted even if
+    /// the tolerance is not reached.
     ///
     /// # Errors
-    /// The same as for [`Record::horizontal_pair`]; if a setting is out of range, the measure is
-    /// not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
+    /// The same as for [`Record::horizontal_pair`], and if a setting is out of range, the measure
+    /// is not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
     pub fn matched_pair(
         &self,
         measure: Horizontals,
@@ -224,7 +224,7 @@ impl Record {
     }
 }
 
-/// Describes the division of the time step (s) by a match; `None` if the step was not divided.
+/// Describes by how much a match reduced the time step (s); `None` if the step is unchanged.
 fn cut(before: f64, after: f64) -> Option<String> {
     (before != after).then(|| {
         format!(

@@ -1,16 +1,16 @@
-//! Errors of reading ground-motion files, as sentences with a remedy.
+//! Errors in reading ground-motion files, written as sentences that include a remedy.
 
 pub use barrelstack_series::MotionError;
 
-/// Kind of reason for refusing a file.
+/// Category of the reason for which a file is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// No reader recognizes the content.
     Unrecognized,
     /// The file is valid but contains no acceleration history.
     NotAcceleration,
-    /// The file is inconsistent or violates its format: truncated, with overflowed or wrong
-    /// numbers.
+    /// The file is inconsistent or violates its format: it is truncated, or contains overflowed or
+    /// wrong numbers.
     Damaged,
     /// The archive contains several records; the caller must name one.
     SeveralRecords,
@@ -35,7 +35,7 @@ pub enum Given {
     UnitOrSensitivity,
 }
 
-/// An error in reading a file: place, expectation, finding and remedy.
+/// An error in reading a file: the place, the expected content, the content found, and a remedy.
 ///
 /// The fields of [`ReadFailure`] are accessible directly, as in `error.line` and `error.refusal`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -66,7 +66,7 @@ pub struct ReadFailure {
     pub line: Option<usize>,
     /// Column of the first offending character, counted from 1.
     pub column: Option<usize>,
-    /// Kind of refusal, for programs.
+    /// Category of the refusal, for evaluation by programs.
     pub refusal: Refusal,
     /// Content expected by the reader.
     pub expected: String,

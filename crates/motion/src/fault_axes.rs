@@ -1,4 +1,5 @@
-//! Rotates two horizontals to the axes of a fault or to the direction of the largest velocity.
+//! Rotates two horizontals to the axes of a fault or to the horizontal direction with the largest
+//! velocity.
 
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
@@ -18,8 +19,8 @@ pub struct Turned {
 
 impl Record {
     /// Returns the fault-normal and the fault-parallel component for a strike (degrees clockwise
-    /// from north). Fault-parallel is positive along the strike, fault-normal 90 degrees clockwise
-    /// from it.
+    /// from north). The fault-parallel component is positive along the strike; the fault-normal
+    /// component is positive 90 degrees clockwise from the strike.
     ///
     /// # Errors
     /// If the strike is not finite, or there are not two horizontals of known azimuth.
@@ -29,8 +30,8 @@ impl Record {
             first: self.named_along(strike + 90.0, "FN")?,
             second: self.named_along(strike, "FP")?,
             note: format!(
-                "rotated to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) of strike \
-                 {strike} degrees",
+                "rotated to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) for a \
+                 strike of {strike} degrees",
                 (strike + 90.0).rem_euclid(360.0),
                 strike.rem_euclid(360.0)
             ),

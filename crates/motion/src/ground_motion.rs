@@ -67,13 +67,14 @@ impl GroundMotion {
         self.changed(|history| history.scaled(factor), step)
     }
 
-    /// Returns the motion for a model of `length_scale` times the size under the same gravity
-    /// (Froude scaling). Time and velocity are multiplied by `√length_scale` and displacement by
-    /// `length_scale`; acceleration is unchanged.
+    /// Returns the motion for a model whose lengths are multiplied by `length_scale` under the same
+    /// gravity (Froude scaling). Time and velocity are multiplied by `√length_scale` and
+    /// displacement by `length_scale`; acceleration is unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         let step = format!(
-            "Froude-scaled to length {length_scale}: time times {:.6}, acceleration unchanged",
+            "Froude-scaled to length {length_scale}: time multiplied by {:.6}, acceleration \
+             unchanged",
             length_scale.sqrt()
         );
         self.changed(|history| history.froude(length_scale), step)
@@ -91,7 +92,7 @@ impl GroundMotion {
     /// The vertical component is multiplied by the same factor.
     ///
     /// # Errors
-    /// If the measure does not grow with the amplitude, is zero for this motion, or if the target
+    /// If the measure does not grow with the amplitude or is zero for this motion, or if the target
     /// is not positive.
     pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
         let factor = self.scale_factor(measure, target)?;

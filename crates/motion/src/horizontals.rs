@@ -1,4 +1,4 @@
-//! Intensity measures of two horizontals, combined to one number.
+//! Intensity measures of two horizontals, combined into one number.
 
 use std::str::FromStr;
 
@@ -8,7 +8,7 @@ use crate::math::{self, PI};
 use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
 use crate::sampled::{Sampled, running_trapezoid};
 
-/// Combination of the intensity measures of two horizontals to one number.
+/// Combination of the intensity measures of two horizontals into one number.
 ///
 /// The text form is `rotd50`, `rotd100` or `geomean`.
 ///
@@ -86,8 +86,8 @@ impl Horizontals {
     /// (SI units).
     ///
     /// # Errors
-    /// The same as for [`Horizontals::of`]; if the measure does not grow with the amplitude or is
-    /// zero, or the target is not positive.
+    /// The same as for [`Horizontals::of`], and if the measure does not grow with the amplitude or
+    /// is zero, or if the target is not positive.
     pub fn scale_factor(
         self,
         measure: IntensityMeasure,
@@ -101,7 +101,7 @@ impl Horizontals {
     }
 }
 
-/// Returns the measure in every direction, in ascending order.
+/// Returns the values of the measure for all directions, sorted in ascending order.
 fn turned(
     measure: IntensityMeasure,
     first: &Sampled,

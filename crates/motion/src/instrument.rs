@@ -25,7 +25,7 @@ pub struct Instrument {
     pub sensitivity: f64,
     /// Quantity measured by the instrument, if known.
     pub quantity: Option<Quantity>,
-    /// Input unit of an instrument that does not measure motion, such as `Pa`; the channel is
+    /// Input unit of an instrument that does not measure motion, such as `Pa`. Such a channel is
     /// refused.
     pub other_unit: Option<String>,
     /// Direction of the instrument, if known.
@@ -67,8 +67,8 @@ pub(crate) struct SeedName {
 }
 
 impl SeedName {
-    /// Returns the quantity given by the second letter of the channel code, and its instrument, if
-    /// it is not acceleration (SEED 2.4, appendix A).
+    /// Returns the quantity and the kind of instrument that the second letter of the channel code
+    /// states; `None` for accelerations and unknown codes (SEED 2.4, appendix A).
     pub(crate) fn other_quantity(&self) -> Option<(Quantity, &'static str)> {
         let [_, instrument, _] = self.channel.as_bytes() else { return None };
         match instrument {
@@ -81,14 +81,14 @@ impl SeedName {
 }
 
 /// Largest deviation (degrees) of a dip from horizontal or vertical at which a sensor is still
-/// taken as such.
+/// treated as horizontal or vertical.
 const LARGEST_TILT: f64 = 5.0;
 
-/// Reads all channels with a sensitivity from a `StationXML` file, in file order.
+/// Reads, from a `StationXML` file, the channels that state a sensitivity, in file order.
 ///
 /// Sensitivities for g, gal, cm/s², mm/s², nm/s² and similar units are converted to counts per
-/// m/s², those for velocity and displacement to counts per m/s or m. The input unit of any other
-/// channel, such as Pa, is stored in [`Instrument::other_unit`].
+/// m/s², and sensitivities for velocity and displacement to counts per m/s or m. The input unit of
+/// any other channel, such as Pa, is stored in [`Instrument::other_unit`].
 ///
 /// # Errors
 /// If the text is not XML.
@@ -103,7 +103,7 @@ pub fn station_xml(text: &str) -> Result<Vec<Instrument>, MotionError> {
         .collect())
 }
 
-/// Reads one channel; returns `None` if it has no sensitivity.
+/// Reads one channel; returns `None` if the channel states no sensitivity.
 fn channel_of_station_xml(channel: roxmltree::Node<'_, '_>) -> Option<Instrument> {
     let any =
         |name: &'static str| move |node: &roxmltree::Node<'_, '_>| node.tag_name().name() == name;

@@ -78,8 +78,8 @@ impl Record {
         Ok(gathered)
     }
 
-    /// Cuts all channels to the length of the shortest, so that they fit into columns of one file.
-    /// The notes list the samples that were cut.
+    /// Cuts all channels to the length of the shortest channel, so that they fit into columns of
+    /// one file. The notes list the samples that were cut.
     pub fn cut_to_shortest(&mut self) {
         let shortest = self.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
         for channel in &mut self.channels {
@@ -94,8 +94,8 @@ impl Record {
         }
     }
 
-    /// Returns the reason why two files are not components of one record, if their headers state
-    /// one.
+    /// Returns a reason, found in the headers, why two files are not components of one record;
+    /// `None` if there is no such reason.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;
         let files = format!("{} and {}", one.file, other.file);
@@ -121,8 +121,8 @@ impl Record {
     /// Joins overlapping parts of one long record.
     ///
     /// The overlap is found by sliding the start of the later part along the earlier part. The
-    /// later part is then shifted to the baseline of the earlier part. Only repeated samples are
-    /// joined; parts with an overlap below 1 s are refused.
+    /// later part is then shifted to the baseline of the earlier part. Parts are joined only if the
+    /// samples in the overlap are repeated; parts that overlap by less than 1 s are refused.
     ///
     /// # Errors
     /// If no part is given, channels or time steps differ, or two consecutive parts do not overlap.
@@ -255,8 +255,8 @@ fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     best.map(|(_, samples)| samples)
 }
 
-/// Returns the root-mean-square difference of two series after removing their means, relative to
-/// the motion.
+/// Returns the root-mean-square difference of two series after removing their means, divided by the
+/// root-mean-square motion.
 fn misfit(one: &[f64], other: &[f64]) -> f64 {
     let (mean_one, mean_other) = (math::mean(one), math::mean(other));
     let (mut difference, mut size) = (0.0, 0.0);

@@ -14,7 +14,7 @@ pub struct Missed {
     pub misfit: f64,
 }
 
-/// Largest number of ranges that are listed.
+/// Maximum number of missed ranges that a description lists.
 const MOST_LISTED: usize = 5;
 
 /// A motion matched to a target spectrum.

@@ -19,8 +19,8 @@ pub enum MatchMethod {
     /// Multiplies the Fourier amplitudes repeatedly by the ratio of target to spectrum, and keeps
     /// the phases.
     ///
-    /// Simple and fast at first, but changes the character of the motion everywhere. Amplitudes
-    /// alone stall at a misfit of 5 to 9 %; wavelets remove the rest.
+    /// Simple and fast at first, but changes the character of the motion everywhere. Scaling the
+    /// amplitudes alone stalls at a misfit of 5 to 9 %; wavelets then remove the remaining misfit.
     Frequency,
     /// Adds wavelets at the times of the peak responses (Lilhanand and Tseng 1988; Al Atik and
     /// Abrahamson 2010, Earthquake Spectra 26:601-617).
@@ -42,13 +42,14 @@ pub struct Matching {
     pub longest: f64,
     /// Largest accepted relative misfit at any matched period.
     pub tolerance: f64,
-    /// Maximum number of consecutive rounds of one method. If a method stalls, the other one
+    /// Maximum number of consecutive rounds of one method. If one method stalls, the other method
     /// continues.
     pub rounds: usize,
 }
 
 impl Default for Matching {
-    /// Time domain, 0.1 to 3 s, 5 %, at most 100 rounds.
+    /// Returns settings for the time domain, with periods from 0.1 to 3 s, a tolerance of 5 % and
+    /// at most 100 rounds.
     fn default() -> Self {
         Self {
             method: MatchMethod::Time,
@@ -60,36 +61,37 @@ impl Default for Matching {
     }
 }
 
-/// Exponents of the ratio of target to spectrum in the frequency domain. Each match uses one; the
-/// next is used if it stalls.
+/// Exponents of the ratio of target to spectrum in the frequency domain. Each match uses one
+/// exponent; if the match stalls, the next exponent is tried.
 const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
-/// Product of samples and rounds above which no further match is started. A motion of 35,000
-/// samples has 400 rounds, which take about 6 s.
+/// Product of samples and rounds above which no further match is started. For a motion of 35,000
+/// samples, the limit is 400 rounds, which take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
-/// Time steps per shortest matched period. A peak between two samples is then underestimated by at
-/// most 1.2 %; with ten steps it would be 5 %, the entire tolerance of a match.
+/// Time steps per shortest matched period. With this number, a peak between two samples is
+/// underestimated by at most 1.2 %; with ten steps, the error would be 5 %, the entire tolerance of
+/// a match.
 pub(crate) const STEPS_A_PERIOD: f64 = 20.0;
 /// Number of matched periods per decade.
 const PER_DECADE: f64 = 60.0;
-/// Number of periods per matched period at which the misfit is judged, so that no misfit hides
-/// between matched periods.
+/// Number of periods per matched period at which the misfit is judged, so that a misfit between
+/// matched periods is noticed.
 const JUDGED: usize = 3;
 /// Number of periods per judged period in the final check.
 const CHECKED: usize = 6;
-/// Fraction of the tolerance below which no further method is tried.
+/// If the misfit is at most this fraction of the tolerance, no further method is tried.
 const CLEAR: f64 = 0.98;
 /// Number of rounds without improvement after which a method gives up.
 pub(crate) const PATIENCE: usize = 15;
-/// Fraction of the tolerance at which the rounds end.
+/// The rounds end when the misfit is at most this fraction of the tolerance.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
 impl GroundMotion {
     /// Matches the horizontal component to a target spectrum.
     ///
     /// The motion is first scaled to the target on average; a vertical component is multiplied only
-    /// by this factor. Every round ends by closing the ends of the motion, so that the result does
-    /// not drift.
+    /// by this factor. Every round ends by bringing the final velocity and displacement to zero, so
+    /// that the result does not drift.
     ///
     /// # Errors
     /// If a setting is out of range, the motion does not move, or the tolerance is not reached.
@@ -197,8 +199,9 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     MotionError::require((1..=10_000).contains(&rounds), "matching rounds", "1 to 10000", rounds)
 }
 
-/// Returns the same piecewise-linear motion with at least [`STEPS_A_PERIOD`] steps per shortest
-/// matched period, so that wavelets and peaks are resolved. Also returns its time step (s).
+/// Subdivides the steps of a piecewise-linear motion, so that wavelets and peaks are resolved.
+/// There are then at least [`STEPS_A_PERIOD`] steps per shortest matched period. Returns the new
+/// time step (s) and the accelerations.
 pub(crate) fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     let parts = parts(motion.time_step(), shortest);
     let a = motion.acceleration();
@@ -220,8 +223,8 @@ fn parts(time_step: f64, shortest: f64) -> f64 {
     (STEPS_A_PERIOD * time_step / shortest * (1.0 - 1e-9)).ceil().max(1.0)
 }
 
-/// Returns the number of matched intervals between the shortest and the longest period, from
-/// [`PER_DECADE`].
+/// Returns the number of intervals into which the range from the shortest to the longest period is
+/// divided, with [`PER_DECADE`] intervals per decade.
 fn intervals(settings: &Matching) -> usize {
     let decades = math::log10(settings.longest / settings.shortest);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, positive")]
@@ -273,8 +276,8 @@ pub(crate) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Creates the data of a match for a motion with the given time step (s), which is divided as
-    /// in [`subdivided`].
+    /// Creates the data of a match for a motion with the given time step (s) before its division by
+    /// [`subdivided`].
     pub(crate) fn new(
         target: &'a TargetSpectrum,
         settings: &Matching,
@@ -304,7 +307,8 @@ impl<'a> Work<'a> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Returns the layers of a motion, for oscillators of up to the longest matched period.
+    /// Returns the layers of a motion, for oscillators with periods up to the longest matched
+    /// period.
     pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
         let longest = self.checked.last().copied().unwrap_or(0.0);
         Layers::new(self.time_step, acceleration, longest)
@@ -316,8 +320,8 @@ impl<'a> Work<'a> {
         self.layers(acceleration).pseudo_accelerations(periods, self.damping)
     }
 
-    /// Returns the approximate largest misfit at the judged periods; it is fast enough for every
-    /// round.
+    /// Returns the approximate largest misfit at the judged periods; the computation is fast enough
+    /// for every round.
     pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.judged_goal, &self.nearly(&self.judged, acceleration))
     }
@@ -390,13 +394,14 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Closes the ends of the motion. Wavelets cause no drift, so no filter is needed.
+    /// Brings the final velocity and displacement to zero. Wavelets cause no drift, so no filter is
+    /// needed.
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         let ends = Processing { high_pass: None, ..self.chain.clone() };
         Ok(ends.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Removes drift by a high-pass filter and closes the ends of the motion.
+    /// Removes drift by a high-pass filter and brings the final velocity and displacement to zero.
     pub(crate) fn steady(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
@@ -491,9 +496,9 @@ impl<'a> Work<'a> {
 pub(crate) struct Fit {
     /// Largest relative misfit.
     pub(crate) misfit: f64,
-    /// Mean of all misfits, weighted so that the largest dominate.
+    /// Mean of all misfits, weighted so that the largest misfits dominate.
     pub(crate) roughness: f64,
-    /// Periods (s) of locally largest misfit, with this misfit.
+    /// Periods (s) at which the misfit has a local maximum, each with its misfit.
     pub(crate) worst: Vec<(f64, f64)>,
 }
 
@@ -510,7 +515,8 @@ impl Best {
         Self { acceleration: acceleration.to_vec(), misfit: f64::INFINITY, rounds: 0 }
     }
 
-    /// Keeps a motion if it is better than the best one; returns `true` if it is.
+    /// Keeps a motion if its misfit is smaller than the best misfit so far; returns `true` if the
+    /// motion was kept.
     pub(crate) fn offer(&mut self, acceleration: &[f64], misfit: f64) -> bool {
         let better = misfit < self.misfit;
         if better {

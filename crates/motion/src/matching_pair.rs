@@ -95,7 +95,8 @@ fn value(measure: Horizontals, peak: &RotatedPeak) -> f64 {
     }
 }
 
-/// Returns the pseudo-acceleration histories (m/s²) of an oscillator under both components.
+/// Returns the pseudo-acceleration histories (m/s²) of an oscillator under each of the two
+/// components.
 fn histories(work: &Work<'_>, period: f64, pair: &Pair) -> Pair {
     let step = Step::new(period, work.damping, work.time_step);
     let stiffness = (TAU / period) * (TAU / period);
@@ -159,8 +160,8 @@ impl Search<'_> {
         Ok([one(0)?, one(1)?])
     }
 
-    /// Returns the pair with added wavelets that remove a share of the misfit. Each acts along the
-    /// response at the time of its peak.
+    /// Returns the pair with added wavelets that remove a share of the misfit. Each wavelet acts
+    /// along the direction of the response at the time of the peak response.
     fn corrected(&self, pair: &Pair, periods: &[f64], share: f64) -> Result<Pair, MotionError> {
         let count = pair[0].len();
         let aims: Vec<Aim> =
@@ -187,8 +188,8 @@ impl Search<'_> {
         Ok([self.work.close(&sum[0])?, self.work.close(&sum[1])?])
     }
 
-    /// Returns the required changes at a period: one for the largest response, or two for the
-    /// median, which is the mean of the two middle responses.
+    /// Returns the required changes of the response at a period: one change for the largest
+    /// response, or two for the median, which is the mean of the two middle responses.
     fn aims(&self, period: f64, pair: &Pair, share: f64) -> Vec<Aim> {
         let histories = histories(self.work, period, pair);
         let peak = rotated(&histories);
@@ -242,7 +243,8 @@ struct Aim {
     sample: usize,
     /// Direction in which the response is measured.
     direction: [f64; 2],
-    /// Direction of the wavelet, which is the direction of the response at its peak.
+    /// Direction of the wavelet, which is the direction of the response at the time of the peak
+    /// response.
     push: [f64; 2],
     /// Required change (m/s²).
     change: f64,

@@ -25,7 +25,8 @@ pub enum Pads {
     /// The pads are kept. They contain the filter transients that bring velocity and displacement
     /// to zero at the end (Boore 2005, BSSA 95:745-750).
     Kept,
-    /// The pads are removed after filtering; [`Processing::close`] closes the ends instead.
+    /// The pads are removed after filtering; [`Processing::close`] brings the final velocity and
+    /// displacement to zero instead.
     Removed,
 }
 
@@ -45,7 +46,8 @@ pub struct Processing {
     pub detrend: bool,
     /// Length of the cosine taper at each end, as a fraction of the record; 0 for no taper.
     pub taper: f64,
-    /// High-pass corner (Hz); raised to one over the duration if it lies below.
+    /// High-pass corner (Hz). A corner below one over the duration is raised to one over the
+    /// duration.
     pub high_pass: Option<f64>,
     /// Low-pass corner (Hz), from one over the duration to the Nyquist frequency.
     pub low_pass: Option<f64>,
@@ -55,8 +57,8 @@ pub struct Processing {
     /// Treatment of the zero pads at both ends, `1.5 n/fc` seconds in total (Converse and Brady
     /// 1992).
     pub pads: Pads,
-    /// Adds the smallest smooth acceleration of two terms that brings the final velocity and
-    /// displacement to zero.
+    /// If `true`, adds the smallest smooth acceleration of two terms that brings the final velocity
+    /// and displacement to zero.
     pub close: bool,
 }
 
@@ -76,7 +78,7 @@ impl Processing {
     }
 
     /// Returns the full chain for raw records: pre-event mean, 2 % taper, fourth-order zero-phase
-    /// high-pass at 0.1 Hz with pads kept, ends closed.
+    /// high-pass at 0.1 Hz with pads kept, final velocity and displacement brought to zero.
     pub fn raw() -> Self {
         Self {
             mean: MeanRemoval::PreEvent,
@@ -87,14 +89,14 @@ impl Processing {
         }
     }
 
-    /// Returns [`Processing::raw`] with the pads removed and the ends closed, for runs that cannot
-    /// afford half a minute of quiet before the shaking.
+    /// Returns [`Processing::raw`] with the pads removed, for runs that cannot afford half a minute
+    /// of quiet before the shaking.
     pub fn compact() -> Self {
         Self { pads: Pads::Removed, ..Self::raw() }
     }
 
-    /// Returns the default processing for a record: [`Processing::raw`] for a raw record, none for
-    /// any other.
+    /// Returns the default processing for a record: [`Processing::raw`] for a raw record, and no
+    /// processing for any other record.
     pub fn for_stage(stage: Stage) -> Self {
         match stage {
             Stage::Raw => Self::raw(),
@@ -271,7 +273,7 @@ impl Processing {
     }
 }
 
-/// Processed accelerations, with the steps applied.
+/// Processed accelerations, with a description of the applied steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Processed {
     /// Acceleration (m/s²).

@@ -45,7 +45,7 @@ printed_as!(
     Displacement = "displacement"
 );
 
-/// A peak stated in a header, with the actual peak of the numbers that it describes.
+/// A peak stated in a header, with the actual peak of the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StatedPeak {
     /// Quantity of the peak.
@@ -54,7 +54,7 @@ pub struct StatedPeak {
     pub stated: f64,
     /// One unit of the last printed digit (SI).
     pub resolution: f64,
-    /// Absolute peak of the file's own numbers (SI).
+    /// Absolute peak of the samples in the file (SI).
     pub measured: f64,
 }
 
@@ -157,8 +157,8 @@ impl Channel {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    /// Returns the reason why the channel cannot be a strong motion: its step, its number of
-    /// samples or its length.
+    /// Returns the reason why the channel cannot be a strong-motion record: its step, its number of
+    /// samples or its length. Returns `None` if all three are plausible.
     pub fn implausible(&self) -> Option<String> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
         let what = if !(1e-4..=0.1).contains(&step) {

@@ -71,8 +71,8 @@ pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     }
 }
 
-/// Returns the corners of the convex hull of the points (x, y). Only corners can be the peak in a
-/// direction.
+/// Returns the corners of the convex hull of the points (x, y). In every direction, the peak is at
+/// one of these corners.
 fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = first.iter().copied().zip(second.iter().copied()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));

@@ -13,8 +13,8 @@ use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
 use crate::sampled::Sampled;
 
-/// Largest cosine of the angle between two horizontals that count as perpendicular, within about
-/// five degrees.
+/// Largest cosine of the angle between two horizontals that are treated as perpendicular. The limit
+/// corresponds to a deviation of about five degrees.
 const OBLIQUE: f64 = 0.09;
 
 /// Identifies one component of a record.
@@ -33,8 +33,8 @@ pub enum Component {
     Number(usize),
     /// A channel by its name, ignoring case.
     Name(String),
-    /// The motion along an azimuth (degrees clockwise from north); rotated if no channel has this
-    /// azimuth.
+    /// The motion along an azimuth (degrees clockwise from north); if no channel has this azimuth,
+    /// the motion is computed from two horizontals.
     Azimuth(f64),
 }
 
@@ -85,7 +85,8 @@ impl FromStr for Component {
 }
 
 impl Record {
-    /// Returns the channel identified by `component`; rotation creates a new channel.
+    /// Returns the channel identified by `component`. For an azimuth that no channel has, a new
+    /// channel is computed from two horizontals.
     ///
     /// # Errors
     /// If there is no such channel, or the motion along the azimuth cannot be derived.
@@ -246,8 +247,8 @@ impl Record {
     /// Returns the channels of [`Record::horizontal_pair`], processed and cut to the same length.
     ///
     /// # Errors
-    /// The same as for [`Record::horizontal_pair`]; if the time steps differ or a setting is out of
-    /// range.
+    /// The same as for [`Record::horizontal_pair`], and if the time steps differ or a setting is
+    /// out of range.
     pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
         let (first, second) = self.horizontal_pair()?;
         let (mut first, mut second) = (first.clone(), second.clone());
@@ -316,7 +317,7 @@ fn cut_to_shorter(
 }
 
 /// Returns the motion along an azimuth from two horizontals of different azimuth, by solving for
-/// north and east. The two need not be perpendicular.
+/// the north and the east component. The two horizontals need not be perpendicular.
 fn rotate(
     first: (&Channel, f64),
     second: (&Channel, f64),

@@ -33,7 +33,8 @@ impl Site {
         self
     }
 
-    /// Returns the reason why two channels are not at the same site, if their headers state one.
+    /// Returns a reason, found in the headers, why two channels are not at the same site; `None` if
+    /// there is no such reason.
     pub fn differs(&self, other: &Self) -> Option<String> {
         let words =
             [("station", &self.station, &other.station), ("sensor", &self.sensor, &other.sensor)];

@@ -19,9 +19,9 @@ pub enum AccelerationUnit {
     Gal,
     /// mm/s².
     MillimetersPerSecondSquared,
-    /// ft/s², 0.3048 m/s².
+    /// ft/s², equal to 0.3048 m/s².
     FeetPerSecondSquared,
-    /// in/s², 0.0254 m/s².
+    /// in/s², equal to 0.0254 m/s².
     InchesPerSecondSquared,
 }
 

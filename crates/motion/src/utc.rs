@@ -77,7 +77,8 @@ impl Utc {
         (self.microseconds - other.microseconds) as f64 * MICROSECOND
     }
 
-    /// Returns the instant `seconds` later, or earlier if negative; at most a century away.
+    /// Returns the instant `seconds` later, or earlier if `seconds` is negative. The shift is
+    /// limited to about a century.
     #[must_use]
     pub fn later(self, seconds: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "at most a century of microseconds")]

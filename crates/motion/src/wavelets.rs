@@ -6,7 +6,7 @@ use crate::math::{self, TAU};
 use crate::normal_equations::System;
 use crate::response::{Bank, Step, TOGETHER};
 
-/// Fraction of the misfit removed in one round; with more, peaks jump to other times.
+/// Fraction of the misfit removed in one round; with a larger fraction, peaks jump to other times.
 const RELAXATION: f64 = 0.6;
 /// Fraction of the target above which other extrema are also constrained, so that the reduction of
 /// one peak does not raise another.
@@ -21,14 +21,14 @@ const BOUNDING: usize = 5;
 /// halved after a failure.
 const LARGEST_SHARE: f64 = 0.8;
 const SMALLEST_SHARE: f64 = 0.05;
-/// Fraction of the tolerance at which polishing ends.
+/// Polishing ends when the misfit is at most this fraction of the tolerance.
 const POLISHED: f64 = 0.95;
-/// Fraction of the tolerance within which polishing leaves a peak unchanged; fewer demands cause
-/// fewer disturbances.
+/// In most rounds, polishing does not correct a peak whose misfit is below this fraction of the
+/// tolerance, because fewer corrections cause fewer disturbances.
 const BAND: f64 = 0.6;
 /// Minimum number of line segments per period when a wavelet is applied to oscillators.
 const WAVELET_LINES: f64 = 40.0;
-/// Exponent of the decay after which a free vibration is neglected.
+/// A free vibration is neglected after it has decayed to the fraction `exp(-FORGOTTEN)`.
 pub(crate) const FORGOTTEN: f64 = 7.0;
 /// Ratio below which two periods are too close for separate wavelets.
 const NEIGHBOR: f64 = 1.006;
@@ -87,8 +87,9 @@ pub(crate) fn match_in_time(
     Ok(best.acceleration)
 }
 
-/// Improves the best motion in rounds that apply only the fraction of each correction that helps.
-/// Gives up after [`PATIENCE`] rounds without improvement.
+/// Improves the best motion in rounds. Each round applies only a fraction of its correction. The
+/// fraction is doubled after a success and halved after a failure. Gives up after [`PATIENCE`]
+/// rounds without improvement.
 pub(crate) fn polish(
     work: &Work<'_>,
     mut best: Vec<f64>,
@@ -303,7 +304,7 @@ impl Group {
     }
 }
 
-/// Returns the first of the largest extrema.
+/// Returns the largest extremum, the first one if several are equally large.
 fn peak(extrema: &[Extremum]) -> Extremum {
     let first = Extremum { sample: 1, value: 0.0 };
     extrema.iter().fold(
@@ -342,8 +343,8 @@ fn demand(
     peak
 }
 
-/// Returns the local extrema of every oscillator's response above a fraction of its target, and
-/// always the largest one.
+/// Returns, for every oscillator, the local extrema of the response above a fraction of the target,
+/// and in any case the largest extremum.
 fn extrema(
     work: &Work<'_>,
     a: &[f64],

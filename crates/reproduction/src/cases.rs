@@ -1,4 +1,4 @@
-//! The cases of the paper as scenarios, all on one geometry.
+//! The cases of the paper as scenarios, all with the same geometry.
 
 use std::path::Path;
 
@@ -16,16 +16,17 @@ const PGA_TOLERANCE: f64 = 1e-4;
 /// The ground motion of the six barrels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// The paper's record, from a file of this name.
+    /// The paper's record, read from a file.
     Paper {
         /// Name of the file.
         file: String,
     },
-    /// Another record, recognized by a peak acceleration that differs from that of the paper's record.
+    /// Another record. It is recognized by its peak acceleration, which differs from the peak of
+    /// the paper's record.
     Other {
         /// Name of the file.
         file: String,
-        /// Its peak acceleration, unscaled (m/s²).
+        /// Peak acceleration of the record before scaling (m/s²).
         pga: f64,
     },
     /// The bundled record of South Napa, used if no file is given.
@@ -33,7 +34,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Returns `true` if results under this motion can be compared with the paper's.
+    /// Returns `true` if results under this motion can be compared with the paper's results.
     pub fn is_papers(&self) -> bool {
         matches!(self, Self::Paper { .. })
     }
@@ -96,7 +97,7 @@ impl Cases {
     }
 }
 
-/// Returns the override of a scenario that sets a record.
+/// Returns the override that sets the record of a scenario.
 fn record_of(path: &Path) -> String {
     // A JSON string is a valid TOML string, too.
     format!("motion.record={}", serde_json::Value::from(path.display().to_string()))

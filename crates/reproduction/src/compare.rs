@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use barrelstack_report::capital;
 
-/// Largest relative difference from the published number that counts as agreement.
+/// Largest relative difference from the published number that is considered agreement.
 pub(super) const CLOSE: f64 = 0.20;
 
 /// The result of a comparison.
@@ -14,7 +14,7 @@ pub enum Verdict {
     Agrees,
     /// Off by more than 20 %, but within the wider band that the project accepts.
     InBand,
-    /// Outside both, or qualitatively different.
+    /// Outside both ranges, or qualitatively different.
     Differs,
     /// Not compared: the paper's record was not given, or the paper states no result.
     NotCompared,
@@ -43,7 +43,8 @@ pub struct Comparison {
     pub published: String,
     /// Our result, with its unit.
     pub ours: String,
-    /// Our number over the published one, minus one; `None` if no number is compared.
+    /// Relative difference: our number divided by the published number, minus one. `None` if no
+    /// numbers are compared.
     pub difference: Option<f64>,
     /// The wider band that the project accepts, in words, if there is one.
     pub band: Option<&'static str>,

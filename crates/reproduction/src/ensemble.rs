@@ -11,12 +11,12 @@ use super::vary;
 /// Relative change of each parameter.
 const REACH: f64 = 0.10;
 
-/// Number of members.
+/// Number of members of the ensemble.
 pub(super) const COUNT: usize = 24;
 
 type Change = fn(&mut StackSpec, f64);
 
-/// The parameters, each with the function that multiplies it.
+/// The parameters, each with the function that multiplies it by a factor.
 const PARAMETERS: [(&str, Change); 4] = [
     ("k", vary::stiffness),
     ("c", vary::damping),
@@ -41,7 +41,8 @@ pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
         .collect()
 }
 
-/// Returns the factors of the four parameters: eight members with one changed, sixteen with all.
+/// Returns the factors of the four parameters: eight members with one factor changed, then sixteen
+/// members with all factors changed.
 fn members() -> Vec<[f64; 4]> {
     let mut members = Vec::new();
     for parameter in 0..4 {
@@ -86,7 +87,8 @@ pub(super) fn top_falls_first(summary: &Summary) -> bool {
     first.is_some_and(|(_, level)| level == top)
 }
 
-/// Builds the tables of outcomes: one for single parameters, and a folded one for all parameters at once.
+/// Builds the tables of outcomes: one for parameters changed one at a time, and a collapsed one for
+/// all parameters changed at once.
 pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
     let names: Vec<String> = self::members().into_iter().map(name).collect();
     let all: Vec<_> = names.iter().map(String::as_str).zip(members).collect();

@@ -13,7 +13,7 @@ use barrelstack_report::{
 
 use super::numbering;
 
-/// Builds a player of a run.
+/// Builds an animation player for a run.
 pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
     Block::Player(Player {
         id: id.to_owned(),
@@ -94,11 +94,12 @@ fn named(run: &Run, body: usize) -> String {
     }
 }
 
-/// Distance of an arrow's end from the center of a barrel, over its radius; the end does not cover the number.
+/// Distance between the end of an arrow and the center of a barrel, divided by the radius of the
+/// barrel. At this distance, the arrow does not cover the body number.
 const ARROW_END: f64 = 0.5;
 
-/// Heights (m) of the start and end of an arrow to the ground; the arrow stands below a barrel, since the rack is too
-/// flat to hold it.
+/// Heights (m) of the start and end of an arrow to the ground; the arrow is drawn below a barrel,
+/// since the rack is too flat for it.
 const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 
 /// Draws the stack at rest with the paper's body numbers, and an arrow from every contact body to its target body,
@@ -207,8 +208,9 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     channel.values.get(at).copied()
 }
 
-/// Returns the lengths (m) of the boundary of a barrel under stress, on its upper or lower half: at rest, and at any
-/// time until the first loss of seat.
+/// Returns two lengths (m) of the loaded boundary on the upper or lower half of a barrel: of the
+/// part that is loaded at rest, and of the part that is loaded at any time until the first loss of
+/// seat.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;
@@ -225,7 +227,7 @@ pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> 
     Some(lengths)
 }
 
-/// Builds the folded table of contact and target bodies of all pairs that touch by design.
+/// Builds the collapsed table of contact and target bodies of all pairs that touch by design.
 pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     let table = Table::of(
         caption,
@@ -272,8 +274,8 @@ pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)
 }
 
-/// Returns the largest distance (m at full scale) between two runs of one stack at two scales, at equivalent
-/// instants up to a time (s at full scale).
+/// Returns the largest distance (m at full scale) between a body at full scale and the same body at
+/// half scale. The two runs are compared at equivalent instants up to `until` (s at full scale).
 pub(super) fn scale_difference(full: &Run, half: &Run, until: f64) -> f64 {
     let length = half.scenario.run.similitude;
     let (a, b) = (&full.recording.frames, &half.recording.frames);

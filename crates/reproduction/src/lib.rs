@@ -42,7 +42,7 @@ pub struct Reproduction {
     pub motion: Motion,
     /// The report.
     pub document: Document,
-    /// `true` if the studies were stopped; the report then contains none of them.
+    /// `true` if the studies were stopped; the report then contains no studies.
     pub stopped: bool,
 }
 
@@ -89,16 +89,15 @@ impl From<GroundError> for ReproduceError {
     }
 }
 
-/// Runs all cases of the paper, and sensitivity studies of them, on all cores.
+/// Runs all cases of the paper, and sensitivity studies of these cases, on all cores.
 ///
-/// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed with
-/// the program.
-/// Without it the six barrels are shaken by the bundled record of South Napa, and results that depend on the motion
-/// are not compared.
-/// With `studies`, the effects of single quantities and of contact parameters changed by 10 % are studied for each
-/// case, which is most of the work.
-/// `progress` is called with the numbers of completed and of all runs, from several threads, and may stop the work.
-/// If it stops the work after all cases are completed, the result has no studies.
+/// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed
+/// with the program. Without this file, the six barrels are shaken by the bundled record of South
+/// Napa, and results that depend on the motion are not compared. If `studies` is `true`, the
+/// effects of single quantities and of contact parameters changed by 10 % are studied for each
+/// case, which is most of the work. `progress` is called with the number of completed runs and the
+/// total number of runs, from several threads, and may stop the work. If it stops the work after
+/// all cases are completed, the result has no studies.
 ///
 /// The result depends only on the program, the platform and the record.
 ///

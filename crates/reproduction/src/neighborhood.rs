@@ -12,10 +12,11 @@ use super::vary::{self, brief, with};
 /// Number of samples.
 pub(super) const COUNT: usize = 40;
 
-/// Relative range of each length and angle of the rack, and of each coefficient of friction.
+/// Largest relative change of each length and angle of the rack, and of each coefficient of
+/// friction.
 const REACH: f64 = 0.05;
 
-/// Relative range of stiffness and damping.
+/// Largest relative change of stiffness and damping.
 const PARAMETERS: f64 = 0.10;
 
 /// The findings checked for each sample.
@@ -24,16 +25,17 @@ const QUESTIONS: [&str; 5] = [
     "eight barrels: drift within 4 to 7 %",
     "six barrels: both upper levels rock off after 8.5 to 12 s",
     "along the barrels: the rack of the second level slides off first",
-    "along the barrels: it does within 3 to 6 s",
+    "along the barrels: this rack slides off within 3 to 6 s",
 ];
 
-/// The findings that a sample reproduces; `None` for those that need the paper's record.
+/// For each finding, `true` if a sample reproduces it; `None` if the finding needs the paper's
+/// record, but this record was not given.
 pub(super) type Kept = [Option<bool>; 5];
 
 /// Returns a coordinate of a sample, between −1 and 1.
 ///
-/// Coordinates are fractional parts of multiples of square roots of primes (Richtmyer 1951), which fill the box evenly
-/// and are the same on every machine.
+/// Coordinates are fractional parts of multiples of square roots of primes (Richtmyer 1951), so
+/// that the samples fill the box evenly and are the same on every machine.
 fn draw(index: usize, dimension: usize) -> f64 {
     const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
     2.0 * ((index + 1) as f64 * PRIMES[dimension].sqrt()).fract() - 1.0
@@ -102,7 +104,7 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
     kept
 }
 
-/// Builds the table.
+/// Builds the table of the findings, with the numbers of samples that reproduce them.
 pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(
@@ -110,7 +112,7 @@ pub(super) fn block(kept: &[Kept]) -> Block {
              ±5 % at most, k and c by ±10 %, and both coefficients of friction by ±5 %, spread evenly.",
             kept.len()
         ),
-        &[("finding", ""), ("racks that reproduce it", "")],
+        &[("finding", ""), ("racks that reproduce the finding", "")],
     );
     for (at, question) in QUESTIONS.into_iter().enumerate() {
         let count: Option<usize> = kept.iter().map(|answers| answers[at].map(usize::from)).sum();

@@ -1,22 +1,22 @@
 //! Correspondence between the paper's body numbers and our names.
 //!
-//! The paper shows numbers in its figures but does not list them.
-//! Its text explains some: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the top
-//! barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and along the
-//! barrels body 4 is "the rack from the second level".
-//! One rule satisfies all of these: count level by level from the bottom, first the barrels of a level from the
-//! left, then its rack.
+//! The paper shows numbers in its figures but does not list them. The text of the paper explains
+//! some of the numbers: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the
+//! top barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and
+//! along the barrels body 4 is "the rack from the second level". One rule satisfies all of these:
+//! count level by level from the bottom, first the barrels of a level from the left, then its rack.
 
 use barrelstack_report::{Cell, Table};
 
-/// Returns our name of the paper's body `number` in a stack with `columns` barrels per level.
+/// Returns our name for the body with the paper's `number`, in a stack with `columns` barrels per
+/// level.
 pub(super) fn name(number: u32, columns: u32) -> String {
     let level = (number - 1) / (columns + 1) + 1;
     let place = (number - 1) % (columns + 1) + 1;
     if place > columns { format!("R{level}") } else { format!("B{level}.{place}") }
 }
 
-/// Returns the paper's number of a body by our name; `None` for a body without number.
+/// Returns the paper's number of the body with our `name`; `None` for a body without number.
 pub(super) fn number(name: &str, columns: u32) -> Option<u32> {
     (1..=12 * (columns + 1)).find(|number| self::name(*number, columns) == name)
 }

@@ -1,4 +1,5 @@
-//! The report: the paper's numbers and figures in its order, compared with ours, and the reasons for differences.
+//! The report: the numbers and figures of the paper, in the order of the paper, compared with ours,
+//! and the reasons for differences.
 
 use std::fmt::Write as _;
 
@@ -67,7 +68,8 @@ fn warnings(motion: &Motion) -> Vec<String> {
     match motion {
         Motion::Paper { .. } => Vec::new(),
         Motion::Other { file, pga } => vec![format!(
-            "{file} is not the paper's record: its peak is {} g, that of PEL360 is 0.358 g. Results that \
+            "{file} is not the paper's record: its peak is {} g, and the peak of PEL360 is 0.358 \
+             g. Results that \
              depend on the motion are shown but not compared. To get the paper's record, {OBTAIN}.",
             significant(pga / barrelstack_motion::STANDARD_GRAVITY, 3)
         )],
@@ -87,8 +89,9 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     let mut blocks =
         vec![Block::heading(2, "Published against ours"), Block::Table(overview(rows))];
     blocks.push(text(
-        "A number agrees when it is within ±20 % of the published one, a finding when the same thing \
-         happens. Some numbers also have a wider band that the project accepts, since the paper does \
+        "A number agrees if it is within ±20 % of the published number; a finding agrees if the \
+         same event occurs. Some numbers also have a wider band that the project accepts, since \
+         the paper does \
          not state its geometry.",
     ));
     let reasons = vec![Block::Table(reasons(rows))];
@@ -326,8 +329,8 @@ fn studies(results: &Results) -> Vec<Block> {
         Block::heading(2, "Effects of single quantities"),
         text(
             "The paper gives neither the dimensions of its racks nor the number of its contact \
-             elements, and it does not state how its sine begins. Here each of these, and each parameter \
-             that it does state, is changed, one at a time.",
+             elements, and it does not state how its sine begins. Here each of these quantities, and \
+             each parameter that the paper does state, is changed, one at a time.",
         ),
     ];
     for study in &results.studies {

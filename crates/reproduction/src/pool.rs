@@ -30,18 +30,18 @@ impl Job {
 
 /// A completed run.
 pub(super) struct Done {
-    /// Its summary.
+    /// Summary of the run.
     pub(super) summary: Summary,
-    /// The run, if kept.
+    /// The recorded run, if the job keeps it.
     pub(super) run: Option<Box<Run>>,
-    /// Its result, in one sentence.
+    /// Result of the run, in one sentence.
     pub(super) headline: String,
 }
 
 /// Runs all jobs on all cores and returns their results in order.
 ///
-/// `progress` is called repeatedly with the numbers of completed and of all jobs, and may stop the work; jobs that
-/// are not completed by then are `None`.
+/// `progress` is called repeatedly with the number of completed jobs and the total number of jobs,
+/// and may stop the work; jobs that are not completed by then are `None`.
 pub(super) fn run_all(
     jobs: &[Job],
     progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),

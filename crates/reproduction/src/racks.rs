@@ -1,5 +1,5 @@
-//! Other racks, compared with that of the catalog: results and their robustness depend on dimensions that the paper
-//! does not state.
+//! Other racks, compared with the rack of the catalog. The comparison shows that the results and
+//! their robustness depend on dimensions that the paper does not state.
 
 use barrelstack::scenario::{Cradle, StackSpec};
 use barrelstack::summary::Summary;
@@ -10,10 +10,11 @@ use super::ensemble;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// A rack: its description, and the function that changes the catalog's rack into it.
+/// A rack: a description, and the function that changes the rack of the catalog into this rack.
 type Rack = (&'static str, fn(&mut StackSpec));
 
-/// Other solid racks with feet that random searches over cradle, feet, clearance, rails, node spacing and mass found.
+/// Other solid racks with feet, found by random searches over cradle, feet, clearance, rails, node
+/// spacing and mass.
 ///
 /// Some of the searches used only the cases across the barrels. The rack of the catalog was chosen because it
 /// reproduces the case along the barrels, too.
@@ -56,7 +57,7 @@ fn cradle(stack: &mut StackSpec, degrees: f64) {
     }
 }
 
-/// The results of a rack.
+/// The results obtained with one rack.
 pub(super) struct Tried {
     /// Description of the rack.
     pub(super) name: &'static str,
@@ -102,7 +103,7 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
     found
 }
 
-/// Builds the table.
+/// Builds the table of the racks and their results.
 pub(super) fn block(found: &[Tried]) -> Block {
     let mode = |summary: &Summary| summary.outcome.mode.unwrap_or(summary.outcome.kind);
     let stress = |summary: &Summary| summary.demands.stress_amplification;

@@ -11,15 +11,16 @@ use super::racks::{self, Tried};
 use super::study::{self, Factor, Study, Subject};
 use super::{ReproduceError, ensemble, vary};
 
-/// The paper's measured k and c over its calibrated ones, which are 10 % and 16 % greater.
+/// Ratios of the paper's measured k and c to its calibrated values, which are 10 % and 16 % greater
+/// than the measured values.
 pub(super) const MEASURED: (f64, f64) = (1.0 / 1.10, 1.0 / 1.16);
 
-/// All runs to be done.
+/// All planned runs.
 pub(super) struct Plan {
     /// The jobs, the longest first.
     pub(super) jobs: Vec<Job>,
     studies: Vec<(Subject, Vec<Factor>)>,
-    /// Number of jobs that come before those of the studies.
+    /// Number of jobs before the jobs of the studies.
     single: usize,
 }
 
@@ -27,7 +28,7 @@ pub(super) struct Plan {
 pub(super) struct Ran {
     /// The run.
     pub(super) run: Run,
-    /// Its summary.
+    /// Summary of the run.
     pub(super) summary: Summary,
 }
 
@@ -79,7 +80,7 @@ impl Plan {
             job("six barrels", &cases.six, true),
             job("eight barrels at half scale", &cases.half, true),
             job("eight barrels", &cases.eight, true),
-            job("eight barrels, sine to the other side", &mirrored, false),
+            job("eight barrels, sine of opposite sign", &mirrored, false),
             job("eight barrels, measured parameters", &measured, false),
         ];
         let single = jobs.len();

@@ -8,7 +8,7 @@ use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures, stress};
 
-/// The project's band of stress amplification.
+/// The wider band of the stress amplification that the project accepts.
 const STRESS_BAND: Option<Band> = Some((2.5, 3.5, "2.5 to 3.5"));
 
 /// Returns all rows, in the order of the paper.
@@ -25,7 +25,7 @@ fn seconds(value: f64) -> String {
     format!("{} s", significant(value, 3))
 }
 
-/// Describes the mode of collapse, or the outcome without one.
+/// Describes the mode of collapse, or the outcome if the stack does not collapse.
 fn mode_of(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.mode, outcome.from_level, outcome.to_level) {
@@ -35,22 +35,24 @@ fn mode_of(summary: &Summary) -> String {
     }
 }
 
-/// Returns a body by its name.
+/// Returns the body with the given name.
 fn body<'a>(summary: &'a Summary, name: &str) -> Option<&'a BodySummary> {
     summary.bodies.iter().find(|body| body.name == name)
 }
 
-/// Returns the time at which a body fell (s).
+/// Returns the time (s) at which a body fell.
 fn fell(summary: &Summary, name: &str) -> Option<f64> {
     body(summary, name)?.fell_at
 }
 
-/// Returns the time (s) at which both barrels of the top of four levels had fallen.
+/// Returns the time (s) at which both barrels of the top level had fallen, in a stack of four
+/// levels.
 fn top_gone(summary: &Summary) -> Option<f64> {
     Some(fell(summary, "B4.1")?.max(fell(summary, "B4.2")?))
 }
 
-/// Returns `true` if both barrels of the top of four levels fall before any other.
+/// Returns `true` if both barrels of the top level fall before any other barrel, in a stack of four
+/// levels.
 fn top_falls_before_others(summary: &Summary) -> bool {
     let others = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level != Some(4));
     top_gone(summary).is_some_and(|top| others.filter_map(|b| b.fell_at).all(|other| other > top))
@@ -130,9 +132,11 @@ fn six(results: &Results) -> Vec<Comparison> {
         (2.9, ""),
         stress::average(&results.six.run),
         STRESS_BAND,
-        "The paper reads an average off the envelope of barrel 1; here it is the mean of the largest stresses until the \
-         first loss of seat over the mean of the stress at rest, both over the boundary that is loaded at rest. This \
-         definition follows the words of the paper; it is not the one of the rows below that comes nearest.",
+        "The paper reads an average off the envelope of barrel 1; here, the amplification is the \
+         mean of the largest stresses until the first loss of seat divided by the mean of the \
+         stress at rest, both for the boundary that is loaded at rest. This definition follows \
+         the words of the paper; another definition in the rows below comes nearer to the \
+         published value.",
     ));
     rows.extend(stress::definitions(&results.six.run, "section 3, Fig. 6b", "six barrels, μ 0.4"));
     let top = figures::footprint(&results.six.run, "B1.1", true);
@@ -151,7 +155,7 @@ fn six(results: &Results) -> Vec<Comparison> {
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
             "Length of boundary under stress, at rest → at any time while the stack stands; on top the rack \
-             slides. Agrees if the length on top grows by more than a fifth and by more than twice that at the bottom.",
+             slides. Agrees if the length on top grows by more than a fifth and by more than twice the growth at the bottom.",
         ));
     }
     rows.push(number(
@@ -229,7 +233,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
         let changes = study.holding(top_falls_before_others);
         let changes = if changes.is_empty() { "none".into() } else { changes.join(", ") };
         format!(
-            " Changes of the study with which both top barrels fall before any other: {changes}."
+            " Changes of the study for which both top barrels fall before any other barrel: \
+             {changes}."
         )
     });
     let mut rows = vec![
@@ -255,8 +260,9 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (2.5, "s"),
             second,
             None,
-            "Second fall of a barrel of the top level. The first barrel and a rack that turns over are in \
-                  its path, so this time is less certain than the first.",
+            "Second fall of a barrel of the top level. The first barrel and a rack that turns \
+             over are in the path of the second barrel, so this time is less certain than the \
+             first.",
         ),
         finding(
             "section 4",
@@ -287,8 +293,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if others.is_empty() { "nothing".into() } else { others.join(", ") },
             others.is_empty(),
             format!(
-                "Until the second barrel of the top level has fallen. The ground still moves then and the run goes \
-                 on; the paper does not state when its run ends.{}",
+                "Until the second barrel of the top level has fallen. At that time, the ground \
+                 still moves and the run continues; the paper does not state when its run ends.{}",
                 alone.unwrap_or_default()
             ),
         ),
@@ -298,8 +304,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (5.2, "%"),
             demands.top_drift_ratio.map(|d| 100.0 * d),
             Some((4.0, 7.0, "4 to 7 %")),
-            "Largest displacement of a top barrel relative to the ground while the stack stands, over \
-                  the height of the stack.",
+            "Largest displacement of a top barrel relative to the ground while the stack stands, \
+             divided by the height of the stack.",
         ),
         number(
             "section 4, Fig. 7c",
@@ -307,8 +313,9 @@ fn eight(results: &Results) -> Vec<Comparison> {
             (3.0, ""),
             demands.stress_amplification,
             STRESS_BAND,
-            "The paper compares maximum stresses: the largest stress until the first loss of seat over the largest \
-                  at rest, for the bottom barrel with the greater ratio. The rows below have all other definitions.",
+            "The paper compares maximum stresses. Here, the amplification is the largest stress \
+             until the first loss of seat divided by the largest stress at rest, for the bottom \
+             barrel with the greater ratio. The rows below show all other definitions.",
         ),
     ];
     rows.extend(stress::definitions(&results.eight.run, "section 4, Fig. 7c", "eight barrels"));
@@ -352,7 +359,8 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 format!("{} mm apart at most", significant(1e3 * apart, 3))
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
-            "Largest distance of any body at full scale up to the first loss of seat. The paper compares \
+            "Largest distance between the two positions of any body, at full scale, up to the \
+             first loss of seat. The paper compares \
              its model with photographs of the test; here both runs are of the model, and similitude makes \
              them equal except for rounding.",
         ),
@@ -385,7 +393,8 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         String::new()
     } else {
         format!(
-            " With other racks the number that keeps the mode of the case as stated is: {}.",
+            " With other racks, the number of combinations that keep the mode of the case as \
+             stated is: {}.",
             robust.join("; ")
         )
     };

@@ -7,15 +7,15 @@ use barrelstack_report::significant;
 use super::compare::{Comparison, Verdict};
 use super::numbering;
 
-/// Returns the stress envelope of a barrel by the paper's number.
+/// Returns the stress envelope of the barrel with the given number of the paper.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     run.stresses.of(body)
 }
 
-/// Returns the largest vertical force on barrel 1 until the first loss of seat over that at rest, exerted by the rack
-/// above or by the rack that carries the barrel.
+/// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the
+/// force at rest. The force is exerted by the rack above the barrel or by the rack that carries it.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
@@ -48,32 +48,33 @@ const DEFINITIONS: [Definition; 7] = [
     (
         "mean of the envelope where it is loaded over the mean at rest",
         |run| envelope(run, 1)?.mean_of_envelope(),
-        "the envelope averaged over the boundary that is loaded at any time, the stress at rest over that loaded at rest",
+        "the envelope averaged over the boundary that is loaded at any time, the stress at rest \
+         averaged over the boundary that is loaded at rest",
     ),
     (
-        "upper boundary: largest force over that at rest",
+        "upper boundary: largest force over force at rest",
         |run| of_boundary(run, true),
         "the vertical force of the rack above",
     ),
     (
-        "lower boundary: largest force over that at rest",
+        "lower boundary: largest force over force at rest",
         |run| of_boundary(run, false),
         "the vertical force of the barrel on its own rack",
     ),
     (
-        "all forces: largest sum over that at rest",
+        "all forces: largest sum over sum at rest",
         |run| envelope(run, 1)?.total_amplification(),
         "the sum of all normal forces on the barrel at one instant, which is the integral of the stress",
     ),
 ];
 
-/// Returns the mean of the largest stresses on barrel 1 until the first loss of seat over the mean of the stress at
-/// rest, both over the boundary that is loaded at rest.
+/// Returns the mean of the largest stresses on barrel 1 until the first loss of seat, divided by
+/// the mean of the stress at rest. Both means are taken over the boundary that is loaded at rest.
 pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// Returns one row for every definition, for a case of which the paper states an amplification.
+/// Returns one row for every definition, for a case for which the paper states an amplification.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

@@ -27,7 +27,7 @@ impl Subject {
         }
     }
 
-    /// Returns the name of the time that is compared with the paper's, for captions.
+    /// Returns the name of the time that is compared with the paper's time, for captions.
     pub(super) fn clock(self) -> &'static str {
         match self {
             Self::Six | Self::Along => "first loss of seat",
@@ -35,7 +35,7 @@ impl Subject {
         }
     }
 
-    /// Returns the time (s) of a run that is compared with the paper's.
+    /// Returns, for a run, the time (s) that is compared with the paper's time.
     pub(super) fn time(self, summary: &Summary) -> Option<f64> {
         match self {
             Self::Six | Self::Along => summary.outcome.time,
@@ -43,8 +43,8 @@ impl Subject {
         }
     }
 
-    /// Returns the longest duration (s) of a run, and its duration after the collapse, which must include the first
-    /// fall.
+    /// Returns the longest duration (s) of a run, and the duration (s) that it continues after the
+    /// collapse. The latter must be long enough to include the first fall.
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),
@@ -58,7 +58,7 @@ impl Subject {
 pub(super) struct Factor<Run = Scenario> {
     /// The quantity with its regular value, such as "cradle angle 28°".
     pub(super) name: String,
-    /// Name of each change, and its scenario or result.
+    /// Name of each change, with the scenario or the result of the change.
     pub(super) ends: Vec<(String, Run)>,
 }
 
@@ -69,7 +69,7 @@ pub(super) type Effect = Factor<Summary>;
 pub(super) struct Study {
     /// The case.
     pub(super) subject: Subject,
-    /// The case as stated.
+    /// Result of the case as stated.
     pub(super) base: Summary,
     /// Effects of all factors, sorted by their effect on the time, the largest first.
     pub(super) effects: Vec<Effect>,
@@ -78,7 +78,7 @@ pub(super) struct Study {
 /// The two changes of a quantity, each with its name.
 type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
 
-/// Returns the factors of a case.
+/// Returns the factors that the study of a case changes.
 pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let (duration, after) = subject.duration();
     let mut base = brief(base, after);
@@ -209,7 +209,8 @@ impl Study {
         })
     }
 
-    /// Returns the smallest and largest time (s) among all changes that collapse, including the case as stated.
+    /// Returns the smallest and largest time (s) among all changes for which the stack collapses,
+    /// including the case as stated.
     pub(super) fn times(&self) -> Option<[f64; 2]> {
         let all = || self.changes().map(|(_, summary)| summary).chain([&self.base]);
         let times = || all().filter_map(|summary| self.subject.time(summary));
@@ -232,7 +233,8 @@ impl Study {
         self.changes().filter(|(_, summary)| what(summary)).map(|(change, _)| change).collect()
     }
 
-    /// Returns a description of the change that brings a quantity nearest to a published value, and that quantity.
+    /// Returns a description of the change that brings a quantity nearest to a published value, and
+    /// the resulting value of the quantity.
     pub(super) fn nearest(
         &self,
         published: f64,
@@ -243,7 +245,8 @@ impl Study {
         known.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// Returns descriptions of the changes with the largest effect on a quantity, at most `count`, with their results.
+    /// Returns descriptions of at most `count` changes with the largest effect on a quantity, with
+    /// the results.
     pub(super) fn strongest(
         &self,
         count: usize,

@@ -5,7 +5,7 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesSt
 
 use super::study::{Study, Subject};
 
-/// Vertical offsets of the bars of the three quantities within a row.
+/// Vertical offsets, within a row, of the bars of the three quantities.
 const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
 
 /// Builds the plot and the table of a study.

@@ -4,7 +4,8 @@ use barrelstack::scenario::{
     Cradle, Fill, Friction, Interface, MotionSource, Scenario, Scene, StackSpec,
 };
 
-/// Returns a scenario with its stack changed; a free scene is unchanged.
+/// Returns a copy of a scenario with `change` applied to its stack; a free scene is returned
+/// unchanged.
 pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> Scenario {
     let mut changed = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut changed.scene {
@@ -13,7 +14,7 @@ pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> 
     changed
 }
 
-/// Returns a scenario that stops a time (s) after its collapse, with minimal recording.
+/// Returns a scenario that ends `after` seconds after the collapse, with minimal recording.
 pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
     let mut brief = scenario.clone();
     brief.run.stop_after_collapse = Some(after);
@@ -28,31 +29,32 @@ fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
     [&mut all.rack_ground, &mut all.barrel_rack, &mut all.rack_rack]
 }
 
-/// Multiplies the contact stiffness of all seats.
+/// Multiplies the contact stiffness of all seats by `factor`.
 pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.stiffen(factor);
     }
 }
 
-/// Multiplies the contact damping of all seats; damping that is stated as a restitution is unchanged.
+/// Multiplies the contact damping of all seats by `factor`; damping that is stated as a restitution
+/// is unchanged.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.damp(factor);
     }
 }
 
-/// Multiplies the friction between barrels and racks.
+/// Multiplies the friction between barrels and racks by `factor`.
 pub(super) fn barrel_rack_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.barrel_rack.roughen(factor);
 }
 
-/// Multiplies the friction between the bottom rack and the ground.
+/// Multiplies the friction between the bottom rack and the ground by `factor`.
 pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.rack_ground.roughen(factor);
 }
 
-/// Multiplies the ratio of tangential to normal stiffness of all sticks.
+/// Multiplies the ratio of tangential to normal stiffness of all sticks by `factor`.
 pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {
@@ -68,7 +70,7 @@ pub(super) fn cradle_angle(stack: &mut StackSpec, more: f64) {
     }
 }
 
-/// Changes barrels so that their wine does not rotate with the wood, at the same mass.
+/// Changes the barrels so that the wine does not rotate with the wood. The mass is unchanged.
 pub(super) fn fluid(stack: &mut StackSpec) {
     stack.barrel.fill = Fill::FullFluid;
 }

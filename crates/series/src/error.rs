@@ -1,4 +1,4 @@
-//! Errors of ground-motion computations, as sentences with a remedy.
+//! Errors in ground-motion computations, written as sentences that include a remedy.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Filtered incremental velocity: the three largest velocity increments over 0.7 periods of an
-//! oscillator.
+//! Filtered incremental velocity: the sum of the three largest increments of velocity over 0.7
+//! times the period of an oscillator.
 
 use crate::math::{self, PI};
 

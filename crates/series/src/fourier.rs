@@ -32,7 +32,7 @@ pub fn forward(values: &mut [Complex]) {
     transform(values, -1.0);
 }
 
-/// Transforms back in place, including the division by the length.
+/// Computes the inverse transform in place, including the division by the length.
 pub fn inverse(values: &mut [Complex]) {
     transform(values, 1.0);
     let factor = 1.0 / values.len() as f64;

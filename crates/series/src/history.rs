@@ -1,4 +1,4 @@
-//! Motion of one component as a function of time: sampled, analytic, or a sum of both.
+//! Motion of one component as a function of time: sampled, analytic, or a sum of several histories.
 
 use crate::error::MotionError;
 use crate::pulse::Pulse;
@@ -15,7 +15,7 @@ pub enum History {
     Sampled(Sampled),
     /// A closed-form pulse.
     Analytic(Pulse),
-    /// Several histories, each delayed by its own time.
+    /// Sum of several histories, each with its own delay.
     Sum(Vec<Delayed>),
 }
 
@@ -24,7 +24,7 @@ pub enum History {
 pub struct Delayed {
     /// Start of the history (s), not negative.
     pub delay: f64,
-    /// The history, with its own time counted from the start.
+    /// The history; its time is counted from its own start.
     pub history: History,
 }
 
@@ -62,9 +62,9 @@ impl History {
         self.stretched(1.0, factor)
     }
 
-    /// Returns the history for a model of `length_scale` times the size under the same gravity
-    /// (Froude scaling). Time is multiplied by `√length_scale` and displacement by `length_scale`;
-    /// acceleration is unchanged.
+    /// Returns the history for a model whose lengths are multiplied by `length_scale` under the
+    /// same gravity (Froude scaling). Time is multiplied by `√length_scale` and displacement by
+    /// `length_scale`; acceleration is unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         self.stretched(length_scale.sqrt(), 1.0)
@@ -86,8 +86,8 @@ impl History {
         }
     }
 
-    /// Returns the time step (s) at which samples represent this history well: its own step if
-    /// sampled, or a 400th of the period of a pulse.
+    /// Returns the time step (s) at which samples represent this history well: the step of a
+    /// sampled history, or a 400th of the period of a pulse.
     pub fn natural_step(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.time_step(),
@@ -103,7 +103,7 @@ impl History {
     /// Samples the accelerations at steps of at most `time_step` (s) and integrates them.
     ///
     /// A sampled history with the same step is returned unchanged. The step is reduced so that the
-    /// last sample falls on the end.
+    /// last sample falls on the end of the history.
     ///
     /// # Errors
     /// If the step is not above zero or would require more than 100 million samples.
@@ -128,7 +128,7 @@ impl History {
     /// Returns the time (s) from which the absolute acceleration stays below a limit (m/s²).
     ///
     /// For a sampled history, this is the time of the sample after the last one above the limit.
-    /// For a closed form, it is the end, since the shaking stops abruptly.
+    /// For an analytic history, this is the end of the history, since the shaking stops abruptly.
     pub fn calm_from(&self, limit: f64) -> f64 {
         match self {
             Self::Sampled(sampled) => {
@@ -160,8 +160,9 @@ impl History {
         self.peak(Sampled::pgd, |k| k.displacement)
     }
 
-    /// Returns the peak of a quantity. A sampled history has its own method; other histories are
-    /// scanned at the natural step, and every local extremum is refined by golden-section search.
+    /// Returns the peak of a quantity. For a sampled history, `sampled` computes the peak. Other
+    /// histories are scanned at the natural step, and every local extremum is refined by
+    /// golden-section search.
     fn peak(&self, sampled: fn(&Sampled) -> f64, quantity: fn(Kinematics) -> f64) -> f64 {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
         if let Self::Sampled(samples) = self {

@@ -86,7 +86,7 @@ enum Growth {
     Power(f64),
     /// Increasing with the factor, but not as a power of it.
     Monotone,
-    /// Constant, or increasing in steps; holds the reason.
+    /// Constant, or increasing in steps; the text states why the measure cannot be scaled.
     None(&'static str),
 }
 
@@ -160,7 +160,7 @@ impl IntensityMeasure {
     /// Checks the parameters of the measure.
     ///
     /// # Errors
-    /// Names the first parameter that is out of range.
+    /// If a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), MotionError> {
         match *self {
             Self::SignificantDuration { from, to } => {
@@ -222,8 +222,8 @@ impl IntensityMeasure {
 
     /// Returns the value of the measure for any history.
     ///
-    /// A history that is not sampled is first sampled at its natural step; its PGA, PGV and PGD are
-    /// found by search instead.
+    /// A history that is not sampled is first sampled at its natural step, except that PGA, PGV and
+    /// PGD are found by a search on the exact history.
     ///
     /// # Errors
     /// If a parameter of the measure is out of range.
@@ -240,7 +240,7 @@ impl IntensityMeasure {
 }
 
 /// Finds the factor at which a growing measure reaches `target`, by bisection. Returns `None` if no
-/// factor does.
+/// factor reaches it.
 fn bracketed(
     target: f64,
     value: impl Fn(f64) -> Result<f64, MotionError>,

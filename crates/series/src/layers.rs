@@ -1,21 +1,21 @@
 //! Fast approximate response spectra: each oscillator runs at the coarsest sufficient time step.
 //!
 //! Searches evaluate spectra thousands of times; their results are checked by the exact recursion
-//! of [`crate::response`]. Peaks differ from the exact ones by at most 0.6 % with 20 steps per
-//! period and by 0.3 % with 40.
+//! of [`crate::response`]. The approximate peaks differ from the exact peaks by at most 0.6 % with
+//! 20 steps per period and by 0.3 % with 40.
 
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};
 
-/// Smallest number of steps per period when a layer coarser than the motion is used.
+/// Minimum number of steps per period of an oscillator that uses a layer coarser than the motion.
 const LAYER_STEPS: f64 = 40.0;
 
 /// A piecewise-linear acceleration at successively coarser time steps.
 pub struct Layers {
     time_step: f64,
-    /// Accelerations at steps of 1, 2, 4, … samples. Each is a mean weighted by a triangle two such
-    /// steps wide, which is the exact load of oscillators whose impulse response is linear between
-    /// the samples.
+    /// Accelerations at steps of 1, 2, 4, … samples. Each value is a mean with triangular weights
+    /// over two such steps. It is the exact load of oscillators whose impulse response is linear
+    /// between the samples.
     layers: Vec<Vec<f64>>,
 }
 

@@ -1,6 +1,7 @@
 //! Regularized least squares by normal equations.
 
-/// Ridge as a fraction of the largest diagonal entry; it regularizes correlated unknowns.
+/// Ridge parameter `λ` as a fraction of the largest diagonal entry. The ridge regularizes
+/// correlated unknowns.
 const RIDGE: f64 = 1e-4;
 
 /// Normal equations `(CᵀC + λI) b = Cᵀ r`, solved by Cholesky factorization.
@@ -11,7 +12,7 @@ pub struct System {
 }
 
 impl System {
-    /// Creates a system for `size` unknowns, without conditions.
+    /// Creates a system for `size` unknowns that has no conditions yet.
     pub fn new(size: usize) -> Self {
         Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
     }

@@ -27,29 +27,29 @@ pub enum Pulse {
         /// Length of each ramp in periods; 0 for none.
         ramp_cycles: f64,
     },
-    /// Acceleration `a = A sin(π t / duration)`; ends with the velocity `2 A duration/π`.
+    /// Acceleration `a = A sin(π t / duration)`. The final velocity is `2 A duration/π`.
     HalfSine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
         /// Length of the half-wave (s).
         duration: f64,
     },
-    /// Acceleration `a = A sin(w t)` over one period; ends at rest with a displacement of
-    /// `A T²/(2π)`.
+    /// Acceleration `a = A sin(w t)` over one period. The final velocity is zero and the final
+    /// displacement is `A T²/(2π)`.
     OneSine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
         /// Period `T` (s).
         period: f64,
     },
-    /// Acceleration `a = A cos(w t)` over one period; ends at rest at zero displacement.
+    /// Acceleration `a = A cos(w t)` over one period. The final velocity and displacement are zero.
     OneCosine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
         /// Period `T` (s).
         period: f64,
     },
-    /// Constant acceleration; ends with the velocity `A duration`.
+    /// Constant acceleration. The final velocity is `A duration`.
     Rectangular {
         /// Acceleration `A` (m/s²).
         acceleration: f64,
@@ -78,16 +78,16 @@ pub enum Pulse {
         /// Phase `ν` (rad).
         phase: f64,
     },
-    /// Cycloidal pulse of type A, a forward step: `v = V/2 (1 - cos w t)` over one period. Ends
-    /// displaced by `V T/2` (Jacobsen and Ayre 1958; Makris 1997).
+    /// Cycloidal pulse of type A, a forward step: `v = V/2 (1 - cos w t)` over one period. The
+    /// final displacement is `V T/2` (Jacobsen and Ayre 1958; Makris 1997).
     CycloidA {
         /// Peak velocity `V` (m/s).
         velocity: f64,
         /// Period `T` (s).
         period: f64,
     },
-    /// Cycloidal pulse of type B, forward and back: `v = V sin(w t)` over one period; ends at zero
-    /// displacement.
+    /// Cycloidal pulse of type B, forward and back: `v = V sin(w t)` over one period. The final
+    /// displacement is zero.
     CycloidB {
         /// Peak velocity `V` (m/s).
         velocity: f64,
@@ -122,7 +122,7 @@ pub enum Pulse {
     },
 }
 
-/// Kind of amplitude of a pulse, which determines how it scales with length.
+/// Kind of amplitude of a pulse, which determines how the pulse is scaled with length.
 #[derive(Clone, Copy)]
 enum Amplitude {
     Displacement,
@@ -164,7 +164,7 @@ impl Pulse {
         }
     }
 
-    /// Returns the time over which the pulse changes appreciably (s): its period or its length.
+    /// Returns the time (s) over which the pulse changes appreciably: its period or its length.
     pub fn time_scale(&self) -> f64 {
         *self.clone().time_scale_mut()
     }
@@ -288,7 +288,7 @@ impl Pulse {
     /// Checks that every parameter is in range.
     ///
     /// # Errors
-    /// Names the first parameter that is out of range.
+    /// If a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), MotionError> {
         let mut copy = *self;
         MotionError::require_finite("pulse amplitude", *copy.amplitude_mut().0)?;
@@ -337,7 +337,7 @@ fn one_sine(amplitude: f64, period: f64, t: f64) -> Kinematics {
 }
 
 /// Evaluates `d = A r(t) sin(w t)`, with a factor `r` that rises along a half cosine over the first
-/// `ramp` seconds and falls over the last.
+/// `ramp` seconds and falls over the last `ramp` seconds.
 fn ramped_sine(amplitude: f64, period: f64, duration: f64, ramp: f64, t: f64) -> Kinematics {
     let w = TAU / period;
     let (s, c) = math::sin_cos(w * t);

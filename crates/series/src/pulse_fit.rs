@@ -11,12 +11,12 @@ use crate::sampled::Sampled;
 /// A velocity pulse of Mavroeidis and Papageorgiou, fitted to a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseFit {
-    /// The pulse; its time 0 is at [`PulseFit::start`] of the record.
+    /// The pulse; its time 0 is the time [`PulseFit::start`] of the record.
     pub pulse: Pulse,
     /// Prevailing period (s).
     pub period: f64,
-    /// Velocity amplitude `A` of the formula (m/s). It exceeds the peak velocity if the phase is
-    /// not zero.
+    /// Velocity amplitude `A` of the formula (m/s). The amplitude exceeds the peak velocity if the
+    /// phase is not zero.
     pub amplitude: f64,
     /// Largest velocity of the pulse (m/s).
     pub peak_velocity: f64,
@@ -31,7 +31,7 @@ pub struct PulseFit {
 /// Trial values of the width `γ`. Below 1 the pulse has no zero crossing; above 3 it is a wave
 /// train.
 const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
-/// Number of trial periods per factor of e.
+/// Number of trial periods per increase of the period by a factor of e.
 const PER_E_FOLD: f64 = 14.0;
 
 /// Finds the pulse that explains most of the squared velocity, with a period from `shortest` to
@@ -115,7 +115,8 @@ fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     (window * cos, window * sin)
 }
 
-/// Finds the shift that explains most of the motion, by correlation with both forms at once.
+/// Finds the shift that explains most of the motion, by correlation with the cosine and the sine
+/// form at once.
 fn best_shift(
     spectrum: &[Complex],
     dt: f64,

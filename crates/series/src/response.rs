@@ -157,7 +157,8 @@ pub struct Bank {
 }
 
 impl Bank {
-    /// Creates oscillators at rest. If there are fewer than [`TOGETHER`], the last one is repeated.
+    /// Creates oscillators at rest. If `steps` has fewer than [`TOGETHER`] entries, the last entry
+    /// is repeated.
     pub fn new(steps: &[Step]) -> Self {
         let lane = |k: usize| &steps[k.min(steps.len() - 1)];
         let of = |take: fn(&Step) -> &[f64; 4]| {
@@ -215,7 +216,7 @@ pub fn pseudo_accelerations(
     out
 }
 
-/// Peak responses over a list of periods.
+/// Peak responses at a list of periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseSpectrum {
     /// Damping ratio.

@@ -103,7 +103,7 @@ impl Sampled {
         let (one, two) = (self.time_step, other.time_step);
         if (two / one - 1.0).abs() > 1e-9 {
             let what = format!("one horizontal has a step of {one} s, the other of {two} s");
-            return Err(MotionError::mismatch(what, "choose components of one step"));
+            return Err(MotionError::mismatch(what, "choose components with the same time step"));
         }
         Ok(())
     }
@@ -162,8 +162,8 @@ impl Sampled {
         }
     }
 
-    /// Returns the largest absolute acceleration (m/s²). It is exact, because the acceleration is
-    /// linear between samples.
+    /// Returns the largest absolute acceleration (m/s²). The value is exact, because the
+    /// acceleration is linear between samples.
     pub fn pga(&self) -> f64 {
         math::peak(&self.acceleration)
     }

@@ -11,7 +11,8 @@ mod values;
 
 type Result<T> = std::result::Result<T, InputError>;
 
-/// Reader of one table. Unknown and mutually exclusive keys are rejected when it is opened.
+/// Reader of one table. Unknown and mutually exclusive keys are rejected when the reader is
+/// created.
 pub struct Reader<'a> {
     sources: &'a Sources,
     section: &'static Section,
@@ -24,8 +25,8 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Opens a table for reading. If `table` is `None`, the table is absent and has only defaults;
-    /// `origin` is its place in errors.
+    /// Opens a table for reading. If `table` is `None`, the table is absent and all its fields have
+    /// their defaults; `origin` is the place of the table in errors.
     pub fn open(
         sources: &'a Sources,
         section: &'static Section,
@@ -162,7 +163,7 @@ impl<'a> Reader<'a> {
         self.sources.error(self.origin, problem)
     }
 
-    /// Creates an error that one of several fields is required, but none is given.
+    /// Creates an error stating that one of several fields is required, but none is given.
     pub fn one_of(&self, names: &[&str]) -> InputError {
         let choices: Vec<String> = names.iter().map(|name| self.example_of(name)).collect();
         let problem = Problem::OneOf { section: self.label(), choices: choices.join(", ") };
@@ -206,7 +207,7 @@ impl<'a> Reader<'a> {
             .unwrap_or_else(|| panic!("field `{name}` of {} is read but not defined", self.label()))
     }
 
-    /// Opens a nested table. An absent table has only defaults.
+    /// Opens a nested table. If the table is absent, all its fields have their defaults.
     pub fn section(&self, name: &'static str) -> Result<Self> {
         let field = self.field(name);
         let (Kind::Table(section) | Kind::ChoiceOrTable(_, _, section)) = field.kind else {
@@ -274,14 +275,17 @@ impl<'a> Reader<'a> {
         Ok(readers)
     }
 
-    /// Panics, because a field that is read as another kind than defined is a bug in this library.
+    /// Panics: reading a field as a kind that differs from its definition is a bug in this library.
     fn defined_otherwise(&self, name: &str) -> ! {
-        panic!("field `{name}` of {} is defined as another kind than it is read", self.label())
+        panic!(
+            "field `{name}` of {} is read as a kind that differs from its definition",
+            self.label()
+        )
     }
 }
 
-/// Returns the name of a list item in paths: its `name`, the pair in its `between`, or its number
-/// from 1.
+/// Returns the name of a list item in paths: the value of its `name` field, the pair in its
+/// `between` field, or its number from 1.
 pub fn item_name(item: &Node, index: usize) -> String {
     let number = (index + 1).to_string();
     let Value::Table(table) = &item.value else { return number };
@@ -301,7 +305,7 @@ fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Names used by other programs, with the corresponding names in this one.
+/// Names used by other programs, with the corresponding names in this program.
 const HABITS: &[(&str, &str)] = &[
     ("mu", "coefficient"),
     ("mu", "friction"),

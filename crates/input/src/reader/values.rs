@@ -213,7 +213,7 @@ impl Reader<'_> {
         Ok(nodes.into_iter().filter_map(text).collect())
     }
 
-    /// Reads an optional file path, relative to the folder of the file that contains the path.
+    /// Reads an optional file path, which is relative to the folder of the file that contains it.
     pub fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
         let Some(path) = self.optional_text(name)? else { return Ok(None) };
         Ok(Some(match self.entry(name).map(|node| node.origin) {
@@ -406,7 +406,7 @@ impl Reader<'_> {
         self.sources.error(node.origin, problem)
     }
 
-    /// Reads a unit or a quantity. A name alone, such as `kN`, stands for one of that unit.
+    /// Reads a unit or a quantity. A name alone, such as `kN`, stands for one unit, here 1 kN.
     fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
         if let Value::Text(text) = &node.value
             && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))

@@ -12,9 +12,9 @@ pub(super) fn is_tar(bytes: &[u8]) -> bool {
     head[0] != 0 && stated.is_ok_and(|stated| stated == sum)
 }
 
-/// Calls `take` with the name and the content of every file until it returns `true`.
+/// Calls `take` with the name and the content of every file until `take` returns `false`.
 ///
-/// If the archive ends within a file, `take` gets `None` as content.
+/// If the archive is truncated within a file, `take` gets `None` as the content of this file.
 ///
 /// # Errors
 /// If the archive is damaged. The inner result is the error of `take`.

@@ -34,7 +34,7 @@ pub struct Flatfile {
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Column names of the published table and of its abridged forms.
+/// Names of the columns in the published table and in its abridged forms, one constant per column.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];
@@ -50,7 +50,7 @@ impl Flatfile {
     /// Parses a flatfile from CSV text with column names on the first line; −999 means unknown.
     ///
     /// The ESM flatfile uses semicolons and has no sequence numbers; its rows are identified by
-    /// event, network and station. The magnitude is the first one known of Mw, EMEC Mw and ML.
+    /// event, network and station. The magnitude is Mw or, if this is unknown, EMEC Mw or ML.
     ///
     /// # Errors
     /// If there is neither a column of sequence numbers nor the identifying columns of ESM, a

@@ -22,10 +22,10 @@ pub struct RecordFiles {
 /// - `AOM0011801241951.EW`, `.NS` and `.UD`; the borehole (`.EW1`) and the surface (`.EW2`) are
 ///   separate records;
 /// - names with a SEED channel code such as `HNE` between dots, dashes or underscores;
-/// - other names that end, before their extension, in `_E`, `_N` and `_U` (or `_Z`), as those of
-///   AFAD, or in `_EW`, `_NS` and `_UD`, also with a dash or a dot, and those of CSMNC, with a
-///   number before the component;
-/// - names that end in `.000`, `.090` and `.ver`, as those of the Broadband Platform.
+/// - other names that end, before their extension, in `_E`, `_N` and `_U` (or `_Z`), as AFAD names
+///   its files, or in `_EW`, `_NS` and `_UD`. The separator may also be a dash or a dot; after a
+///   digit, it may be missing, as in the names of CSMNC;
+/// - names that end in `.000`, `.090` and `.ver`, as the Broadband Platform names its files.
 ///
 /// Any other file is a record of its own. [`crate::Record::gather`] checks whether the channels
 /// really belong together.

@@ -34,7 +34,8 @@ pub struct MeasuredComponent {
     pub duration: f64,
     /// FIV3 at 1 s (m/s).
     pub fiv3: f64,
-    /// Classification of the velocity pulse by Baker (2007); `None` for a vertical component.
+    /// Classification of the velocity pulse by the method of Baker (2007); `None` for a vertical
+    /// component.
     pub pulse: Option<ClassifiedPulse>,
     /// Pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<f64>,
@@ -49,7 +50,7 @@ pub struct MeasuredPair {
     pub largest: [f64; 2],
     /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<RotatedPeak>,
-    /// Classification of the velocity pulse by Shahi and Baker (2014).
+    /// Classification of the velocity pulse by the method of Shahi and Baker (2014).
     pub pulse: Option<ClassifiedPulse>,
 }
 

@@ -2,17 +2,17 @@
 
 use crate::math;
 
-/// Fraction of the peak acceleration that marks strong motion with certainty.
+/// Fraction of the peak acceleration above which the motion is certainly strong motion.
 const SURE: f64 = 0.2;
-/// Length by which the second search extends beyond the first result, as a fraction of the time up
-/// to the strong motion.
+/// Length by which the second search extends beyond the first result, as a fraction of the time
+/// before the strong motion.
 const BEHIND: f64 = 0.1;
 
 /// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with
 /// the record.
 ///
-/// The record up to its first strong motion is modeled as two intervals of constant variance. They
-/// fit best if they meet at the arrival, where Akaike's criterion
+/// The record up to its first strong motion is modeled as two intervals of constant variance. The
+/// two intervals fit the record best if they meet at the arrival, where Akaike's criterion
 /// `k ln var(a₁…k) + (n − k − 1) ln var(a₍k₊₁₎…n)` is smallest (Maeda 1985). A second search, which
 /// ends shortly after the first result, finds a weak first arrival before a strong second one.
 pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {

@@ -17,7 +17,8 @@ use smooth::konno_ohmachi;
 const SHORTEST_NOISE: f64 = 1.0;
 /// Shortest shaking (s) from which corners can be determined.
 const SHORTEST_SHAKING: f64 = 5.0;
-/// Length of the taper at each end of noise and shaking, as a fraction of the length.
+/// Length of the taper at each end of the noise and of the shaking, as a fraction of the length of
+/// this part.
 const TAPER: f64 = 0.05;
 /// Upper limits of the low-pass corner: as a fraction of the Nyquist frequency, and in Hz.
 const HIGHEST: (f64, f64) = (0.75, 40.0);
@@ -27,16 +28,16 @@ const HIGHEST: (f64, f64) = (0.75, 40.0);
 pub struct NoiseCriterion {
     /// Minimum ratio of the smoothed Fourier amplitudes of signal and noise.
     pub ratio: f64,
-    /// Lowest frequency of the criterion (Hz); the high-pass corner is at or below it.
+    /// Lowest frequency of the criterion (Hz); the high-pass corner is at or below this frequency.
     pub from: f64,
-    /// Highest frequency of the criterion (Hz); the low-pass corner is above it.
+    /// Highest frequency of the criterion (Hz); the low-pass corner is above this frequency.
     pub to: f64,
     /// Coefficient `b` of the smoothing window of Konno and Ohmachi (1998).
     pub bandwidth: f64,
 }
 
 impl Default for NoiseCriterion {
-    /// A ratio of 3 from 0.2 to 5 Hz, smoothed with `b` = 20.
+    /// Returns a criterion with a ratio of 3 from 0.2 to 5 Hz, smoothed with `b` = 20.
     fn default() -> Self {
         Self { ratio: 3.0, from: 0.2, to: 5.0, bandwidth: 20.0 }
     }
@@ -60,8 +61,8 @@ impl Corners {
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
         let unknown = 1.0 / self.arrival;
         format!(
-            "corners {:.4} and {:.2} Hz, between which the signal is at least {} times the noise of \
-             the first {:.2} s, and {:.1} times from {} to {} Hz{}",
+            "corners {:.4} and {:.2} Hz; between them, the signal is at least {} times the noise of \
+             the first {:.2} s, and at least {:.1} times this noise from {} to {} Hz{}",
             self.high_pass,
             self.low_pass,
             criterion.ratio,
@@ -87,15 +88,16 @@ struct Spectra {
 
 /// Returns the filter corners of one channel whose noise ends at `arrival` (s).
 ///
-/// The spectrum of the noise is multiplied by the square root of the ratio of the lengths, which
-/// gives the noise within the shaking; the spectrum above this noise is signal. The signal-to-noise
-/// ratio is divided by the same root, which is stricter if the noise is short.
+/// The spectrum of the noise is multiplied by the square root of the length of the shaking divided
+/// by the length of the noise. The product is the spectrum of the noise within the shaking, and the
+/// excess of the spectrum of the shaking is the signal. The signal-to-noise ratio is divided by the
+/// same square root, so that the criterion is stricter if the noise is short.
 ///
 /// The band between the corners is the first band in which the ratio satisfies the criterion over
 /// its whole frequency range. The high-pass corner is not below one over the duration, nor below
-/// the frequency at which the ratio has its minimum left of its peak. The low-pass corner is at
-/// most 0.75 of the Nyquist frequency and 40 Hz. This is the rule of the automatic processing of
-/// the USGS (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
+/// the frequency at which the ratio, to the left of its peak, has its minimum. The low-pass corner
+/// is at most 0.75 of the Nyquist frequency and 40 Hz. This is the rule of the automatic processing
+/// of the USGS (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
 /// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.
@@ -145,8 +147,8 @@ pub fn noise_corners(
 impl Record {
     /// Returns the filter corners of every channel, in order.
     ///
-    /// Both horizontals get the narrower of their two bands, so that they can be rotated jointly.
-    /// All channels use the earliest arrival of any channel.
+    /// Both horizontals get the frequency band that their two bands have in common, so that they
+    /// can be rotated jointly. All channels use the earliest arrival of any channel.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self
             .channels
@@ -196,8 +198,8 @@ impl Spectra {
         Self { frequency: centers[first..].to_vec(), ratio: ratio[first..].to_vec() }
     }
 
-    /// Returns the first frequency band with sufficient signal that covers the range of the
-    /// criterion.
+    /// Returns the first frequency band that has sufficient signal and covers the frequency range
+    /// of the criterion.
     fn band(&self, criterion: &NoiseCriterion) -> Option<(f64, f64)> {
         let enough = |ratio: &f64| *ratio >= criterion.ratio;
         let mut begin = 0;
@@ -212,7 +214,7 @@ impl Spectra {
         None
     }
 
-    /// Returns the smallest ratio in the frequency range of the criterion.
+    /// Returns the smallest signal-to-noise ratio in the frequency range of the criterion.
     fn least(&self, criterion: &NoiseCriterion) -> f64 {
         let inside = self.frequency.iter().zip(&self.ratio);
         inside
@@ -220,8 +222,8 @@ impl Spectra {
             .fold(f64::INFINITY, |least, (_, ratio)| least.min(*ratio))
     }
 
-    /// Returns the frequency of the smallest ratio below the peak; at lower frequencies, drift
-    /// raises the ratio.
+    /// Returns the frequency of the smallest signal-to-noise ratio below the frequency of the peak
+    /// ratio. At even lower frequencies, drift raises the ratio.
     fn foot(&self) -> f64 {
         let best = |range: std::ops::Range<usize>, sign: f64| {
             range.reduce(

@@ -1,9 +1,9 @@
 //! Reader of Broadband Platform text (SCEC, `.000`, `.090`, `.ver`).
 //!
-//! The first line has station and component, the second count, step and times; values separated by
-//! blanks follow. Accelerations and velocities have the same layout, and the files state neither
-//! quantity nor unit, so the caller must provide the unit. Files with four columns including time
-//! (`.bbp`) are read as plain columns.
+//! The first line contains the station and the component. The second line contains the count, the
+//! step and times. Values separated by blanks follow. Accelerations and velocities have the same
+//! layout, and the files state neither quantity nor unit, so the caller must provide the unit.
+//! Files with four columns including time (`.bbp`) are read as plain columns.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Hints};
@@ -17,8 +17,8 @@ use crate::units::{AccelerationUnit, MotionUnit};
 pub(crate) const FORMAT: Format =
     Format { name: "bbp", title: "Broadband Platform text (SCEC)", sniff, read };
 
-/// Number of values on the second line: count, step, hour, minute, second, epicentral distance,
-/// azimuth, back azimuth.
+/// Number of values on the second line. The values are count, step, hour, minute, second,
+/// epicentral distance, azimuth and back azimuth.
 const NUMBERS: usize = 8;
 
 /// Parses the count and the step on the second line.
@@ -31,8 +31,8 @@ fn count_and_step(source: &Source<'_>) -> Option<(usize, f64)> {
     fits.then_some((whole, *step))
 }
 
-/// Returns `true` if the first line contains words and the second states the number of values below
-/// it.
+/// Returns `true` if the first line contains words and the second line states the number of values
+/// below it.
 fn sniff(source: &Source<'_>) -> bool {
     let title = source.text(0);
     let words: Vec<&str> = title.split_whitespace().collect();
@@ -103,7 +103,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the unit that some programs write after station and component in the title.
+/// Returns the unit that some programs write in the title, after the station and the component.
 fn stated_unit(source: &Source<'_>) -> Option<MotionUnit> {
     let text = source.text(0).to_lowercase();
     let words = text.split([' ', '\t', '(', ')', '[', ']', ',']).filter(|word| !word.is_empty());

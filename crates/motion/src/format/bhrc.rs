@@ -1,4 +1,5 @@
-//! Reader of BHRC files (Iran): volume 1 per component, `10E13.6` in g/10, closed by `/&`.
+//! Reader of BHRC files (Iran): one block in the volume 1 layout per component, with values as
+//! `10E13.6` in g/10, closed by `/&`.
 //!
 //! Spec: header lines of files from the Iran Strong Motion Network (Building and Housing Research
 //! Center); the layout descends from CDMG volume 1 with equally spaced values.

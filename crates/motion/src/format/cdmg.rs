@@ -31,8 +31,9 @@ pub(crate) const CSMIP: Format = Format {
 
 /// RENADIC, Universidad de Chile: time and value pairs in g/10, often with a clock channel.
 ///
-/// Coordinates, dates and azimuths in the integers of these files are not used; they are mostly
-/// zero or of another day. Spec: "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each channel.
+/// Coordinates, dates and azimuths in the integers of these files are not used, because they are
+/// mostly zero or belong to another day. Spec: "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each
+/// channel.
 pub(crate) const RENADIC: Format = Format {
     name: "renadic",
     title: "RENADIC (Universidad de Chile)",
@@ -42,7 +43,7 @@ pub(crate) const RENADIC: Format = Format {
 
 /// USC Los Angeles volume 1: `1X,10F7.3` pairs at uneven times.
 ///
-/// Film records were digitized where the trace bends, so the step varies from 0.003 to 0.013 s.
+/// Film records were digitized at the bends of the trace, so the step varies from 0.003 to 0.013 s.
 /// Spec: Trifunac and Lee 1973, EERL report 73-03, volume 1 card images; Todorovska et al. 1999,
 /// USC network data release.
 pub(crate) const USC: Format = Format {
@@ -55,13 +56,13 @@ pub(crate) const USC: Format = Format {
     read: |source, hints| read_blocks(source, hints, USC.name, 1),
 };
 
-/// Number of lines that contain the integers of a header.
+/// Number of lines that are searched for the integers of a header.
 const FIRST_LINES: usize = 40;
 /// Minimum length of a line of integers (five characters each).
 const INTEGERS: usize = 40;
 
 /// Returns `true` if a header line contains integers in fixed columns (16I5), as in all files of
-/// this layout. A title alone is not sufficient, because it may stand above any table.
+/// this layout. A title alone is not sufficient, because a similar title may stand above any table.
 pub(super) fn holds_integers(source: &Source<'_>) -> bool {
     (1..FIRST_LINES).any(|line| {
         let raw = source.raw(line);
@@ -70,7 +71,7 @@ pub(super) fn holds_integers(source: &Source<'_>) -> bool {
     })
 }
 
-/// Number of header lines: text, and 7 lines each of integers and reals.
+/// Number of header lines: 13 lines of text, 7 lines of integers and 7 lines of reals.
 const HEADER_LINES: usize = 27;
 
 fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
@@ -192,7 +193,8 @@ fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
     source.header(line, what, quoted(&source.text(line)))
 }
 
-/// Returns the station name in columns 1 to 40; the network and the kind of data follow it.
+/// Returns the station name in columns 1 to 40; the network and the kind of data follow in further
+/// columns.
 pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
     let text = latin1(source.slice(line, 0, 40));
     text.trim_start().split("   ").next().unwrap_or("").trim().to_owned()
@@ -210,7 +212,7 @@ pub(crate) fn stated_start(source: &Source<'_>, first: usize) -> Option<(usize, 
     (first..first + 6).find_map(|line| Some((line, start_in(source, line)?)))
 }
 
-/// Returns the text after the key of a start time.
+/// Returns the text after the key that announces a start time.
 fn start_in(source: &Source<'_>, line: usize) -> Option<String> {
     let keys = ["START TIME:", "TRIGGER TIME:"];
     let at = keys.into_iter().find_map(|key| Some(source.find(line, key)? + key.len()))?;

@@ -86,7 +86,8 @@ fn damaged(source: &Source<'_>, line: usize, expected: &str) -> ReadError {
     )
 }
 
-/// Reads the header from its counts: text lines, integers, reals, comments, data line.
+/// Reads a header, which states how many text lines, integers, reals and comments it has; the data
+/// line follows.
 fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     if !source.has(first, "(Format v") {
         return Err(damaged(source, first, "\"... (Format v01.20 with 13 text lines)\""));
@@ -189,7 +190,7 @@ fn read_channel(
     for value in &mut values {
         *value *= factor;
         if value.abs() > 100.0 * LARGEST_ACCELERATION {
-            return Err(damaged(source, line, "accelerations of a possible size"));
+            return Err(damaged(source, line, "accelerations of a plausible size"));
         }
     }
     if record.channels.is_empty() {
@@ -211,7 +212,8 @@ fn read_channel(
     if unit == Some(UNIT_COUNTS) {
         let offset = math::take_mean(&mut channel.acceleration);
         record.notes.push(format!(
-            "channel {}: counts times {factor:.6e} m/s2; digitizer offset of {offset:.4} m/s2 (mean \
+            "channel {}: counts multiplied by {factor:.6e} m/s2; digitizer offset of {offset:.4} \
+             m/s2 (mean \
              of the record) removed",
             channel.name
         ));
@@ -234,8 +236,8 @@ fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
     site.at(header.real(1).zip(header.real(2)))
 }
 
-/// Returns the counts-to-acceleration factor `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the
-/// caller's counts per m/s².
+/// Returns the factor that converts counts to accelerations: the reciprocal of the sensitivity
+/// given by the caller (counts per m/s²), or else `LSB (µV) / (sensor sensitivity (V/g) × gain)`.
 fn counts_to_si(
     source: &Source<'_>,
     hints: &Hints<'_>,

@@ -1,4 +1,5 @@
-//! Converts channels with SEED codes whose samples are counts or have a stated unit.
+//! Converts the samples of channels with SEED codes, which are counts or have a stated unit, to
+//! accelerations.
 
 use super::source::Source;
 use super::{Hints, seed};
@@ -19,7 +20,7 @@ pub(super) struct Samples {
     pub(super) values: Vec<f64>,
     /// Unit stated in the file.
     pub(super) unit: Unit,
-    /// Direction of the channel, if the file states more than the channel code.
+    /// Direction of the channel, if the file states it in addition to the channel code.
     pub(super) direction: Option<Direction>,
 }
 
@@ -83,7 +84,7 @@ pub(super) fn channel(
                     (),
                     Refusal::OtherInstrument,
                     "a channel of accelerations",
-                    format!("{name}, whose unit is one of {quantity}"),
+                    format!("{name}, whose unit is a unit of {quantity}"),
                     "give the accelerations of the same station, or state that this is to be \
                      differentiated",
                 ));
@@ -114,7 +115,7 @@ pub(super) fn channel(
     Ok(channel)
 }
 
-/// Returns the codes of the stations of all channels, each once.
+/// Returns the distinct station codes of all channels.
 pub(super) fn stations(record: &Record) -> String {
     let mut all: Vec<&str> = record.channels.iter().map(|c| c.site.station.as_str()).collect();
     all.dedup();

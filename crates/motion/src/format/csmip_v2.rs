@@ -107,7 +107,8 @@ fn read_channel(
     source.end_of_channel(next, "CORRECTED ACCELEROGRAM")
 }
 
-/// Reads one block of the quantity `key` (acc, vel, dis), if this line is its data line.
+/// Reads one block of the quantity `key` (acc, vel, dis), if the given line is the data line of
+/// such a block.
 fn read_block(
     source: &Source<'_>,
     record: &mut Record,
@@ -144,8 +145,8 @@ fn unit(
     })
 }
 
-/// Returns the step on the data line. Real 61 of the header refines it if both agree within the
-/// printed digits.
+/// Returns the step on the data line. Real 61 of the header replaces the printed step if both agree
+/// within the printed digits.
 fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
     let printed = source
         .printed_after(data, "spaced at")

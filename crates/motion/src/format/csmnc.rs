@@ -107,7 +107,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
 }
 
 /// Checks that count and step agree with the stated duration. A difference of one step and half of
-/// the last digit is allowed, because conventions of counting and rounding differ.
+/// the last digit is allowed, because publishers count samples and round the duration differently.
 fn check_duration(
     source: &Source<'_>,
     line: usize,

@@ -32,7 +32,7 @@ impl Timed {
     }
 }
 
-/// Returns the even step of the times, and the columns at that step.
+/// Returns the even step of the times (s), and the columns sampled at this step.
 ///
 /// Times that are even within their printed digits give the step exactly. Other times are
 /// interpolated linearly to a finer even step, with a warning.
@@ -126,14 +126,14 @@ pub(crate) fn even_steps(
     Ok((step, columns))
 }
 
-/// Returns the rounding error (s) of a time. It depends on the time since the first sample and on
-/// the magnitude of the number, because times since 1970 are large.
+/// Returns the rounding error (s) of a time. The error depends on the time since the first sample
+/// and on the magnitude of the number, because times since 1970 are large.
 fn slack(time: f64, first: f64) -> f64 {
     1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
 }
 
-/// Returns a round step for which no time deviates by more than one unit of its last digit, as with
-/// truncated times.
+/// Returns a round step such that no time deviates from even spacing by more than one unit of its
+/// last printed digit, as is the case for truncated times.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {

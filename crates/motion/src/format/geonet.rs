@@ -1,9 +1,9 @@
 //! Reader of GeoNet V1A (uncorrected) and V2A (corrected) accelerograms, New Zealand, in
 //! millimeters.
 //!
-//! A component has 16 text lines, 10 lines of ten numbers of 8 columns, then blocks of ten columns
-//! of 8; V2A files include the pads of the filter. Spec: GeoNet, "Strong motion data, file formats"
-//! (GNS Science).
+//! A component has 16 text lines, 10 lines of ten numbers, each 8 characters wide, then blocks of
+//! data in the same columns; V2A files include the pads of the filter. Spec: GeoNet, "Strong motion
+//! data, file formats" (GNS Science).
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
 use super::{Format, Hints};
@@ -47,7 +47,7 @@ fn read_component(
         return Err(source.damaged(first,
             "\"Corrected accelerogram\" or \"Uncorrected accelerogram\" at the start of a component",
             quoted(&source.text(first)),
-            "a header states another number of points than the file contains; get the file again \
+            "a header states a different number of points than the file contains; get the file again \
              from its source",
         ));
     }

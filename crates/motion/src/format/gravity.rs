@@ -5,8 +5,8 @@ use crate::format::Source;
 use crate::math::{STANDARD_GRAVITY, peak, take_mean};
 use crate::record::{Channel, Quantity, Record};
 
-/// Relative tolerance of a mean compared with gravity, for calibration errors and for the tilt of a
-/// single axis.
+/// Relative difference from gravity up to which a mean is considered gravity. The tolerance covers
+/// calibration errors and the tilt of a single axis.
 const TOLERANCE: f64 = 0.05;
 /// Largest mean (m/s²) of a ground motion over a whole record; a larger mean is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
@@ -23,7 +23,7 @@ const LARGEST_TILT: f64 = 3.0;
 /// several axes of a sensor.
 ///
 /// # Errors
-/// If another mean is too large for a ground motion.
+/// If a mean that is not gravity is too large for a ground motion.
 pub(super) fn take_out(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     let means: Vec<f64> = record.channels.iter().map(mean).collect();
     let sensor = |channel: &Channel| (channel.site.station.clone(), channel.site.sensor.clone());

@@ -40,7 +40,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Reads one waveform from its `WID2` line; also returns the line after its `CHK2` line.
+/// Reads one waveform, which begins with its `WID2` line. Also returns the number of the line after
+/// the `CHK2` line.
 fn section(source: &Source<'_>, head: usize) -> Result<(Samples, usize), ReadError> {
     let text =
         |from: usize, to: usize| latin1(source.slice(head, from, to - from)).trim().to_owned();
@@ -169,7 +170,7 @@ fn six_bits(encoded: impl Iterator<Item = u8>, count: usize) -> Option<Vec<i64>>
     open.is_none().then_some(numbers)
 }
 
-/// Integrates second differences to samples; `None` if a sample exceeds 32 bits.
+/// Sums second differences twice to obtain the samples; `None` if a sample exceeds 32 bits.
 fn twice_summed(differences: &[i64]) -> Option<Vec<i64>> {
     let (mut value, mut slope) = (0_i64, 0_i64);
     let mut all = Vec::with_capacity(differences.len());
@@ -181,7 +182,8 @@ fn twice_summed(differences: &[i64]) -> Option<Vec<i64>> {
     Some(all)
 }
 
-/// Returns the checksum of the format: the absolute value of a running sum kept below 10⁸.
+/// Returns the checksum of the format: the absolute value of a running sum that is kept below 10⁸
+/// in magnitude.
 fn checksum(values: &[i64]) -> i64 {
     const MODULUS: i64 = 100_000_000;
     let sum = values.iter().fold(0_i64, |sum, value| (sum + value % MODULUS) % MODULUS);

@@ -1,4 +1,4 @@
-//! Options of the caller, with a record of which were used by the reader.
+//! Options of the caller, with a record of those that the reader has used.
 
 use std::cell::{Cell, RefCell};
 
@@ -8,7 +8,8 @@ use crate::record::Quantity;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
-/// Largest relative difference between two sensitivities of one channel that counts as rounding.
+/// Largest relative difference between two sensitivities of one channel that is considered
+/// rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 
 /// Options of the caller, as seen by a reader.
@@ -21,7 +22,7 @@ pub(super) struct Hints<'a> {
     time_step: Cell<bool>,
     sensitivity: Cell<bool>,
     recorded: Cell<bool>,
-    /// Metadata of one channel that contradict each other, in words.
+    /// Description of contradictory metadata of one channel, if there are any.
     contradiction: RefCell<Option<String>>,
 }
 
@@ -43,7 +44,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Marks the options used by another reader as used.
+    /// Also marks as used the options that another reader has used.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),
@@ -101,7 +102,8 @@ impl<'a> Hints<'a> {
         self.contradiction.borrow().clone()
     }
 
-    /// Describes that no metadata match a channel, for the error about a missing sensitivity.
+    /// Returns a statement that no metadata match a channel, for the error about a missing
+    /// sensitivity.
     pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
         let count = self.options.instruments.len();
         if count == 0 {

@@ -1,8 +1,8 @@
 //! Reader of K-NET and KiK-net files (NIED, Japan): one component in counts, with a scale factor
 //! and a large offset.
 //!
-//! The offset, often larger than the motion, is the mean of the whole record; the peak in the
-//! header is stated after its removal. Spec: NIED, "K-NET ASCII format" (knetform).
+//! The offset, which is often larger than the motion, is the mean of the whole record. The peak in
+//! the header refers to the motion without the offset. Spec: NIED, "K-NET ASCII format" (knetform).
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
@@ -119,8 +119,8 @@ fn scale(text: &str) -> Option<f64> {
     (factor.is_finite() && factor > 0.0).then_some(factor)
 }
 
-/// Parses a direction. K-NET names it; KiK-net numbers it 1 to 3 in the borehole and 4 to 6 at the
-/// surface.
+/// Parses a direction. In K-NET files, it is a name; in KiK-net files, it is a number, 1 to 3 in
+/// the borehole and 4 to 6 at the surface.
 fn direction(text: &str) -> (String, Direction, bool) {
     let (name, borehole) = match text.trim() {
         "1" => ("N-S", true),

@@ -57,7 +57,8 @@ struct Trace {
     values: Vec<f64>,
 }
 
-/// Largest difference between the stated times and the sample count that is not a gap, in samples.
+/// Largest difference, in samples, between the stated times and the sample count that is not
+/// considered a gap.
 const LARGEST_OFFSET: f64 = 0.6;
 /// Largest relative error of the sampling rate caused by the recorder's clock.
 const LARGEST_CLOCK_ERROR: f64 = 2e-4;
@@ -271,7 +272,9 @@ fn joined(
         let repeated = found - pieces.len();
         record.warn(
             None,
-            format!("channel {channel}: {repeated} data records that repeat another were left out"),
+            format!(
+                "channel {channel}: {repeated} data records that repeat earlier ones were left out"
+            ),
         );
     }
     let mut pieces = pieces.into_iter();
@@ -296,13 +299,14 @@ fn joined(
                 (),
                 format!("channel {channel} without gaps and overlaps"),
                 format!(
-                    "{what}s of {:.4} s in sum up to {}: {} samples at {rate} Hz last {counted:.4} s, \
+                    "{what}s of {:.4} s in total up to {}: {} samples at {rate} Hz last \
+                     {counted:.4} s, \
                      and the times of their data records span {stated:.4} s",
                     off.abs(),
                     piece.start,
                     values.len(),
                 ),
-                "get the record again without gaps, or cut the file into parts without them",
+                "get the record again without gaps, or cut the file into parts without gaps",
             ));
         }
         drift = if off.abs() > drift.abs() { off } else { drift };
@@ -377,7 +381,7 @@ fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
 /// Decodes Steim-1 and Steim-2 data.
 ///
 /// The data are frames of 16 words that hold first differences. The first word of a frame has a
-/// two-bit code for every word, which states how its differences are packed.
+/// two-bit code for every word, which states how the differences in that word are packed.
 fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64>> {
     let mut differences: Vec<i64> = Vec::with_capacity(samples);
     let (mut first, mut last) = (0_i64, 0_i64);

@@ -56,14 +56,14 @@ pub struct ReadOptions {
     pub unit: Option<AccelerationUnit>,
     /// Time step (s), for formats that do not state it.
     pub time_step: Option<f64>,
-    /// Sensitivity in counts per m/s², for files of counts; overrides a COSMOS header. In counts
-    /// per m/s or per m if [`ReadOptions::recorded`] is velocity or displacement.
+    /// Sensitivity in counts per m/s², for files of counts; overrides a COSMOS header. The unit is
+    /// counts per m/s or per m if [`ReadOptions::recorded`] is velocity or displacement.
     pub sensitivity: Option<f64>,
-    /// Metadata of single channels. The first match takes precedence over the sensitivity for all
-    /// channels.
+    /// Metadata of single channels. The first entry that matches a channel takes precedence over
+    /// the sensitivity for all channels.
     pub instruments: Vec<Instrument>,
-    /// Quantity recorded in SEED and SAC files, which overrides their channel codes. Velocity and
-    /// displacement are differentiated.
+    /// Quantity recorded in SEED and SAC files; takes precedence over the channel codes. Velocity
+    /// and displacement are differentiated.
     pub recorded: Option<Quantity>,
 }
 
@@ -105,7 +105,7 @@ impl Format {
             return Err(source.error(
                 (),
                 Refusal::Options,
-                "one sensitivity for each channel in the metadata given",
+                "one sensitivity for each channel in the given metadata",
                 found,
                 "give only the StationXML valid at the time of the record",
             ));
@@ -157,7 +157,7 @@ pub const FORMATS: &[Format] = &[
     columns::FORMAT,
 ];
 
-/// Known formats that are refused; these are tried first.
+/// Known formats that are refused. These formats are tried before all others.
 const KNOWN_OTHERS: &[Format] = &[
     refused::HDF5,
     refused::WEB_PAGE,
@@ -421,7 +421,8 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
 }
 
 /// Returns the sample that is a placeholder for a missing value, such as -9999 in one of the units
-/// of files. It differs from its neighbors three times as much as any other sample.
+/// of files. Such a sample differs from its neighbors more than three times as much as any other
+/// sample.
 fn missing_value(values: &[f64]) -> Option<usize> {
     let jump = |row: usize| (values[row] - values[row - 1]).abs();
     let largest = (1..values.len()).max_by(|a, b| jump(*a).total_cmp(&jump(*b)))?;
@@ -435,8 +436,8 @@ fn missing_value(values: &[f64]) -> Option<usize> {
     })
 }
 
-/// Returns `true` if a value, in one of the units of files, has only nines (at least three) or is
-/// another common placeholder.
+/// Returns `true` if a value, in one of the units of files, consists only of nines (at least three)
+/// or is another common placeholder.
 fn is_mark(value: f64) -> bool {
     AccelerationUnit::ALL.iter().any(|unit| {
         let number = (value / unit.factor()).abs();
@@ -463,13 +464,15 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
     Err(source.header(line, format!("{what}, 1 or more"), value.to_string()))
 }
 
-/// Largest number of values that may fill up a last line: one less than ten, the widest layout.
+/// Largest number of values that may be added to fill up the last line: one less than the ten
+/// values per line of the widest layout.
 const FILLED: usize = 9;
 
-/// Returns the number of values to use if the header states a count.
+/// Returns how many values are used if the header states their number.
 ///
-/// All values are used if they are one less or up to two more than stated, because headers in
-/// circulation are off by that much. The stated number is used if the last line was filled up.
+/// All values are used if they are one less or up to two more than stated, because the numbers in
+/// published headers are wrong by this much. The stated number is used if the last line was filled
+/// up.
 ///
 /// # Errors
 /// If there are fewer or more values: the file is truncated, or its header belongs to another file.
@@ -511,7 +514,7 @@ fn check_count(
 }
 
 /// Checks the count as [`check_count`], for a header that states the length in whole seconds; a
-/// difference of up to one second is rounding.
+/// difference of up to one second is considered rounding.
 fn check_seconds(
     source: &Source<'_>,
     record: &mut Record,

@@ -19,7 +19,7 @@ fn sniff(source: &Source<'_>) -> bool {
     written(source, 0).starts_with("# barrelstack motion")
 }
 
-/// Returns a line in UTF-8 as it was written.
+/// Returns the trimmed text of a line, decoded as UTF-8, or as Latin-1 if it is not valid UTF-8.
 fn written(source: &Source<'_>, line: usize) -> String {
     std::str::from_utf8(source.raw(line))
         .map_or_else(|_| source.text(line), |t| t.trim().to_owned())
@@ -42,8 +42,9 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     })
 }
 
-/// Builds the record described by the header in the lines before `end`. `columns` returns the
-/// samples of the named channels in the stated unit; none may exceed the given limit.
+/// Builds the record described by the header in the lines before `end`. The function `columns`
+/// returns the samples of the named channels in the stated unit; it gets the limit that no sample
+/// may exceed.
 pub(super) fn described(
     source: &Source<'_>,
     end: usize,

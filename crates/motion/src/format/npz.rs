@@ -1,5 +1,5 @@
-//! Reader of NumPy archives written by this crate: arrays of accelerations, and the header in
-//! arrays of strings.
+//! Reader of NumPy archives written by this crate: arrays of accelerations, and arrays of strings
+//! that contain the header.
 //!
 //! Spec: NumPy enhancement proposal 1, the `.npy` format, versions 1.0 and 2.0;
 //! [`crate::write::npz`].
@@ -44,7 +44,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
                 Some(head) => shorten(&latin1(head)),
                 None => format!("{} bytes", bytes.len()),
             };
-            damaged(&format!("numbers or strings in a row as array {name}"), found)
+            damaged(&format!("a one-dimensional array {name} of numbers or strings"), found)
         })?;
         arrays.insert(name, array);
     }

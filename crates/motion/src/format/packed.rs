@@ -12,9 +12,9 @@ use crate::record::Record;
 
 /// Largest size of an unpacked file (bytes), so that a small archive cannot exhaust the memory.
 ///
-/// While they are read, lines of one digit need sixteen times their size: 192 MB at this limit, 1
-/// GB for a limit of 64 MB. An hour of one component at 100 Hz needs a quarter of the limit as
-/// text.
+/// While a text is read, lines of one digit need sixteen times their size in memory: 192 MB at this
+/// limit; a limit of 64 MB would need 1 GB. As text, an hour of one component at 100 Hz takes a
+/// quarter of the limit.
 pub(crate) const LARGEST: u64 = 12 << 20;
 
 /// Reads the record in a packed file; `None` if the file is not packed.
@@ -42,7 +42,7 @@ pub(super) fn read(
     Ok(Some(record))
 }
 
-/// Reads an unpacked file; a file that is packed again is not opened.
+/// Reads an unpacked file. If this file is packed itself, it is refused.
 fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
     let inside = Source::new(name, bytes);
     check_bytes(&inside)?;
@@ -220,8 +220,8 @@ fn several(source: &Source<'_>, groups: &[RecordFiles], found: &[(String, Record
     )
 }
 
-/// Returns the error for an archive without a record: the error of its only file, or of the first
-/// file that lacks information.
+/// Returns the error for an archive without a record: the error of the only file in the archive, or
+/// of the first file that lacks information.
 fn none(
     source: &Source<'_>,
     names: &[String],

@@ -58,7 +58,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         for (line, column) in blanks {
             record.warn(
                 line + 1,
-                format!("column {}: a blank field, read as 0 like in Fortran", column + 1),
+                format!("column {}: a blank field, read as 0 as in Fortran", column + 1),
             );
         }
         values = by_column;
@@ -76,8 +76,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
 /// Positions of blank fields: line and first column, counted from 0.
 type Blanks = Vec<(usize, usize)>;
 
-/// Reads the values in columns as wide as in the first row, and the positions of blank fields.
-/// Returns `None` if the rows do not have fixed columns.
+/// Reads the values in fixed columns, whose width is taken from the first row. Also returns the
+/// positions of blank fields. Returns `None` if the rows do not have fixed columns.
 fn in_columns(
     source: &Source<'_>,
     start: usize,

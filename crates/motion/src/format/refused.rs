@@ -93,8 +93,8 @@ fn xml(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Err(source.not_acceleration((), "an acceleration history", "XML metadata", remedy))
 }
 
-/// Returns the first of two consecutive rows that begin with a date or a time of day and end with a
-/// number.
+/// Returns the first line of two consecutive rows that begin with a date or a time of day and end
+/// with a number.
 pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
     let clock = |text: &str| {
         let numbers = |text: &str, marks: &[char]| {
@@ -118,8 +118,8 @@ pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| dated(line) && dated(line + 1))
 }
 
-/// Returns the first of two consecutive rows that are numbers surrounded by other characters, such
-/// as quotation marks.
+/// Returns the first line of two consecutive rows that consist of numbers surrounded by other
+/// characters, such as quotation marks.
 pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
     let marks =
         ["\"", "'", "|", "&", "\\", "[", "]", "{", "}", "(", ")", "$", ":", "\u{e2}\u{88}\u{92}"];
@@ -135,7 +135,7 @@ pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| marked(line) && marked(line + 1))
 }
 
-/// Returns the last line of a file without rows of numbers, if it looks like a line of headings: it
+/// Returns the last line of a file without rows of numbers, if this line looks like headings: it
 /// names acceleration or time, and is not a sentence.
 pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
     let text = |line: usize| source.text(line);
@@ -342,8 +342,8 @@ pub(crate) const COSMOS_SPECTRA: Format = Format {
     },
 };
 
-/// Returns `true` for the tag at the start of a Kinemetrics file: `K`, byte order, version,
-/// instrument, and the kind of frame as a 32-bit number, which is 1 for the file header.
+/// Returns `true` for a file that starts with the tag of Kinemetrics: `K`, byte order, version,
+/// instrument, and the kind of frame, a 32-bit number that is 1 for the file header.
 fn is_evt(source: &Source<'_>) -> bool {
     let Some(&[b'K', order @ 0..=1, version @ 0..=3, _, a, b, c, d]) =
         source.bytes.first_chunk::<8>()
@@ -369,8 +369,8 @@ fn big_endian(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_be_bytes(four)).ok()
 }
 
-/// Returns `true` for blocks of one second, each with its length and its time; the second block is
-/// also checked.
+/// Returns `true` for WIN data: blocks of one second, each with its length and its time. The times
+/// of the first two blocks are checked.
 ///
 /// Spec: Urabe and Tsukada 1991, WIN format (Earthquake Research Institute, Tokyo).
 fn is_win(bytes: &[u8]) -> bool {
@@ -385,8 +385,8 @@ fn is_win32(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0; 4]) && bytes.get(5..11).is_some_and(is_coded_time) && bytes.len() > 20
 }
 
-/// Returns `true` for an unformatted Fortran file whose first record is a line of 80 characters
-/// between its lengths.
+/// Returns `true` for an unformatted Fortran file whose first record is a line of 80 characters,
+/// with the record length before and after the line.
 ///
 /// Spec: Ottemöller, Voss and Havskov, SEISAN manual, appendix B.
 fn is_seisan(source: &Source<'_>) -> bool {

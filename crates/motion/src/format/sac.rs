@@ -21,8 +21,8 @@ const HEADER_BYTES: usize = 632;
 /// Length of the footer in version 7 (bytes).
 const FOOTER_BYTES: usize = 176;
 const UNDEFINED: f64 = -12345.0;
-/// Index of the header version. Other words: 79, number of points; 85, file type, where 1 is a time
-/// series; 105, evenly spaced.
+/// Index of the header word with the version. Other words used here are 79 (number of points), 85
+/// (file type, where 1 is a time series) and 105 (evenly spaced).
 const VERSION: usize = 76;
 const POINTS: usize = 79;
 const FILE_TYPE: usize = 85;
@@ -177,7 +177,10 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     if let Some(scale) = real(bytes, 3, big).filter(|scale| *scale != 1.0 && *scale != 0.0) {
         record.warn(
             None,
-            format!("the header states a scale of {scale}, which was not applied: check that the given unit or sensitivity is for the numbers as stored"),
+            format!(
+                "the header states a scale of {scale}, which was not applied: check that the \
+                     given unit or sensitivity applies to the numbers as stored"
+            ),
         );
     }
     let name = codes.channel.clone();
@@ -218,8 +221,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the step (s) in word 1, as the shortest decimal with the stored single precision: 0.02
-/// for 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
+/// Returns the step (s) stored in single precision in word 0, as the shortest decimal that rounds
+/// to the stored value: 0.02 for 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
 fn step(bytes: &[u8], big: bool) -> Option<f64> {
     let stored = f32::from_le_bytes(word(bytes, 0, big)?);
     stored.to_string().parse().ok()

@@ -1,4 +1,5 @@
-//! Channels with SEED codes, and the quantity they recorded according to their metadata.
+//! Determines the quantity that a channel with SEED codes recorded, and converts its samples to
+//! accelerations.
 
 use super::Hints;
 use super::source::{Source, quoted};
@@ -24,9 +25,10 @@ pub(super) fn quantity(
 /// Converts counts or values of a channel to accelerations, and removes the mean of a raw
 /// accelerometer.
 ///
-/// `scaled` contains SI values of the recorded quantity. The quantity comes from the caller, else
-/// from the metadata, else from the channel code. Velocities and displacements are differentiated
-/// if the caller or the metadata state them, but refused if only the channel code does.
+/// `scaled` contains SI values of the recorded quantity. The quantity is taken from the caller,
+/// else from the metadata, else from the channel code. Velocities and displacements are
+/// differentiated if the caller or the metadata state the quantity, but refused if only the channel
+/// code states it.
 pub(super) fn as_acceleration(
     source: &Source<'_>,
     record: &mut Record,

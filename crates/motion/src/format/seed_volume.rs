@@ -100,7 +100,7 @@ fn blockettes(text: &str, mut take: impl FnMut(&str, &str)) {
     }
 }
 
-/// The remaining fields of a blockette, read one after another.
+/// The fields of a blockette that have not been read yet.
 struct Fields<'a>(&'a str);
 
 impl<'a> Fields<'a> {
@@ -123,10 +123,10 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Unit codes with their names, and the unit if it is a unit of motion.
+/// Unit codes, each with the name of the unit and, if it is a unit of motion, the parsed unit.
 type Units = BTreeMap<u32, (String, Option<MotionUnit>)>;
 
-/// Reads the metadata of every channel with a sensitivity from the control headers.
+/// Reads, from the control headers, the metadata of every channel that states a sensitivity.
 fn instruments(abbreviations: &str, stations: &str) -> Vec<Instrument> {
     let mut units = Units::new();
     blockettes(abbreviations, |kind, content| {
@@ -179,8 +179,8 @@ fn names(content: &str) -> Option<(String, String)> {
     Some((fields.fixed(2).unwrap_or_default().to_owned(), station))
 }
 
-/// Reads a channel from blockette 052, without its sensitivity; also returns the SI value of the
-/// signal's unit.
+/// Reads a channel from blockette 052, which does not contain the sensitivity. Also returns the SI
+/// value of the unit of the signal.
 fn channel(
     content: &str,
     (network, station): &(String, String),

@@ -1,9 +1,10 @@
 //! Reader of USGS SMC files in cm/s²: corrected records at equal steps, and uncorrected records as
 //! time and value pairs.
 //!
-//! A file has 11 text lines, 6 lines 8I10, 10 lines 5E15.7, comments, and data 8E10.4 without
-//! blanks between values. Spec: USGS National Strong-Motion Program, "SMC-format data files"
-//! (smcfmt), and Converse and Brady 1992, USGS Open-File Report 92-296A.
+//! A file has 11 text lines, 6 lines in the format 8I10, 10 lines in the format 5E15.7, comments,
+//! and data in the format 8E10.4 without blanks between values. Spec: USGS National Strong-Motion
+//! Program, "SMC-format data files" (smcfmt), and Converse and Brady 1992, USGS Open-File Report
+//! 92-296A.
 
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};

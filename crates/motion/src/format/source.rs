@@ -16,7 +16,7 @@ pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
 /// Characters that spreadsheets and programs write around numbers.
 const MARKS: [char; 10] = ['"', '\'', '(', ')', '[', ']', '{', '}', '%', '$'];
 
-/// SI value of the gal (m/s²); most networks use it under the name cm/s².
+/// SI value of the gal (m/s²); most networks write this unit as cm/s².
 pub(crate) const GAL: f64 = 0.01;
 
 /// A file split into lines. Line numbers count from 0 here, but from 1 in messages.
@@ -116,7 +116,7 @@ impl<'a> Source<'a> {
             .find_map(|line| Some((line, value(&self.text(line))?.trim().to_owned())))
     }
 
-    /// Returns a required header field, or an error that it is missing.
+    /// Returns a required header field, or an error stating that the field is missing.
     pub(crate) fn needed<T>(&self, field: Option<T>, key: &str) -> Result<T, ReadError> {
         field.ok_or_else(|| self.header((), format!("a value for \"{key}\""), "none"))
     }
@@ -150,7 +150,7 @@ impl<'a> Source<'a> {
         Err(self.damaged(line, expected, quoted(&self.text(line)), remedy))
     }
 
-    /// Checks that all header lines of a block exist, with data after them.
+    /// Checks that all header lines of a block exist and are followed by data.
     pub(crate) fn require_header(&self, first: usize, lines: usize) -> Result<(), ReadError> {
         let found = self.lines.len() - first;
         if found > lines {
@@ -160,7 +160,8 @@ impl<'a> Source<'a> {
     }
 
     /// Returns the line after the end of a channel, which is marked "/&" or "end of data" after
-    /// optional blank lines. The mark may be missing if the next channel begins with `next`.
+    /// optional blank lines. The mark may be missing if the line contains `next`, with which the
+    /// next channel begins.
     pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
         let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
         let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };
@@ -174,7 +175,8 @@ impl<'a> Source<'a> {
             line,
             "the end of the channel, \"/&\"",
             quoted(&self.text(line)),
-            "the header states another number of points than the file contains; get the file again \
+            "the header states a different number of points than the file contains; get the file \
+             again \
              from its source",
         ))
     }
@@ -236,7 +238,8 @@ impl<'a> Source<'a> {
         .into()
     }
 
-    /// Returns an error about a field that is not a number.
+    /// Returns an error about a field that is not a number, with a remedy that depends on the text
+    /// of the field.
     pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
         let text = latin1(field.trim_ascii());
         let begins = self.raw(line)[..column.min(self.raw(line).len())].trim_ascii().is_empty();
@@ -305,8 +308,8 @@ impl<'a> Source<'a> {
     /// Reads `count` numbers from fixed columns, starting on `line`. Returns the numbers and the
     /// next line.
     ///
-    /// Fields are split by column. A line that does not fit the columns is split at blanks, if that
-    /// gives the right number of fields.
+    /// A line is split at fixed columns. If the line does not fit these columns, it is split at
+    /// blanks, provided that this gives the right number of fields.
     pub(crate) fn fixed(
         &self,
         line: usize,
@@ -352,8 +355,8 @@ impl<'a> Source<'a> {
         Ok((values, next))
     }
 
-    /// Returns the values, the next line, and the number of excess values on the last line, which
-    /// is 0 unless `lenient`.
+    /// Returns the values, the next line, and the number of excess values on the last line. If
+    /// `lenient` is `false`, excess values are an error.
     fn fixed_or_more(
         &self,
         line: usize,
@@ -470,7 +473,7 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    /// Returns `value`, or an error if it exceeds any possible acceleration.
+    /// Returns `value`, or an error if the value exceeds any possible acceleration.
     pub(crate) fn within(
         &self,
         line: usize,
@@ -490,7 +493,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Returns an error about a row with other than `width` numbers.
+    /// Returns an error about a row that does not have `width` numbers.
     pub(crate) fn ragged(&self, line: usize, width: usize, found: usize) -> ReadError {
         self.damaged(
             (line, self.end_of(line)),
@@ -500,7 +503,7 @@ impl<'a> Source<'a> {
         )
     }
 
-    /// Refuses the first byte that is not valid in text.
+    /// Returns an error that locates the first byte that is not valid in text, if there is one.
     pub(crate) fn require_text(&self) -> Result<(), ReadError> {
         for (line, raw) in self.lines.iter().enumerate() {
             if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {

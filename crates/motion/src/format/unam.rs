@@ -26,7 +26,7 @@ fn sniff(source: &Source<'_>) -> bool {
     (0..20).any(|line| source.has(line, "ARCHIVO EST") && source.has(line, "NDAR DE ACELERACI"))
 }
 
-/// Reduces a key to letters and digits, so that "C1-C6, (s)" equals "C1-C6 (s)".
+/// Reduces a key to its letters and digits, so that "C1-C6, (s)" equals "C1-C6 (s)".
 fn reduced(text: &str) -> String {
     text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_uppercase()
 }
@@ -40,7 +40,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     found.filter(|(_, value)| !value.is_empty())
 }
 
-/// Parses a list of one or more parts, such as `/a/b/c`.
+/// Parses a list of one or more items, such as `/a/b/c`.
 fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
@@ -126,8 +126,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the time of the first sample. It is on the day of the event, or on the next day if it
-/// would otherwise precede the event by more than half a day.
+/// Returns the time of the first sample. The date is the day of the event, or the next day if the
+/// first sample would otherwise precede the event by more than half a day.
 fn start(source: &Source<'_>) -> Option<Utc> {
     let (_, day) = field(source, "FECHA DEL SISMO")?;
     let at = |hour: String| Utc::in_header(&format!("{day} {hour}"), DateOrder::DayFirst);
@@ -138,7 +138,7 @@ fn start(source: &Source<'_>) -> Option<Utc> {
 }
 
 /// Returns the earthquake. Of several magnitudes, such as `/Mb=5.2/Ms=5.8`, the moment magnitude is
-/// used, else the surface-wave magnitude, else the first.
+/// used, else the surface-wave magnitude, else the first magnitude.
 fn earthquake(source: &Source<'_>) -> Earthquake {
     let stated = field(source, "MAGNITUD").map(|(_, text)| list(&text)).unwrap_or_default();
     let all: Vec<(&str, Option<f64>)> = stated

@@ -1,4 +1,4 @@
-//! Access to the files inside a zip archive, stored or deflated.
+//! Access to the files inside a zip archive; files may be stored or deflated.
 //!
 //! Spec: PKWARE, APPNOTE 6.3, sections 4.3.7, 4.3.12 and 4.3.16; encryption, multi-part archives
 //! and zip64 are not supported.
@@ -82,7 +82,7 @@ impl Entry<'_> {
             return Err(format!("{} with more than {} MB", self.name, limit >> 20));
         }
         if crc32fast::hash(&bytes) != self.sum {
-            return Err(format!("{} with another checksum than stated", self.name));
+            return Err(format!("{} whose checksum differs from the stated one", self.name));
         }
         Ok(bytes)
     }

@@ -13,8 +13,8 @@ use crate::synthesis::{motion, step_count};
 pub enum SiteAmplification {
     /// No amplification.
     None,
-    /// Points `(frequency (Hz), amplification)` in ascending order; linear between them in the
-    /// logarithm of frequency, constant outside.
+    /// Points `(frequency (Hz), amplification)` in ascending order; between the points, the
+    /// amplification is linear in the logarithm of frequency; outside, it is constant.
     Table(Vec<(f64, f64)>),
 }
 
@@ -28,7 +28,7 @@ pub struct Path {
     pub quality: f64,
     /// Exponent of the quality factor.
     pub quality_exponent: f64,
-    /// High-frequency attenuation at the site `κ` (s).
+    /// High-frequency attenuation `κ` at the site (s).
     pub kappa: f64,
     /// Amplification at the site.
     pub amplification: SiteAmplification,
@@ -46,7 +46,7 @@ pub struct BooreSource {
     pub magnitude: f64,
     /// Stress parameter `Δσ` (bar).
     pub stress: f64,
-    /// Shear-wave velocity at the source `β` (km/s).
+    /// Shear-wave velocity `β` at the source (km/s).
     pub velocity: f64,
     /// Density at the source (g/cm³).
     pub density: f64,
@@ -54,9 +54,9 @@ pub struct BooreSource {
     pub path: Path,
 }
 
-/// Position of the peak of the time window, as a fraction of the duration; below, its value at the
-/// end relative to the peak.
+/// Position of the peak of the time window, as a fraction of the duration.
 const WINDOW_PEAK: f64 = 0.2;
+/// Value of the time window at the end, relative to its peak.
 const WINDOW_END: f64 = 0.05;
 
 impl BooreSource {
@@ -78,7 +78,7 @@ impl BooreSource {
         }
     }
 
-    /// Returns the seismic moment (dyne cm) by Hanks and Kanamori (1979).
+    /// Returns the seismic moment (dyne cm) according to Hanks and Kanamori (1979).
     pub fn moment(&self) -> f64 {
         math::powf(10.0, 1.5 * self.magnitude + 16.05)
     }
@@ -187,8 +187,8 @@ impl BooreSource {
         Ok(spectrum.iter().take(steps + 1).map(|x| x.re).collect())
     }
 
-    /// Returns a motion with closed ends, high-passed at a fifth of the corner frequency (at least
-    /// 0.05 Hz).
+    /// Returns a motion that ends at rest at its initial position, high-passed at a fifth of the
+    /// corner frequency (at least 0.05 Hz).
     ///
     /// # Errors
     /// The same as for [`BooreSource::acceleration`].

@@ -108,17 +108,17 @@ pub struct CloughPenzien {
 }
 
 impl CloughPenzien {
-    /// Returns the model of firm soil by Der Kiureghian and Neuenhofer (1992).
+    /// Returns the firm-soil model of Der Kiureghian and Neuenhofer (1992).
     pub fn firm(rms: f64) -> Self {
         Self::new(rms, 15.0, 0.6, 1.5, 0.6)
     }
 
-    /// Returns the model of medium soil by Der Kiureghian and Neuenhofer (1992).
+    /// Returns the medium-soil model of Der Kiureghian and Neuenhofer (1992).
     pub fn medium(rms: f64) -> Self {
         Self::new(rms, 10.0, 0.4, 1.0, 0.6)
     }
 
-    /// Returns the model of soft soil by Der Kiureghian and Neuenhofer (1992).
+    /// Returns the soft-soil model of Der Kiureghian and Neuenhofer (1992).
     pub fn soft(rms: f64) -> Self {
         Self::new(rms, 5.0, 0.2, 0.5, 0.6)
     }
@@ -197,8 +197,8 @@ impl CloughPenzien {
         Ok((0..=steps).map(|k| envelope.at(k as f64 * time_step) * spectrum[k].re).collect())
     }
 
-    /// Returns a motion of the given duration (s) with closed ends, so that the ground returns to
-    /// rest at its initial position.
+    /// Returns a motion of the given duration (s) after which the ground is at rest at its initial
+    /// position.
     ///
     /// # Errors
     /// The same as for [`CloughPenzien::acceleration`].

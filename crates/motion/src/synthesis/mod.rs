@@ -29,7 +29,7 @@ fn step_count(duration: f64, time_step: f64) -> Result<usize, MotionError> {
     Ok(steps as usize)
 }
 
-/// Processes simulated accelerations to a ground motion with its provenance.
+/// Processes simulated accelerations into a ground motion with its provenance.
 fn motion(
     name: &str,
     time_step: f64,

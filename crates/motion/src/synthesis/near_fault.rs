@@ -9,7 +9,7 @@ use crate::sampled::Sampled;
 use crate::synthesis::BooreSource;
 
 /// A velocity pulse added to a stochastic motion without long periods, following Mavroeidis and
-/// Papageorgiou (2003); the pulse is a closed form.
+/// Papageorgiou (2003). The pulse is a closed-form expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearFault {
     /// The velocity pulse.

@@ -6,7 +6,7 @@ use crate::error::MotionError;
 use crate::record::Record;
 
 /// Start of the comment with the velocity at the first sample of each channel, written if any of
-/// them is not zero.
+/// these velocities is not zero.
 pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
 
 /// First line of CSV files written by this crate; states quantity and unit.

@@ -2,8 +2,9 @@
 //!
 //! Every writer takes a [`Record`]. The notes of the record are the provenance and are written into
 //! the header. Channels are written side by side, cut to the shortest. AT2 has no field for the
-//! velocity at the first sample ([`crate::Channel::initial_velocity`]); it is written into the
-//! title, and the file reads back starting from rest. All other formats keep it.
+//! velocity at the first sample ([`crate::Channel::initial_velocity`]); this velocity is written
+//! into the title, and a record that is read from the file starts from rest. All other formats keep
+//! the velocity.
 
 mod at2;
 mod csv;
@@ -23,11 +24,12 @@ use crate::error::MotionError;
 use crate::join::require_step;
 use crate::record::{Channel, Record};
 
-/// Largest number of provenance lines in a header, because readers look for numbers only in the
-/// first lines of a file.
+/// Largest number of provenance lines in a header. The number is limited, because readers look for
+/// numbers only in the first lines of a file.
 const MOST_NOTES: usize = 40;
 
-/// Returns the common time step (s) of all channels and the number of samples of the shortest.
+/// Returns the common time step (s) of all channels and the number of samples of the shortest
+/// channel.
 fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     let Some(first) = record.channels.first() else {
         return Err(MotionError::parameter("channels to write", "at least 1", 0));
@@ -79,7 +81,7 @@ fn broken(text: &str, words: &[&str]) -> String {
 }
 
 /// Returns the provenance, one step per line. If there are too many steps, the last line contains
-/// the rest.
+/// all remaining steps.
 fn provenance(record: &Record) -> Vec<String> {
     let mut notes: Vec<String> = record
         .notes
@@ -94,7 +96,7 @@ fn provenance(record: &Record) -> Vec<String> {
     notes
 }
 
-/// Returns unique channel names without separators.
+/// Returns unique channel names that contain no separators.
 fn names(channels: &[Channel]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (k, channel) in channels.iter().enumerate() {

@@ -138,7 +138,8 @@ fn npy(values: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// Encodes an array of strings in UCS-4 as NumPy does; all are padded to the longest.
+/// Encodes an array of strings in UCS-4 as NumPy does; all strings are padded to the length of the
+/// longest string.
 fn npy_words(words: &[&str]) -> Vec<u8> {
     let longest = words.iter().map(|word| word.chars().count()).max().unwrap_or(0).max(1);
     let mut bytes = npy_head(&format!("<U{longest}"), words.len());

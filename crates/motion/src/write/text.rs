@@ -15,8 +15,8 @@
 //! There is one column per channel. Numbers have the fewest digits that read back to the same
 //! double.
 //!
-//! `# recorded:` states the start (UTC), location and sensor, in one line for all channels or one
-//! line for each (wrapped here):
+//! `# recorded:` states the start (UTC), location and sensor, in one line for all channels or in
+//! one line for each channel (wrapped here):
 //!
 //! ```text
 //! # recorded: start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12,
@@ -24,7 +24,7 @@
 //! ```
 //!
 //! Unknown values are omitted. `# initial_velocity:` (m/s, one per channel) is written if any of
-//! them is not zero.
+//! these velocities is not zero.
 //!
 //! In `# channels:`, `az=` is the azimuth (degrees clockwise from north); `vertical` means positive
 //! upward; `horizontal` is a horizontal direction of unknown azimuth; a name alone has an unknown

@@ -10,12 +10,12 @@ use wavelet::{Pair, Wavelet};
 
 /// Shortest and longest period of a pulse (s).
 const PERIODS: (f64, f64) = (0.25, 15.0);
-/// Number of intervals between the scales of these periods.
+/// Number of intervals into which the range of scales that corresponds to these periods is divided.
 const SCALES: usize = 50;
 /// Number of wavelets that form a pulse.
 const WAVELETS: usize = 10;
-/// Largest distance of a pulse's wavelets from the first, in units of its scale. Later searches
-/// exclude the same part of the record around a pulse.
+/// Largest distance in time between consecutive wavelets of a pulse, as a multiple of the scale of
+/// the pulse. Later searches exclude the part of the record within the same distance of the pulse.
 const REACH: f64 = 0.4;
 /// Number of candidate pulses examined in a pair of components.
 const PULSES: usize = 5;
@@ -27,8 +27,8 @@ const STEP: f64 = 0.01;
 pub struct ClassifiedPulse {
     /// `true` if the motion is pulse-like.
     pub pulse_like: bool,
-    /// Pulse indicator. A motion may be pulse-like if it is above 0.85 (Baker 2007) or above 0
-    /// (Shahi and Baker 2014).
+    /// Pulse indicator. A motion may be pulse-like if the indicator is above 0.85 (Baker 2007) or
+    /// above 0 (Shahi and Baker 2014).
     pub indicator: f64,
     /// Period of the pulse (s).
     pub period: f64,
@@ -41,13 +41,14 @@ pub struct ClassifiedPulse {
     pub pgv: f64,
 }
 
-/// Classifies one component by Baker (2007, BSSA 97:1486-1501):
+/// Classifies one component by the method of Baker (2007, BSSA 97:1486-1501):
 ///
 /// ```text
 /// PI = 1/(1 + exp(−23.3 + 14.6 PGV ratio + 20.5 energy ratio))
 /// ```
 ///
-/// The ratios compare the motion without the pulse to the whole motion.
+/// Each ratio is the value for the motion without the pulse divided by the value for the whole
+/// motion.
 ///
 /// The motion is pulse-like if PI exceeds 0.85, PGV is at least 30 cm/s, and the pulse reaches 10 %
 /// of its energy before the motion reaches 20 % of its energy.
@@ -62,20 +63,21 @@ pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionErr
 
 /// Classifies two horizontal components, separately and jointly.
 ///
-/// Each component is classified as by [`classify_component`]. The joint classification examines the
-/// directions of the five strongest wavelets (Shahi and Baker 2014, BSSA 104:2456-2466), with PGV
-/// in cm/s:
+/// Each component is classified as by [`classify_component`]. The joint classification examines
+/// five candidate pulses, in the directions of the five strongest wavelets (Shahi and Baker 2014,
+/// BSSA 104:2456-2466), with PGV in cm/s:
 ///
 /// ```text
 /// PC = 0.63 PGV ratio + 0.777 energy ratio
 /// PI = 9.384 (0.76 − PC − 0.0616 PGV)(PC + 6.914·10⁻⁴ PGV − 1.072) − 6.179
 /// ```
 ///
-/// A pulse counts if PI is positive and the pulse reaches 5 % of its energy before the motion
-/// reaches 17 % of its energy. Returns the first pulse that counts, or else the strongest pulse.
+/// The motion is pulse-like if, for one of these pulses, PI is positive and the pulse reaches 5 %
+/// of its energy before the motion reaches 17 % of its energy. Returns the first such pulse, or
+/// else the strongest pulse.
 ///
 /// # Errors
-/// If the steps differ, or as [`classify_component`].
+/// The same as for [`classify_component`], and if the time steps differ.
 pub fn classify_pair(
     first: &Sampled,
     second: &Sampled,
@@ -184,7 +186,7 @@ impl Thinned {
     }
 }
 
-/// A wavelet's position in time and scale, with its coefficients in both components.
+/// Position of a wavelet in time and scale, with the coefficients that it has in both components.
 #[derive(Clone, Copy)]
 struct Found {
     /// Neighboring scales (s) between which the scale of the pulse is refined.
@@ -261,8 +263,8 @@ struct Extracted {
 }
 
 impl Extracted {
-    /// Extracts ten wavelets of one scale. Each is the strongest wavelet of the remaining motion
-    /// near the previous one.
+    /// Extracts ten wavelets of one scale. Each wavelet is the strongest one of the remaining
+    /// motion near the previous wavelet.
     fn of(velocity: &[f64], time_step: f64, found: Found) -> Self {
         let (low, high) = found.scales;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]

@@ -6,7 +6,7 @@ use crate::fourier::{Complex, correlate, forward, inverse};
 
 /// Length of the wavelet's support, in the wavelet's own units.
 const SUPPORT: usize = 7;
-/// Number of times the grid of the wavelet's table is halved.
+/// Number of times that the spacing of the table of the wavelet is halved.
 const LEVELS: u32 = 8;
 /// Center frequency of the wavelet in its own units: a pulse of scale `s` has the period
 /// `s/0.7143`.
@@ -50,7 +50,7 @@ impl Wavelet {
         self.values.len() / 2
     }
 
-    /// Returns the coefficient in a series of the wavelet centered on sample `at`.
+    /// Returns the coefficient that the wavelet, centered on sample `at`, has in a series.
     pub(super) fn coefficient(&self, series: &[f64], at: usize) -> f64 {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -80,7 +80,7 @@ impl Wavelet {
     }
 
     /// Returns the autocorrelation of the wavelet at lags of 0, 1, … samples. Removing a wavelet
-    /// changes the coefficients of its neighbors by these amounts.
+    /// from a series reduces the coefficients at neighboring samples in proportion to these values.
     pub(super) fn overlap(&self) -> Vec<f64> {
         let n = self.values.len();
         let length = (2 * n).next_power_of_two();
@@ -93,7 +93,7 @@ impl Wavelet {
     }
 }
 
-/// The Fourier transform of two velocity histories, for many wavelets.
+/// Fourier transforms of two velocity histories, computed once for many wavelets.
 pub(super) struct Pair {
     spectrum: Vec<Complex>,
     samples: usize,
@@ -145,7 +145,8 @@ const FILTER: [f64; 8] = [
     -0.010_597_401_785_069_032,
 ];
 
-/// Computes the wavelet at a grid of halved integers, from the two-scale relation.
+/// Computes the wavelet on a grid that repeatedly halves the spacing between the integers, from the
+/// two-scale relation.
 fn table() -> Vec<f64> {
     let root = std::f64::consts::SQRT_2;
     // At the integers, the scaling function is an eigenvector of the relation with eigenvalue 1.

@@ -166,8 +166,9 @@ fn nzs_near_fault(distance: f64, t: f64) -> f64 {
     }
 }
 
-/// Returns the required response spectrum of ICC-ES AC156 with ASCE 7-16, section 6.5.1 (g), linear
-/// in the logarithms of both coordinates.
+/// Returns the required response spectrum (g) of ICC-ES AC156 with ASCE 7-16, section 6.5.1.
+/// Between its corner points, the logarithm of the acceleration is linear in the logarithm of the
+/// frequency.
 pub(super) fn ac156(sds: f64, height_ratio: f64, t: f64) -> f64 {
     let amplification = 1.0 + 2.0 * height_ratio;
     let flexible = (sds * amplification).min(1.6 * sds);

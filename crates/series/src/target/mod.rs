@@ -112,8 +112,8 @@ pub enum TargetSpectrum {
         /// Height of attachment divided by roof height, 0 to 1.
         height_ratio: f64,
     },
-    /// Points in ascending order of period; linear between them in the logarithms of both
-    /// coordinates, constant outside.
+    /// Points in ascending order of period; between the points, the logarithm of the acceleration
+    /// is linear in the logarithm of the period; outside, the acceleration is constant.
     Table {
         /// Period (s) and pseudo-acceleration (m/s²) of each point.
         points: Vec<(f64, f64)>,
@@ -159,7 +159,7 @@ impl TargetSpectrum {
     /// Checks that all parameters are in range.
     ///
     /// # Errors
-    /// Names the first parameter that is out of range.
+    /// If a parameter is out of range; the error names the first such parameter.
     pub fn check(&self) -> Result<(), MotionError> {
         let positive = MotionError::require_positive;
         match self {

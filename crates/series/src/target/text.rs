@@ -5,7 +5,7 @@ use std::str::FromStr;
 use super::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 use crate::error::MotionError;
 
-/// Parameters of a code; each is removed once it is read.
+/// Parameters of a code; each parameter is removed when it is read.
 struct Parameters<'a> {
     code: &'a str,
     pairs: Vec<(&'a str, &'a str)>,

@@ -1,5 +1,5 @@
-//! Detects scale factors in header texts. They are refused, because it is unknown whether they have
-//! been applied.
+//! Detects scale factors in header texts. A file with a scale factor is refused, because it is
+//! unknown whether the factor has been applied.
 
 use super::facts::{folded, says_acceleration, value_behind};
 use super::words::UNIT_WORDS;
@@ -7,7 +7,7 @@ use crate::error::ReadError;
 use crate::format::source::{Source, leading_text, quoted};
 use crate::units::MotionUnit;
 
-/// Names of a factor by which the values are to be multiplied.
+/// Keywords for a factor by which the values are to be multiplied.
 const FACTOR_KEYS: &[&str] = &[
     "scale factor",
     "scale_factor",
@@ -22,7 +22,7 @@ const FACTOR_KEYS: &[&str] = &[
     "gain",
 ];
 
-/// Names that are accepted only at the beginning of a line; elsewhere they may refer to an
+/// Keywords that mean a factor only at the beginning of a line; elsewhere, they may refer to an
 /// instrument.
 const AT_THE_BEGIN: [&str; 2] = ["scale", "gain"];
 
@@ -68,7 +68,8 @@ fn is_multiplied(lower: &str) -> bool {
     speaks && (in_parentheses() || marks.into_iter().any(|mark| has_factor(lower, mark)))
 }
 
-/// Returns `true` if `mark` is followed by a number other than 1 but not preceded by a number.
+/// Returns `true` if the text contains `mark`, followed by a number other than 1 and not preceded
+/// by a number.
 pub(super) fn has_factor(text: &str, mark: &str) -> bool {
     text.match_indices(mark).any(|(at, _)| {
         let of_a_number = text[..at].trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '*');

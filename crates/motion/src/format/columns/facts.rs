@@ -34,7 +34,8 @@ pub(super) struct Peak {
 pub(super) struct Facts {
     /// Time between samples (s).
     pub(super) step: Option<Stated<f64>>,
-    /// A stated frequency (Hz) that may be the sampling rate, although it is not named so.
+    /// A stated frequency (Hz) that may be the sampling rate, although the header does not call it
+    /// so.
     pub(super) possible_rate: Option<Stated<f64>>,
     /// Number of samples.
     pub(super) count: Option<Stated<usize>>,
@@ -42,15 +43,14 @@ pub(super) struct Facts {
     pub(super) duration: Option<Stated<[f64; 2]>>,
     /// Unit of the samples.
     pub(super) unit: Option<Stated<MotionUnit>>,
-    /// Word given as the unit that is not a unit of motion.
+    /// Word that the header states as the unit although it is not a unit of motion.
     pub(super) unknown_unit: Option<Stated<String>>,
     pub(super) peak: Option<Stated<Peak>>,
-    /// Name of the only component, if the name states a direction.
+    /// Name of the component, if the header states a name that is a direction.
     pub(super) component: Option<String>,
 }
 
-/// Largest step (s) and smallest rate (Hz) accepted from statements without the name of the
-/// quantity.
+/// Largest step (s) and smallest rate (Hz) accepted from lines that do not name the quantity.
 const LARGEST_UNNAMED_STEP: f64 = 0.1;
 const SMALLEST_UNNAMED_RATE: f64 = 20.0;
 
@@ -111,14 +111,14 @@ impl Facts {
         Ok(facts)
     }
 
-    /// Returns the step (s) that follows from count and duration, for the remedy of an error.
+    /// Returns the step (s) computed from the count and the duration, for the remedy in an error.
     pub(super) fn step_by_duration(&self) -> Option<f64> {
         let (count, [duration, _]) = (self.count?.value, self.duration?.value);
         (count > 1).then(|| duration / count as f64)
     }
 }
 
-/// Returns the text after a key that is a separate word and is not preceded by a word of
+/// Returns the text after a key. The key must be a separate word that is not preceded by a word of
 /// `OTHER_MEANING`.
 fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     text.match_indices(key).find_map(|(at, _)| {
@@ -132,7 +132,7 @@ fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     })
 }
 
-/// Text after a key: a unit in parentheses, a number, and the rest.
+/// Text after a key, split into a unit in parentheses, a number, and the rest.
 pub(super) struct Value<'a> {
     in_parentheses: Option<&'a str>,
     pub(super) printed: crate::format::Printed,
@@ -164,9 +164,9 @@ pub(super) fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
     Some(Value { in_parentheses, printed, behind: word })
 }
 
-/// Splits a number off the start of a text and resolves its comma: `0,005` has a decimal comma,
-/// `3,200` a thousands separator. Also returns the length of the resolved text, if there was a
-/// comma.
+/// Splits a number off the start of a text and interprets its comma: in `0,005`, it is a decimal
+/// comma; in `3,200`, it is a thousands separator. Also returns the length of the number in the
+/// text, if a comma was interpreted.
 fn number_with_comma(text: &str) -> (String, Option<usize>) {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != ',').unwrap_or(text.len());
     let token = text[..end].trim_end_matches(',');
@@ -208,7 +208,7 @@ fn plain_letter(c: char) -> Option<char> {
     })
 }
 
-/// Returns the length of a unit of time (s).
+/// Returns the length (s) of a unit of time.
 pub(super) fn time_factor(text: &str) -> Option<f64> {
     Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
         "s" | "sec" | "secs" | "second" | "seconds" | "seg" | "sn" | "sek" => 1.0,
@@ -263,7 +263,7 @@ pub(in crate::format) fn count_and_step(text: &str) -> Option<(f64, f64)> {
     Some((count(text)? as f64, step(text)?))
 }
 
-/// Returns the step (s) from a line that does not name it, such as `Sampling: 200 Hz`,
+/// Returns the step (s) from a line that does not name this quantity, such as `Sampling: 200 Hz`,
 /// `interval 5 ms`, or `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
@@ -301,8 +301,8 @@ fn unnamed_step(text: &str) -> Option<f64> {
     by_key.or_else(alone).or_else(beside)
 }
 
-/// Returns a frequency (Hz) that could be the sampling rate from a line that names no other
-/// frequency, in any language.
+/// Returns, from a line in any language, a frequency (Hz) that could be the sampling rate; `None`
+/// if the line names another frequency.
 fn possible_rate(text: &str) -> Option<f64> {
     if OTHER_FREQUENCIES.iter().any(|word| text.contains(word)) {
         return None;
@@ -324,8 +324,8 @@ fn number_before(text: &str, word: &str) -> Option<f64> {
     })
 }
 
-/// Smallest number before "points" that is taken as a count of samples; smaller numbers may
-/// describe a filter.
+/// Smallest number before "points" that is interpreted as the number of samples; smaller numbers
+/// may describe a filter.
 const FEWEST_POINTS: f64 = 50.0;
 
 fn count(text: &str) -> Option<usize> {
@@ -390,8 +390,8 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty())
 }
 
-/// Parses the unit in a line that states it: after "unit"; or, in a line that mentions
-/// acceleration, in parentheses or after "in", a colon or a comma.
+/// Parses the unit in a header line. The unit follows the word "unit"; in a line that mentions
+/// acceleration, it may also be in parentheses or follow "in", a colon or a comma.
 pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     // In prose, a length is not accepted as the unit: "in" is also a preposition, and "m" is
     // ambiguous.

@@ -46,7 +46,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         Commas::Separate => read_table(source, first, end, hints),
         Commas::Both => Err(source.damaged(
             first,
-            "decimal points, or another separator than a comma",
+            "decimal points, or a separator other than a comma",
             quoted(&source.text(first)),
             "write the numbers with decimal points, or with semicolons between them",
         )),
@@ -66,7 +66,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
 }
 
-/// Refuses a table whose first column contains periods, frequencies or spectral ordinates.
+/// Refuses a table that is a spectrum: its first column contains periods, frequencies or spectral
+/// ordinates.
 fn refuse_spectrum(
     source: &Source<'_>,
     line: usize,
@@ -317,7 +318,7 @@ fn accelerations(
 }
 
 /// Refuses placeholders for missing values among accelerations. `first` is the line of the first
-/// row, if each row is a line.
+/// row, or `None` if rows are not single lines.
 fn require_no_mark(
     source: &Source<'_>,
     table: &[Vec<f64>],
@@ -361,7 +362,8 @@ fn step(
     stated.or_else(|| hints.time_step()).ok_or_else(|| {
         let remedy = match facts.step_by_duration() {
             Some(step) => format!(
-                "state the time step (s), which is about {step:.4} s by the count and the duration in the header"
+                "state the time step (s), which is about {step:.4} s according to the count and \
+                 the duration in the header"
             ),
             None => "state the time step (s)".to_owned(),
         };
@@ -423,7 +425,8 @@ fn require_duration(
     ))
 }
 
-/// Cuts columns to the stated count, which must match the number of samples.
+/// Checks the number of samples against the number stated in the header, and cuts the columns to
+/// the number of samples to be used.
 fn counted(
     source: &Source<'_>,
     record: &mut Record,
@@ -467,8 +470,8 @@ fn initial_velocities(
     Ok(Vec::new())
 }
 
-/// Returns the SI factor of each column: from the unit next to its name, in the header, or from the
-/// caller.
+/// Returns the SI factor of each column: from the unit next to its name, from the header, or from
+/// the caller.
 fn units(
     source: &Source<'_>,
     first: usize,
@@ -490,7 +493,7 @@ fn units(
             names_line,
             "a unit of acceleration",
             format!("{}, the unit of the instrument's output", quoted(word)),
-            "convert the values by the sensitivity of the sensor, and write the resulting unit",
+            "convert the values with the sensitivity of the sensor, and write the resulting unit",
         )
     };
     let missing = |found: String| {

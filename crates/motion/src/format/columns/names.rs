@@ -42,7 +42,7 @@ impl Name {
         self.unit.as_deref().and_then(MotionUnit::parse)
     }
 
-    /// Returns `true` if the name means the length of a vector.
+    /// Returns `true` if the name denotes the length of a vector, such as a resultant.
     pub(super) fn says_length(&self) -> bool {
         let lower = self.label.to_lowercase();
         let mut words = lower.split(|c: char| !c.is_alphanumeric());
@@ -60,8 +60,8 @@ impl Name {
     }
 }
 
-/// Finds the line of column names directly above a table of `width` columns. Returns its number
-/// (counted from 0) and the names.
+/// Finds the line of column names directly above a table of `width` columns. Returns the number of
+/// this line (counted from 0) and the names.
 ///
 /// # Errors
 /// If the line is a row of units and some of the units are unknown.
@@ -100,12 +100,12 @@ pub(super) fn find(
     Ok(Some((line, by_company(names))))
 }
 
-/// Returns the index of the time column, if it is not the first column.
+/// Returns the index of the time column if this is not the first column.
 pub(super) fn time_behind(names: &[Name]) -> Option<usize> {
     names.iter().position(|name| name.holds == Holds::Time).filter(|at| *at > 0)
 }
 
-/// Returns `true` if a line is empty or a ruled line.
+/// Returns `true` if a line is empty or consists only of rule characters, such as dashes.
 fn is_rule(text: &str) -> bool {
     text.chars().all(|c| " -=+|_#*\t,;".contains(c))
 }
@@ -114,8 +114,8 @@ fn plain(text: &str) -> &str {
     text.trim_start_matches(['#', '%', '!', '/', ' ', '|']).trim_end_matches(['|', ' ', ',', ';'])
 }
 
-/// Splits a line at each possible separator. The flag is `true` for separators that do not occur in
-/// prose.
+/// Splits a line in several ways, one for each possible separator. The flag is `true` if the
+/// separator does not occur in prose.
 fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     let tidy = |part: &str| part.trim().trim_matches(['"', '\'']).trim().to_owned();
     let by = |mark: char| text.split(mark).map(tidy).collect::<Vec<_>>();
@@ -135,7 +135,7 @@ fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
 
 const BRACKETS: [char; 7] = ['(', ')', '[', ']', '{', '}', ' '];
 
-/// Parses a row that contains only units, below the names.
+/// Parses a row below the names that contains only units.
 fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
     let bare = |part: &str| part.trim_matches(BRACKETS).to_owned();
     splits(plain(text)).into_iter().find_map(|(_, parts)| {
@@ -152,8 +152,8 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
 /// Returns the first part of a line that is not a unit, if the other parts show that the line is a
 /// row of units.
 ///
-/// More than half of the parts must be units. Exactly half is sufficient unless the others are
-/// names, as in `time, g`.
+/// More than half of the parts must be units. Exactly half of the parts is sufficient unless the
+/// other parts are names, as in `time, g`.
 fn damaged_unit(text: &str, width: usize) -> Option<String> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         if parts.len() != width || parts.iter().any(String::is_empty) {
@@ -173,7 +173,8 @@ fn damaged_unit(text: &str, width: usize) -> Option<String> {
     })
 }
 
-/// Units of other quantities, in lower case; letters that are also directions are omitted.
+/// Units of quantities other than motion and time, in lower case; letters that are also directions
+/// are omitted.
 const OTHER_UNITS: &[&str] = &[
     "kn",
     "mn",
@@ -206,8 +207,8 @@ const OTHER_UNITS: &[&str] = &[
     "%",
 ];
 
-/// Returns `true` for a unit of motion, time or another quantity, and for a placeholder for no
-/// unit.
+/// Returns `true` for a unit of motion, time or another quantity, and for a placeholder that stands
+/// for no unit.
 fn is_any_unit(text: &str) -> bool {
     is_unit(text)
         || ["-", "#"].contains(&text)
@@ -233,7 +234,7 @@ fn names(text: &str, width: usize) -> Option<Vec<Name>> {
     })
 }
 
-/// Merges separate units (`Time, s, Acceleration, g`) with the name before them.
+/// Merges each separate unit (`Time, s, Acceleration, g`) with the name before it.
 fn merged(parts: Vec<String>) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for part in parts {
@@ -249,8 +250,9 @@ fn merged(parts: Vec<String>) -> Vec<String> {
     out
 }
 
-/// Returns `true` if the names belong to a table, which requires that all are quantities. One
-/// column may have any name if time is the first column or the separator does not occur in prose.
+/// Returns `true` if the names are column names of a table, which requires that all names are
+/// quantities. One column may have any name if time is the first column or the separator does not
+/// occur in prose.
 fn says_quantities(names: &[Name], separated: bool) -> bool {
     let says = |name: &Name| name.holds != Holds::Unknown;
     let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);
@@ -392,8 +394,8 @@ fn holds(label: &str, unit: Option<&str>) -> Holds {
     }
 }
 
-/// Interprets single letters: `v`, `d` and `u` next to an acceleration are velocity and
-/// displacement; otherwise they are a direction or unknown.
+/// Interprets single letters as quantities where the other columns show that they are not
+/// directions: `v` as a velocity, `d` and `u` as displacements.
 fn by_company(mut names: Vec<Name>) -> Vec<Name> {
     let acceleration = names.iter().any(|name| name.holds == Holds::Motion(Quantity::Acceleration));
     let horizontal = names.iter().any(|name| {

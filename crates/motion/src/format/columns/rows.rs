@@ -11,9 +11,11 @@ use crate::record::Record;
 const MOST_HEADER_LINES: usize = 60;
 /// Largest valid number in any unit; larger numbers are errors.
 const LIMIT: f64 = 1e12;
-/// Largest time. Times since 1970 exceed any acceleration, and may be in nanoseconds.
+/// Largest valid time. The limit is higher than [`LIMIT`], because a time may be in nanoseconds
+/// since 1970.
 const LARGEST_TIME: f64 = 1e19;
-/// Largest number of columns that are taken as components; wider rows are one series in long lines.
+/// Largest number of columns that are treated as components; wider rows are one series written in
+/// long lines.
 const MOST_COLUMNS: usize = 200;
 /// Smallest number of values in a file with a single line.
 const FEWEST_ON_ONE_LINE: usize = 50;
@@ -60,7 +62,8 @@ pub(super) fn require_rows(
     ))
 }
 
-/// Refuses a line directly above the table that is a row of the table with an invalid number.
+/// Refuses a file in which the line directly above the table is a row of the table with an invalid
+/// number.
 pub(super) fn require_no_lost_row(
     source: &Source<'_>,
     first: usize,
@@ -87,8 +90,8 @@ fn is_comment(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with(['#', '%', '!', '/'])
 }
 
-/// Parses a first line such as `11800 0.005` or `0.005 11800` above rows of another width. Returns
-/// the line, the count and the step (s).
+/// Parses a first line such as `11800 0.005` or `0.005 11800` above rows with a different number of
+/// values. Returns the line, the count and the step (s).
 pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize, usize, f64)> {
     let (mut row, mut next) = (Vec::new(), Vec::new());
     source.tokens(first, f64::INFINITY, &mut row).ok()?;
@@ -147,8 +150,8 @@ pub(super) fn table(
     Ok(columns)
 }
 
-/// Reads the numbers of a row. The first of several may be a time up to [`LARGEST_TIME`]; all
-/// others are limited to [`LIMIT`].
+/// Reads the numbers of a row. In a row of several numbers, the first may be a time up to
+/// [`LARGEST_TIME`]; all other numbers are limited to [`LIMIT`].
 fn tokens(source: &Source<'_>, line: usize, row: &mut Vec<f64>) -> Result<(), ReadError> {
     let result = source.tokens(line, LIMIT, row);
     if result.is_err() {
@@ -161,8 +164,8 @@ fn tokens(source: &Source<'_>, line: usize, row: &mut Vec<f64>) -> Result<(), Re
     Ok(())
 }
 
-/// Returns the error for a row of another width. The remedy depends on whether the first line
-/// differs or a cell is empty.
+/// Returns the error for a row with a different number of values. The remedy depends on whether the
+/// first line is the one that differs, and on whether a cell is empty.
 fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: usize) -> ReadError {
     let text = source.text(line);
     let at_end = found < width && text.ends_with([',', ';']);
@@ -196,9 +199,9 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
     source.ragged(line, width, found)
 }
 
-/// Interprets several values per line without times. They are channels if the header names the
-/// columns; they are one series, read row by row with a warning, if the stated count or the numbers
-/// indicate it.
+/// Interprets rows of several values without times. The columns are channels if the header names
+/// them. All values are one series, read row by row with a warning, if the stated count or the
+/// numbers indicate this.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,
@@ -236,7 +239,7 @@ pub(super) fn without_time(
     Ok(vec![series])
 }
 
-/// Removes the first value of a single column if it is the number of values below it.
+/// Removes the first value of a single column if this value is the number of values below it.
 fn without_count(
     source: &Source<'_>,
     first: usize,

@@ -1,10 +1,10 @@
-//! Infers the meaning of columns from the numbers: times, decimal commas, series in rows,
-//! integrals, spectra.
+//! Infers the meaning of columns from their numbers. Recognizes times, decimal commas, series
+//! written in rows, integrals and spectra.
 
 use crate::format::source::{Source, latin1};
 use crate::math;
 
-/// Number of rows examined to find the number format.
+/// Number of rows that are examined to determine the number format.
 const ROWS: usize = 200;
 /// Minimum fraction of increasing steps in an unnamed first column of times.
 const RISING: f64 = 0.95;
@@ -30,7 +30,8 @@ pub(super) fn rises(column: &[f64]) -> bool {
     rising as f64 >= RISING * (column.len() - 1) as f64
 }
 
-/// Minimum number of rows from which a column may be judged evenly increasing by its values alone.
+/// Minimum number of rows of a column that may be recognized as evenly increasing by its values
+/// alone.
 const EVEN_ROWS: usize = 20;
 
 /// Returns `true` if every value of a column lies within one step of a straight line, like rounded
@@ -43,8 +44,8 @@ pub(super) fn is_even(column: &[f64]) -> bool {
     column.len() >= EVEN_ROWS && column.iter().enumerate().map(off).all(|off| off < mean.abs())
 }
 
-/// Returns `true` if a second time column increases in proportion to the first, within one step.
-/// The ratio may be given.
+/// Returns `true` if a second time column increases in proportion to the first, within one step. If
+/// `ratio` is given, the columns must have this ratio.
 pub(super) fn rise_alike(first: &[f64], other: &[f64], ratio: Option<f64>) -> bool {
     let last = first.len() - 1;
     let ratio = ratio.unwrap_or((other[last] - other[0]) / (first[last] - first[0]));
@@ -59,8 +60,8 @@ pub(super) fn is_index(column: &[f64]) -> bool {
         && column.windows(2).all(|pair| pair[1] - pair[0] == 1.0)
 }
 
-/// Returns the first row that repeats the previous time although the printed digits are fine enough
-/// to distinguish them.
+/// Returns the first row that repeats the time of the previous row, although the printed digits
+/// suffice to distinguish consecutive times.
 pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     let steps = column.len().saturating_sub(1);
     let mean = (column.last()? - column.first()?) / steps.max(1) as f64;
@@ -84,16 +85,17 @@ pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize, col
 /// Meaning of commas in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Commas {
-    /// Separators between numbers, or absent.
+    /// Commas separate numbers, or there are no commas.
     Separate,
-    /// Decimal commas.
+    /// Commas are decimal commas.
     Decimal,
-    /// Both separators and decimal commas, so that the numbers are ambiguous.
+    /// Commas are both separators and decimal commas, so that the numbers are ambiguous.
     Both,
 }
 
-/// Determines the meaning of commas in a table. They are decimal commas if no number has a point
-/// and another separator stands between the numbers, or if digits after commas begin with zeros.
+/// Determines the meaning of commas in a table. Commas are decimal commas if no number has a
+/// decimal point and another separator stands between the numbers, or if digits after commas begin
+/// with zeros.
 pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     let (mut any, mut zeros, mut one_each, mut other) = (false, false, true, true);
     for line in first..end.min(first + ROWS) {
@@ -118,8 +120,9 @@ pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     }
 }
 
-/// Returns `true` if rows of several numbers are one series written row by row. In this case,
-/// neighbors within a row, and across the ends of rows, differ less than neighbors in a column.
+/// Returns `true` if rows of several numbers are one series written row by row. In such a series,
+/// consecutive values within a row, and across the end of a row, differ less than consecutive
+/// values in a column.
 pub(super) fn is_one_series(table: &[Vec<f64>]) -> bool {
     let (width, rows) = (table.len(), table[0].len());
     let (mut along, mut down) = (0.0, 0.0);
@@ -176,9 +179,9 @@ pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     (0..columns.len()).map(is_length).collect()
 }
 
-/// Returns `true` if no value is negative and the first value is not small, as in a spectrum. An
-/// accelerometer at rest under gravity is excluded: most of its values, also at both ends, are
-/// close to their mean.
+/// Returns `true` if no value is negative and the first value is not small, as is typical of a
+/// spectrum. An accelerometer at rest under gravity is excluded: most of its values, including
+/// those at both ends, are close to their mean.
 pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
     let rests = |column: &[f64]| {
         let mean = math::mean(column);

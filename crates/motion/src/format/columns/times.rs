@@ -1,4 +1,4 @@
-//! Time columns: determines their unit and selects one of several.
+//! Time columns: determines their unit, and selects one column if there are several.
 
 use super::names::{Holds, Name};
 use super::{facts, shape};
@@ -15,7 +15,8 @@ const SMALLEST_BARE_STEP: f64 = 4e-4;
 /// days have smaller steps.
 const SMALLEST_STEP: f64 = 1e-5;
 
-/// Returns the time unit (s) of the first column, if it contains times.
+/// Returns the length (s) of the time unit of the first column, or `None` if the column does not
+/// contain times.
 pub(super) fn unit_of(
     source: &Source<'_>,
     first: usize,
@@ -82,7 +83,7 @@ pub(super) fn unit_of(
         let (found, remedy) = if unit.is_some() {
             (
                 format!("steps of {seconds:.3e} s"),
-                "write seconds since the first sample; days times 86400 are seconds",
+                "write seconds since the first sample; multiply days by 86400",
             )
         } else {
             (
@@ -101,11 +102,11 @@ pub(super) fn unit_of(
     Ok(Some(unit.unwrap_or(1.0)))
 }
 
-/// Keeps one time column, the first with a unit, and returns the number of columns removed before
-/// it.
+/// Keeps only the first time column that has a unit, or else the first time column. Returns the
+/// number of columns removed before it.
 ///
 /// # Errors
-/// If the time columns do not increase alike.
+/// If the time columns do not increase in proportion to each other.
 pub(super) fn one(
     source: &Source<'_>,
     record: &mut Record,

@@ -1,6 +1,6 @@
 //! Header keywords in the languages of the agencies, in lower case and without accents.
 
-/// Names of the time between samples.
+/// Keywords for the time between samples.
 pub(super) const STEP_KEYS: &[&str] = &[
     "dt",
     "delta t",
@@ -54,7 +54,7 @@ pub(super) const STEP_KEYS: &[&str] = &[
     "サンプリング間隔",
 ];
 
-/// Names of the sampling rate.
+/// Keywords for the sampling rate.
 pub(super) const RATE_KEYS: &[&str] = &[
     "sampling rate",
     "sample rate",
@@ -100,7 +100,8 @@ pub(super) const RATE_KEYS: &[&str] = &[
     "サンプリング周波数",
 ];
 
-/// Names of a sampling interval or rate; the unit or the size of the number decides which.
+/// Keywords for a sampling interval or rate; the unit or the size of the number determines which of the
+/// two is meant.
 pub(super) const SAMPLING_KEYS: &[&str] = &[
     "sampling",
     "sampled at",
@@ -118,14 +119,14 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
     "increment",
 ];
 
-/// Keywords of [`SAMPLING_KEYS`] that may have a number without a unit.
+/// Keywords of [`SAMPLING_KEYS`] that may be followed by a number without a unit.
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
 /// Words next to a number with a unit of time that identify the number as the step.
 pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 
-/// Names of the number of samples.
+/// Keywords for the number of samples.
 pub(super) const COUNT_KEYS: &[&str] = &[
     "npts",
     "ndata",
@@ -166,11 +167,11 @@ pub(super) const COUNT_KEYS: &[&str] = &[
     "データ数",
 ];
 
-/// Names of the duration of a record.
+/// Keywords for the duration of a record.
 pub(super) const DURATION_KEYS: &[&str] =
     &["duration", "record length", "length of record", "total time", "length"];
 
-/// Names of the peak acceleration.
+/// Keywords for the peak acceleration.
 pub(super) const PEAK_KEYS: &[&str] = &[
     "pga",
     "peak ground acceleration",
@@ -184,11 +185,11 @@ pub(super) const PEAK_KEYS: &[&str] = &[
     "max acceleration",
 ];
 
-/// Names of a component.
+/// Keywords for a component.
 pub(super) const COMPONENT_KEYS: &[&str] =
     &["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
 
-/// Words that change the meaning of the key after them.
+/// Words that change the meaning of the keyword that follows.
 pub(super) const OTHER_MEANING: &[&str] = &[
     "original",
     "orig",
@@ -204,7 +205,7 @@ pub(super) const OTHER_MEANING: &[&str] = &[
     "instrument",
 ];
 
-/// Words after the number of samples per second.
+/// Words that follow the number of samples per second.
 pub(super) const RATE_MARKS: &[&str] = &[
     "sps",
     "samples/sec",
@@ -224,7 +225,8 @@ pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
-/// Returns `true` if a unit is that of a digitizer's output, which needs a sensitivity.
+/// Returns `true` for a unit of the output of a digitizer. Such an output must be converted by a
+/// sensitivity.
 pub(super) fn is_of_instrument(unit: &str) -> bool {
     const UNITS: &[&str] = &[
         "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit",
@@ -233,7 +235,7 @@ pub(super) fn is_of_instrument(unit: &str) -> bool {
     UNITS.contains(&unit.trim().to_lowercase().as_str())
 }
 
-/// Beginnings of the word "unit".
+/// Beginnings of the word for "unit" in several languages.
 pub(super) const UNIT_WORDS: &[&str] =
     &["unit", "unidad", "einheit", "satuan", "birim", "jednostk", "единиц", "单位"];
 
