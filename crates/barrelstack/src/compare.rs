@@ -49,9 +49,9 @@ pub struct OtherPlane {
 
 /// Makes all answers show the same variant under the same component of the motion.
 ///
-/// The variant is the medoid over all answers. Answers that show another variant run the common
-/// one; the observer receives the progress and may cancel. Answers are returned unchanged if any of
-/// them has no variants.
+/// The variant is the medoid over all answers. For every answer that shows another variant, the
+/// medoid is run; the observer receives the progress and may cancel. Answers are returned unchanged
+/// if any of them has no variants.
 ///
 /// # Errors
 /// When the common variant cannot be run.
@@ -72,7 +72,7 @@ pub fn aligned(
 
 /// Returns the runs of the answers with their names.
 ///
-/// If all answers have both planes, every run is shown in the plane that governs the worst answer.
+/// If all answers have both planes, every run is shown in the governing plane of the worst answer.
 pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
     let share = |answer: &Answer| match &answer.decides.summary.ensemble {
         Some(spread) => spread.share.unwrap_or(0.0),
@@ -107,19 +107,19 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
 /// Error of a comparison.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CompareError {
-    /// A single run has no counterpart.
+    /// Fewer than two runs.
     #[error("a comparison needs at least two runs, found {0}")]
     TooFew(usize),
     /// More runs than a page can show.
     #[error("a comparison shows at most {most} runs side by side, found {found}: leave some out")]
     TooMany {
-        /// Number of runs requested.
+        /// Number of requested runs.
         found: usize,
         /// Maximum number of runs.
         most: usize,
     },
     /// Two runs have equal inputs.
-    #[error("{first} and {second} ask for the same run: every input is equal")]
+    #[error("{first} and {second} are the same run: all their inputs are equal")]
     Identical {
         /// The first of the two.
         first: String,

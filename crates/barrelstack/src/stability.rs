@@ -13,10 +13,10 @@ use barrelstack_stack::stand::{Standing, UNBALANCED, stand};
 
 use crate::run::RunFailure;
 
-/// Tilt (rad) of the floor for the period of sway; so small that nothing slips.
+/// Tilt (rad) of the floor from which the period of sway is computed; so small that nothing slips.
 const NUDGE: f64 = 1e-4;
 
-/// Step (rad) by which the floor is tilted at first, 2°, and the resolution of the tilt at failure,
+/// First step (rad) by which the floor is tilted, 2°, and resolution (rad) of the tilt at failure,
 /// 1/16°.
 const FIRST_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const FINEST_STEP: f64 = FIRST_STEP / 32.0;
@@ -25,7 +25,7 @@ const FINEST_STEP: f64 = FIRST_STEP / 32.0;
 const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 
 described! {
-    /// Static stability of stacks, one row for each rack, plane and height.
+    /// Static stability of stacks, with one row for each rack, plane and height.
     #[derive(Clone, Debug)]
     pub struct StabilityTable {
         /// Name and version of this layout.
@@ -211,7 +211,7 @@ fn tilt_at_failure_to(
     failure.map(|failure| (tilt, failure))
 }
 
-/// Returns the failure mode that a cause of failure stands for.
+/// Returns the failure mode that corresponds to the cause of a failure.
 fn word(lack: &Lack) -> &'static str {
     match lack {
         Lack::Friction { .. } | Lack::Stick { .. } => "slides",
@@ -220,8 +220,8 @@ fn word(lack: &Lack) -> &'static str {
     }
 }
 
-/// Returns a model on a floor that is tilted by an angle (rad), in the frame of the floor, where
-/// gravity has a horizontal component.
+/// Returns a model on a floor that is tilted by an angle (rad). The model is expressed in the frame
+/// of the floor, where gravity has a component along the floor.
 fn tilted(model: &Model<Planar>, angle: f64) -> Model<Planar> {
     let (sin, cos) = math::sin_cos(angle);
     let down = -model.gravity().z;

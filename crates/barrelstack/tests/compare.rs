@@ -91,7 +91,7 @@ fn too_few_too_many_and_the_same_twice_are_refused() {
     };
     assert_eq!(compare::check(&[named(3)]), Err(CompareError::TooFew(1)));
     let error = compare::check(&[named(3), named(4), named(3)]).unwrap_err();
-    assert_eq!(error.to_string(), "3 and 3 ask for the same run: every input is equal");
+    assert_eq!(error.to_string(), "3 and 3 are the same run: all their inputs are equal");
     let many: Vec<_> = (2..9).map(named).collect();
     assert_eq!(compare::check(&many), Err(CompareError::TooMany { found: 7, most: 6 }));
     assert_eq!(compare::check(&many[..6]), Ok(()));

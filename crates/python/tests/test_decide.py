@@ -46,7 +46,7 @@ def test_a_comparison_has_the_numbers_of_the_command(command: str, tmp_path: Pat
     assert (tmp_path / "both.pdf").read_bytes().startswith(b"%PDF")
     named = compare({"high": stack, "low": stack.set("stack.levels", 2)}, variants=0)
     assert list(named.runs) == ["high", "low"]
-    with pytest.raises(barrelstack.Error, match="ask for the same run"):
+    with pytest.raises(barrelstack.Error, match="are the same run"):
         compare([stack, stack])
 
 

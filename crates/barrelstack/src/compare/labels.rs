@@ -5,7 +5,7 @@ use crate::report::shown;
 use crate::scenario::Scenario;
 use crate::scenario::title::{counted, shakes};
 
-/// Maximum number of differences in a name; with more, a run keeps its given name.
+/// Maximum number of differences in a name; runs with more differences keep their given names.
 const MOST: usize = 2;
 
 /// Kinds of differences that a name can state.

@@ -27,7 +27,7 @@ described! {
         pub neither: u32,
         /// Number of further variants that have no verdict in one of the two runs.
         pub without_verdict: u32,
-        /// Share that collapses in the first run, less the share that collapses in the second.
+        /// Share that collapses in the first run minus the share that collapses in the second.
         pub reduction: f64 as "1",
         /// 95 % interval of the reduction (Newcombe 1998, for paired samples).
         pub interval: [f64; 2] as "1",

@@ -10,8 +10,8 @@ use crate::device::{DEVICES, FREE, Words};
 use crate::run::Run;
 use crate::watch::ElementFate;
 
-/// All devices with their force elements, including the elements of a free scene; an absent device
-/// has no elements.
+/// All devices with their force elements, including the elements of a free scene. A device that the
+/// stack does not have is listed without elements.
 #[derive(Clone, Debug)]
 pub struct Devices(pub Vec<Device>);
 
@@ -109,11 +109,13 @@ impl Described for Devices {
         let number = |unit: &str, meaning: &str| json!({ "type": "number", "unit": unit, "description": meaning });
         let mut properties = Map::new();
         for Words { one, many, force, broken, .. } in all_words() {
-            let mut at =
-                number("s", &format!("Time at which it was {broken}; null if it was not."));
+            let mut at = number(
+                "s",
+                &format!("Time at which the element was {broken}; null if it was not."),
+            );
             at["type"] = json!(["number", "null"]);
             let element = json!({
-                "name": { "type": "string", "description": "The bodies that it joins, and its place." },
+                "name": { "type": "string", "description": "The bodies that the element joins, and its position." },
                 (format!("peak_{force}")): number("N", &format!("The {force} with the largest magnitude until the first loss of seat.")),
                 (format!("peak_{force}_at")): number("s", "Time of that force."),
                 (format!("peak_{force}_whole_run")): number("N", &format!("The {force} with the largest magnitude over the whole run.")),

@@ -111,8 +111,8 @@ impl Plane {
         variant
     }
 
-    /// Returns a variant by its number as it is run for the verdict; it may end before everything
-    /// has come to rest.
+    /// Returns a variant by its number as it is run for the verdict; such a run may end before
+    /// everything has come to rest.
     pub fn trial(&self, number: u32) -> Scenario {
         let mut trial = self.variant(number);
         if let (Until::Rest, Some(imperfections)) = (trial.run.until, trial.imperfections()) {
@@ -207,7 +207,8 @@ pub fn run(
     Ok(results.map(|results| together(planes, &numbers, results)))
 }
 
-/// Runs only the variants with the given numbers, like [`run`]; number 0 is the nominal case.
+/// Runs only the variants with the given numbers, but otherwise works like [`run`]; number 0 is the
+/// nominal case.
 ///
 /// Returns their results in each plane, in the order of the numbers, to be combined with results
 /// computed elsewhere ([`together`]). Returns `None` if canceled.

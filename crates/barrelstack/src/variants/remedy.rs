@@ -1,5 +1,5 @@
-//! Remedy for a stack that falls: the smallest change of height, or the loosest straps, that
-//! suffices.
+//! Remedies for a stack that falls: the smallest reduction of height, and the loosest straps, that
+//! suffice.
 //!
 //! A change suffices if enough variants of the changed stack stand in every plane. The changed
 //! stack has the same number of variants as the original stack, with the same numbers. The module
@@ -29,11 +29,11 @@ pub use self::search::{ENOUGH, Failed};
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Number of variants that a thread takes at a time, which fill one bundle of lanes.
+/// Number of variants that a thread takes at a time; this many fill one bundle of lanes.
 const BATCH: usize = 8;
 
 described! {
-    /// Changes that would have kept the stack up, as far as the search went.
+    /// Changes, of those that the search tried, that would have kept the stack up.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that must stand in every plane.
@@ -77,8 +77,8 @@ described! {
         /// was rejected or the search was stopped.
         pub share: Option<f64> as "1",
         /// Interval of that share (Clopper and Pearson, with Bonferroni's correction); the
-        /// intervals of all changes and planes of the search hold together with 95 %. Null if the
-        /// share is null.
+        /// intervals of all changes and planes of the search hold simultaneously with 95 %
+        /// confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
     }
 }
@@ -223,8 +223,8 @@ fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     Some(Change { kind: "height", levels, pretension: None, changes, scenario })
 }
 
-/// Returns the change that straps all levels together; `None` if the stack has straps at least as
-/// tight, or if the straps would tear.
+/// Returns the change that straps all levels together; `None` if the stack already has straps that
+/// are at least as tight, or if the straps would tear.
 fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -278,7 +278,7 @@ impl Change {
     }
 }
 
-/// The variants of a stack in every plane, run on all cores.
+/// The variants of a stack in every plane, to be run on all cores.
 struct InPlanes {
     /// For each plane the nominal case, followed by its variants.
     cases: Vec<Vec<Prepared>>,

@@ -25,25 +25,29 @@ described! {
         pub seed: u32,
         /// Number of variants with a verdict.
         pub variants: u32,
-        /// Number of variants that collapse, either while shaken or under their own weight before.
+        /// Number of variants that collapse, either while shaken or, before that, under their own
+        /// weight.
         pub collapsed: u32,
         /// Share of variants with a verdict that collapse; null if no variant has a verdict.
         pub share: Option<f64> as "1",
         /// Wilson's 95 % interval of that share, widened so that it holds whether the variants
         /// without a verdict stand or collapse.
         pub interval: [f64; 2] as "1",
-        /// Range of the share of stacks that collapse over the constants that nobody has measured: 95 % of the shares
-        /// under constants drawn from their distributions, sampling included; null with fewer than 16 variants, if
-        /// one of them has no verdict, or if they differ in places and masses alone.
+        /// Range of the share of stacks that collapse, over the constants that nobody has measured:
+        /// it contains 95 % of the shares if these constants are drawn from their distributions,
+        /// sampling error included. Null if there are fewer than 16 variants, if one of them has no
+        /// verdict, or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of stacks that collapse with all these constants as stated; null as `range`.
+        /// Share of stacks that collapse if all unmeasured constants are as stated; null if `range`
+        /// is null.
         pub share_as_stated: Option<f64> as "1",
-        /// The constants that nobody has measured, the most influential first; empty where `range` is null.
+        /// The constants that nobody has measured, the most influential first; empty if `range` is
+        /// null.
         pub decides: Vec<Unknown>,
         /// Time of the first loss of a seat, over the variants that collapse while shaken.
         pub first_loss: Option<Range> as "s",
-        /// Time of the first fall of a barrel, over the variants in which one falls while shaken
-        /// and before the run ends.
+        /// Time of the first fall of a barrel, over the variants in which a barrel falls while
+        /// shaken and before the run ends.
         pub first_fall: Option<Range> as "s",
         /// Number of barrels fallen by the end of the run, over the variants that collapse while
         /// shaken.
@@ -53,8 +57,8 @@ described! {
         pub counted_for: Option<f64> as "s",
         /// Total number of barrels.
         pub barrels: usize,
-        /// Earliest time at which a standing variant ended before its motion did; null if none was
-        /// cut short.
+        /// Earliest time at which a standing variant ended before its motion did; null if no
+        /// variant was cut short.
         pub standing_until: Option<f64> as "s",
         /// Number of variants in which the load on staves exceeds their stated capacity before any
         /// seat is lost.
@@ -66,7 +70,7 @@ described! {
         pub modes: BTreeMap<&'static str, u32>,
         /// Number of collapsing variants that fall under their own weight, before they are shaken.
         pub cannot_stand: u32,
-        /// Number of variants without a verdict, because they could not be built or their
+        /// Number of variants without a verdict, because their model could not be built or their
         /// computation failed.
         pub broken: u32,
         /// Reason of the first variant that falls before it is shaken or has no verdict.
@@ -99,7 +103,7 @@ described! {
 }
 
 impl Range {
-    /// Summarizes values; `None` without values.
+    /// Summarizes values; `None` if there are none.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);

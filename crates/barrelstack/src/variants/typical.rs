@@ -30,8 +30,8 @@ impl Order {
     }
 }
 
-/// Compares two results by severity: collapse, number of fallen barrels, earlier collapse; for
-/// standing stacks, drift.
+/// Compares two results by severity: a collapse is more severe, then more fallen barrels, then an
+/// earlier collapse; of two standing stacks, the one with the larger drift.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);
@@ -72,9 +72,9 @@ fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
 
 /// Returns the distance between two runs.
 ///
-/// It is 4 if only one of them collapses. Otherwise a different mode adds 1, the difference of the
-/// collapse times (or of the drifts) adds its share of the extent `times` (or `drifts`), and
-/// barrels that fall in only one of the runs add their share of all barrels.
+/// It is 4 if only one of them collapses. Otherwise it is the sum of three terms: 1 if the modes
+/// differ; the difference of the collapse times (or of the drifts), divided by the extent `times`
+/// (or `drifts`); and the share of the barrels that fall in only one of the runs.
 fn distance(a: &CaseResult, b: &CaseResult, times: f64, drifts: f64) -> f64 {
     let apart = |a: f64, b: f64, all: f64| if all > 0.0 { (a - b).abs() / all } else { 0.0 };
     match (collapse(a), collapse(b)) {
@@ -103,7 +103,7 @@ fn drift(result: &CaseResult) -> Option<f64> {
     result.demands.top_drift_ratio
 }
 
-/// Returns the difference between the largest and the smallest value; zero without values.
+/// Returns the difference between the largest and the smallest value; zero if there are no values.
 fn extent(values: impl Iterator<Item = f64>) -> f64 {
     let ends = values.fold(None, |ends: Option<(f64, f64)>, value| {
         Some(ends.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))

@@ -19,7 +19,7 @@ use super::super::spread::LEVEL;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Number of variants in the first block of a change, which fill one bundle of lanes.
+/// Number of variants in the first block of a change; this many fill one bundle of lanes.
 const FIRST: u32 = 8;
 
 /// Number of variants in every later block.
@@ -28,8 +28,8 @@ const BLOCK: u32 = 16;
 /// Candidates of a search, and the number of variants of each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Number of changes of height; they come first, highest first, and their search ends at the
-    /// first that suffices.
+    /// Number of changes of height. They come first, the highest stack first, and are tried until
+    /// one suffices.
     pub(super) heights: usize,
     /// Number of strap pretensions, from loose to tight; they follow the changes of height.
     pub(super) straps: usize,
@@ -118,8 +118,7 @@ pub type Failed = ControlFlow<(), Vec<u32>>;
 /// Function that runs a block of variants, numbered from zero, of a change given by its index.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Failed, E> + 'a;
 
-/// Tries changes until the highest stack that suffices and the loosest straps that suffice are
-/// found.
+/// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
 pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
     let mut all = Search { plan, counts: vec![None; plan.changes()], run };
     let complete = all.heights()?.is_continue() && all.straps()?.is_continue();
@@ -169,7 +168,8 @@ impl<E> Search<'_, '_, E> {
         self.first_of(0..self.plan.heights)
     }
 
-    /// Tries straps from loose to tight; bisection skips those that their first block rejects.
+    /// Tries straps from loose to tight; bisection skips straps that are rejected by their first
+    /// block.
     fn straps(&mut self) -> Result<ControlFlow<()>, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {
