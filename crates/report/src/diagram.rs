@@ -33,7 +33,7 @@ pub struct Arrow {
     pub meaning: String,
 }
 
-/// Largest width and height (px), and the width (px) on a phone.
+/// Maximum width and height (px).
 const MOST: [f64; 2] = [620.0, 520.0];
 const PHONE: f64 = 358.0;
 /// Length and half width of an arrow's head (px).

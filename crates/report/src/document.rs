@@ -16,11 +16,11 @@ pub struct Document {
     pub blocks: Vec<Block>,
     /// Provenance: pairs of name and value, shown at the end.
     pub provenance: Vec<(String, String)>,
-    /// Technical terms with their meanings; those that occur are explained in place and listed at
-    /// the end.
+    /// Technical terms with their meanings; terms that occur in the document are explained where
+    /// they occur and listed at the end.
     pub words: Vec<Word>,
-    /// Warnings that the reader must know before trusting the result; shown right after the first
-    /// player.
+    /// Warnings that the reader must know before relying on the result; shown directly after the
+    /// first player.
     pub warnings: Vec<String>,
 }
 
@@ -44,7 +44,7 @@ pub struct Verdict {
     pub command: String,
     /// Sentences that support the headline, in order.
     pub sentences: Vec<String>,
-    /// Sentences with the numbers behind the headline, folded away on screen.
+    /// Sentences with the numbers that support the headline, in a collapsed section on screen.
     pub fine: Vec<String>,
     /// Determines the sign and the color beside the headline.
     pub tone: Tone,
@@ -92,13 +92,13 @@ impl Block {
         Self::Heading { level, text: text.into() }
     }
 
-    /// Creates a block that is folded away under a summary line.
+    /// Creates a block that is collapsed under a summary line.
     pub fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::Details { summary: summary.into(), blocks }
     }
 }
 
-/// Summary line of the fold that contains [`Verdict::fine`].
+/// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
 
 /// One piece of content. All text is plain: it is escaped, never interpreted.
@@ -128,11 +128,11 @@ pub enum Block {
     /// Several scenes side by side with one set of controls; on paper and in Markdown, a strip of
     /// frames for each, all at the same times, and the events.
     Players(Players),
-    /// Content folded away on screen and always open on paper.
+    /// Content that is collapsed on screen and always open on paper.
     Details {
         /// The line that stays visible.
         summary: String,
-        /// The folded content.
+        /// The collapsed content.
         blocks: Vec<Block>,
     },
 }

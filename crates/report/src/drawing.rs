@@ -31,7 +31,7 @@ pub(crate) enum Item {
         center: [f64; 2],
         radius: f64,
     },
-    /// Polylines (px); `dash` precedes the dash pattern of the style.
+    /// Polylines (px); `dash` takes precedence over the dash pattern of the style.
     Path {
         class: String,
         dash: &'static str,
@@ -91,7 +91,7 @@ pub(crate) struct Placed {
     pub(crate) pose: [f64; 3],
 }
 
-/// The point of a text that is placed at its position.
+/// The point of a text that lies at the position of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -143,7 +143,7 @@ impl Drawing {
     }
 }
 
-/// The available width; font sizes do not depend on it.
+/// The available width; font sizes do not depend on the width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Room {
     /// A page on a desk, or on paper.
@@ -167,8 +167,8 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Breaks a text at `size` px into lines that are no wider than `width` where possible; lines break
-/// after spaces and after characters that join words.
+/// Breaks a text at `size` px into lines that are no wider than `width` where possible; a line may
+/// break after a space or after a character that joins words.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

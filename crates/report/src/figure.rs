@@ -11,7 +11,8 @@ use crate::{
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Short name, made safe for files and anchors; a number is appended to a repeated name.
+    /// Short name, from which names of files and anchors are derived; a number is appended to a
+    /// repeated name.
     pub id: String,
     /// Caption: what the picture shows and how to read it.
     pub caption: String,
@@ -22,7 +23,7 @@ pub struct Figure {
 /// The kinds of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureKind {
-    /// Series over a pair of axes.
+    /// Series plotted on a pair of axes.
     Plot(Plot),
     /// Several plots in rows.
     Panels(Panels),
@@ -56,8 +57,7 @@ impl Figure {
         Self { id: id.into(), caption: caption.into(), kind: picture.into() }
     }
 
-    /// Returns the picture as a standalone SVG document with a white background, text as text, and
-    /// f64 coordinates.
+    /// Returns the picture as a standalone SVG document with a white background; text remains text.
     pub fn to_svg(&self) -> String {
         self.draw(&escape::slug(&self.id)).standalone()
     }
@@ -71,8 +71,8 @@ impl Figure {
         }
     }
 
-    /// Returns the picture as a PNG on white, with a resolution of `dpi` dots per inch; its 12 px
-    /// letters are 9 points high.
+    /// Returns the picture as a PNG on white, with a resolution of `dpi` dots per inch, at which a
+    /// font size of 12 px is 9 points.
     ///
     /// Text is drawn with the bundled font, so the same figure gives the same file on every
     /// machine.
@@ -105,7 +105,8 @@ impl Figure {
         self.draw_in(id, Room::Page)
     }
 
-    /// Draws the picture for a width; a strip is the same for all widths, because its panels wrap.
+    /// Draws the picture for an available width; a strip is the same for all widths, because its
+    /// panels wrap.
     pub(crate) fn draw_in(&self, id: &str, room: Room) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),
@@ -194,7 +195,7 @@ pub fn attachments(document: &Document) -> Vec<Attachment> {
     files
 }
 
-/// Visits blocks in reading order, including folded ones.
+/// Visits blocks in reading order, including collapsed blocks.
 pub(crate) fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
     for block in blocks {
         visit(block);

@@ -5,7 +5,7 @@ use crate::{Word, escape};
 /// Heading of the list.
 pub(crate) const TITLE: &str = "Words";
 
-/// The terms of a page, with a record of which occur in it.
+/// The terms of a page, with a record of the terms that occur on the page.
 pub(crate) struct Glossary {
     words: Vec<Word>,
     /// For each term: whether it was marked since the last heading, and whether it was marked
@@ -18,7 +18,7 @@ impl Glossary {
         Self { words: words.to_vec(), marked: vec![[false; 2]; words.len()] }
     }
 
-    /// Begins a section, in which terms are marked again.
+    /// Begins a section, in which the first occurrence of each term is marked again.
     pub(crate) fn again(&mut self) {
         for [here, _] in &mut self.marked {
             *here = false;
@@ -81,7 +81,7 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Finds the first occurrence of a word in a text, as a whole word or in its plural.
+/// Finds the first occurrence in a text of a whole word or its plural.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
     let letter = |c: char| c.is_alphanumeric() || c == '-';

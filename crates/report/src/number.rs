@@ -5,8 +5,8 @@ pub(crate) const MISSING: &str = "–";
 
 /// Formats `value` with `digits` significant digits (at least one, at most 15).
 ///
-/// Numbers from 10⁻⁴ to below 10⁶ are written out, others as a mantissa and a power of ten. The
-/// minus sign is U+2212. A number that is not finite gives "–".
+/// Numbers from 10⁻⁴ to below 10⁶ are written without an exponent, others as a mantissa and a power
+/// of ten. The minus sign is U+2212. A number that is not finite gives "–".
 ///
 /// ```
 /// use barrelstack_report::significant;

@@ -181,7 +181,8 @@ impl Writer {
     }
 }
 
-/// Formats a coordinate to a hundredth of a pixel without trailing zeros; zero if it is not finite.
+/// Formats a coordinate to a hundredth of a pixel without trailing zeros; a value that is not
+/// finite becomes zero.
 fn coordinate(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();

@@ -160,7 +160,7 @@ fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
 /// Draws a history as `columns` characters, each showing the largest value of its interval as a
 /// share of `highest`.
 ///
-/// Values that are not finite count as zero; without values the result is empty.
+/// Values that are not finite count as zero; if there are no values, the result is empty.
 pub fn sparkline(values: &[f64], highest: f64, columns: usize, characters: Characters) -> String {
     let marks: [char; 8] = match characters {
         Characters::Unicode => ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'],

@@ -216,7 +216,7 @@ impl RenderFolder {
 
     /// Writes the ParaView series that `make` produces file by file.
     ///
-    /// Long series of bodies in space thus need not fit into memory as a whole.
+    /// A long series thus need not fit into memory as a whole.
     ///
     /// # Errors
     /// When a file cannot be written.

@@ -15,7 +15,7 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None => list(args.json)?,
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
-        Some(_) if args.json => bail!("--json is for the list of scenarios; leave it out"),
+        Some(_) if args.json => bail!("--json applies only to the list of scenarios; leave it out"),
         Some(ScenariosAction::Show { name, resolved: false }) => {
             // If there is no such scenario, loading it gives an error with the nearest name.
             Scenario::builtin(name, &[])?;

@@ -32,7 +32,7 @@ pub(super) fn run(
     ] {
         if given {
             bail!(
-                "{option} is available in a plane, but not yet in space: leave it out{}",
+                "{option} is available for planar models, but not in space: leave it out{}",
                 in_a_plane(scenario)
             );
         }

@@ -234,7 +234,7 @@ class Calibration(Page):
         fit
             As for :meth:`response`.
         within
-            Range of the parameters: within this factor of those of the scenario.
+            Range of the parameters: the values of the scenario, divided and multiplied by this factor.
         timing, placement
             Standard deviations, with units, of observed times and of the positions of bodies.
         simulations

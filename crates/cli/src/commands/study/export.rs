@@ -17,7 +17,8 @@ pub(super) struct ExportArgs {
     /// Folder for the files.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Name of a stack in the other program (its taxonomy, or the id of its component).
+    /// Name of the stack in the other program (taxonomy in OpenQuake, id of the component in
+    /// Pelicun).
     #[arg(long, value_name = "NAME", default_value = "wine.barrel.stack")]
     asset: String,
 }

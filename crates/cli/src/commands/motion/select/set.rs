@@ -1,4 +1,4 @@
-//! Files of a set: its table, and a study that uses the set directly.
+//! Files of a set of records: its table, and a study that runs with the set.
 
 use std::fmt::Write as _;
 
@@ -121,7 +121,7 @@ impl Set<'_> {
         let selection = self.selection;
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         format!(
-            "{} selected of {} that reach the target within the factors: median within {:.1} % of the \
+            "{} selected of {} that can be scaled to the target: median within {:.1} % of the \
              target, {}, after {} rounds of exchanges",
             selection.chosen.len(),
             selection.eligible,
@@ -133,7 +133,7 @@ impl Set<'_> {
                 )
             } else {
                 format!(
-                    "standard deviation of ln Sa up to {:.2} around it",
+                    "standard deviation of ln Sa around the target up to {:.2}",
                     selection.deviation_error(target)
                 )
             },
