@@ -14,7 +14,7 @@ use crate::extra;
 use crate::tally::Tally;
 use crate::web;
 
-/// One command, with advice for the case that it fails.
+/// One command, with advice in case the command fails.
 struct Step {
     /// Arguments of `cargo`.
     arguments: &'static [&'static str],
@@ -127,7 +127,7 @@ pub(crate) fn film() -> anyhow::Result<ExitCode> {
     check.film()
 }
 
-/// Saves the present look of all report pages as the reference of later checks.
+/// Saves the present appearance of all report pages as the reference for later checks.
 pub(crate) fn golden() -> anyhow::Result<ExitCode> {
     let check = browser::find(&root(), browser::REPORTS)
         .context("this repository does not contain the script that checks pages")?;
@@ -141,7 +141,7 @@ fn after(begin: Instant) -> String {
 
 /// Prints the counts and the time of each step, and the total counts on the last line.
 ///
-/// Prints nothing if no test ran, since `0 passed, 0 failed` would look like a success.
+/// Prints nothing if no test was run, because `0 passed, 0 failed` would look like a success.
 fn close(closing: &[String], total: Tally, start: Instant) {
     if total == Tally::default() {
         return;

@@ -28,7 +28,7 @@ use crate::interruptible::run_interruptible;
 use crate::page::Page;
 use crate::scenario::{Scenario, report_advance, with_variants};
 
-/// Runs scenarios and compares them; unnamed scenarios are named by their differences.
+/// Runs scenarios and compares them; scenarios without a name are named by their differences.
 #[pyfunction]
 pub(crate) fn compare(
     py: Python<'_>,
@@ -174,8 +174,8 @@ pub(crate) fn score(
     Page::of(&sheet.to_document(), sheet.document)
 }
 
-/// A set of records: indices and factors of the selected records; mean and standard deviation of ln
-/// Sa, of the target and then of the set; number of candidates.
+/// A set of records: indices and scale factors of the selected records; mean and standard deviation
+/// of ln Sa, first of the target and then of the set; number of candidates.
 type SetFacts = (Vec<(usize, f64)>, [Vec<f64>; 4], usize);
 
 /// Selects spectra (m/s²), given at the periods (s) of a target, that together match its mean and

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-/// Interval at which signals are polled; far below the promised second.
+/// Interval at which signals are polled, so that work stops well within a second.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
 
 /// Progress and cancellation state of the work.
@@ -52,8 +52,8 @@ impl ProgressState {
 
 /// Runs work on another thread without the interpreter lock.
 ///
-/// If a signal or the `progress` callback stops the work, its exception is raised after the work
-/// has ended.
+/// If a signal or the `progress` callback stops the work, the exception of the signal or callback
+/// is raised after the work has ended.
 pub(crate) fn run_interruptible<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

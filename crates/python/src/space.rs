@@ -30,7 +30,7 @@ impl SpatialRun {
         &self.answer.run.frames
     }
 
-    /// Returns the numbers of every frame and body as one array.
+    /// Returns numbers that are given per frame and body as one array.
     fn stacked<'py, const N: usize>(
         &self,
         py: Python<'py>,

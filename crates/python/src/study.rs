@@ -1,4 +1,4 @@
-//! Studies: planned, run in chunks, collected and evaluated.
+//! Studies, which can be planned, run in chunks, collected and evaluated.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -176,8 +176,8 @@ pub(crate) fn decision(
     Page::of(&decision.to_document(), decision.document)
 }
 
-/// Exports the curves of the study in a folder for other programs; returns name and text of each
-/// file, and a list of missing parts.
+/// Exports the curves of the study in a folder for other programs; returns the name and the text of
+/// each file, and a list of the parts that cannot be exported.
 #[pyfunction]
 pub(crate) fn export(
     py: Python<'_>,

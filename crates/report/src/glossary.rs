@@ -25,9 +25,10 @@ impl Glossary {
         }
     }
 
-    /// Returns text as markup, with the terms marked that have not yet occurred in this section.
+    /// Returns text as markup, in which the first occurrence of each term in this section is
+    /// marked.
     ///
-    /// A mark works with pointer, touch and keyboard, and shows the meaning without scripts.
+    /// A marked term shows its meaning on pointer, touch and keyboard input, also without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;

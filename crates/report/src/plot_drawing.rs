@@ -12,6 +12,7 @@ const WIDTH: [f64; 2] = [680.0, 358.0];
 const PLOT_HEIGHT: f64 = 230.0;
 /// Height (px) of a row of an axis with names.
 const ROW: f64 = 36.0;
+/// Maximum share of the width that the names take.
 const NAMES: f64 = 0.4;
 /// Height (px) of a line of text.
 const LINE: f64 = 15.0;
@@ -374,10 +375,10 @@ fn draw_names(drawing: &mut Drawing, names: &[Vec<String>], x: &Map, y: &Map) {
 }
 
 impl Axis {
-    /// Returns the range to show: the given range if it is usable, otherwise that of the data.
+    /// Returns the range to show: the given range if it is usable, otherwise the range of the data.
     ///
-    /// Constant data get a range around their value. Without data the range is 0 to 1, or 1 to 10
-    /// on a logarithmic axis.
+    /// For constant data, the range extends to both sides of the value. If there are no data, the
+    /// range is 0 to 1, or 1 to 10 on a logarithmic axis.
     pub(crate) fn data_range<'a>(
         &self,
         columns: impl Iterator<Item = &'a [f64]>,

@@ -10,6 +10,7 @@ use crate::{
 const GUTTER: f64 = 10.0;
 /// Distance (points) between baselines.
 const LEADING: f64 = 11.0;
+/// Total padding (points) above and below the lines of a row.
 const AIR: f64 = 4.5;
 
 /// The cells of a table, laid out for a given width.

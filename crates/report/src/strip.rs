@@ -29,11 +29,15 @@ pub struct Panel {
 
 /// Maximum width and height (px) of a panel.
 const PANEL: [f64; 2] = [165.0, 235.0];
+/// Maximum width and height (px) of a single picture.
 const STILL: [f64; 2] = [480.0, 380.0];
+/// Width (px) of a row of panels.
 const ROW: f64 = 760.0;
+/// Gap (px) between panels.
 const GAP: f64 = 12.0;
 /// Space (px) below the lowest body for the hatch of the ground.
 const FOOT: f64 = 13.0;
+/// Space (px) below the hatch for the caption.
 const CAPTION: f64 = 38.0;
 /// Distance (px) between the hatch strokes of the ground.
 const HATCH: f64 = 10.0;

@@ -78,7 +78,7 @@ class Calibration(Page):
 
     @classmethod
     def stiffness(cls, measured: Any, *, nodes: int = 1, interface: str = "barrel-rack") -> Calibration:
-        """Fits the stiffness of a press test.
+        """Fits the stiffness to a press test.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class Calibration(Page):
         nodes: int = 1,
         interface: str = "barrel-rack",
     ) -> Calibration:
-        """Fits restitution and damping of drop tests.
+        """Fits restitution and damping to drop tests.
 
         Parameters
         ----------
