@@ -59,7 +59,7 @@ pub(crate) fn list(root: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the paths of the entries of a folder; none if the folder does not exist.
+/// Returns the paths of the entries of a folder; empty if the folder does not exist.
 pub(crate) fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !folder.is_dir() {
         return Ok(Vec::new());

@@ -119,7 +119,8 @@ fn run_others(root: &Path) -> anyhow::Result<()> {
     checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
 }
 
-/// Returns the Python of the virtual environment in a folder, and creates the environment if it does not exist.
+/// Returns the Python interpreter of the virtual environment in a folder, and creates the
+/// environment if it does not exist.
 fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     let bin = if cfg!(windows) { "Scripts" } else { "bin" };
     let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));

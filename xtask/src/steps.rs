@@ -153,8 +153,8 @@ fn close(closing: &[String], total: Tally, start: Instant) {
     println!("{total}");
 }
 
-/// Runs a command and prints its output as it arrives; returns whether the command succeeded, and the counts of
-/// the test runners in its output.
+/// Runs a command and prints its output as it arrives; returns `true` if the command succeeded, and
+/// the counts of the test runners in the output.
 fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
     let program = Path::new(command.get_program()).display().to_string();
     let mut child = command

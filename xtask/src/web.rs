@@ -1,5 +1,5 @@
-//! The page that contains the engine: builds the engine as WebAssembly with the tools of this machine, and checks that
-//! it imports only functions that the page provides.
+//! Builds the page that contains the engine: compiles the engine to WebAssembly with the tools of
+//! this machine, and checks that the engine imports only functions that the page provides.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -31,8 +31,8 @@ pub struct Side {
     pub summary: Summary,
     /// Results in the plane that is not shown, if the scenario has both planes.
     pub other: Option<OtherPlane>,
-    /// For each plane, the shown one first: whether each variant collapses, in the order of the
-    /// variant numbers; `None` for a variant without a verdict.
+    /// For each plane, the shown plane first: `true` for each variant that collapses, in the order
+    /// of the variant numbers; `None` for a variant without a verdict.
     pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
 }
 
@@ -134,7 +134,7 @@ pub const MOST: usize = 6;
 /// Checks a comparison before any work is done.
 ///
 /// # Errors
-/// When there are too few or too many runs, or two of them have equal inputs.
+/// When there are too few or too many runs, or two runs have equal inputs.
 pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
     match scenarios.len() {
         found @ 0..=1 => return Err(CompareError::TooFew(found)),
@@ -191,7 +191,7 @@ described! {
         pub path: String,
         /// Meaning of the input.
         pub help: &'static str,
-        /// Value of the input in each run; null where a run has no such input.
+        /// Value of the input in each run; null for a run that has no such input.
         pub values: Vec<Option<String>>,
     }
 }

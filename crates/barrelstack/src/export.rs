@@ -146,8 +146,8 @@ impl Folder {
         }
     }
 
-    /// Checks a folder like [`Folder::prepare`], but allows the files of an earlier run to be
-    /// replaced, and no others.
+    /// Checks a folder like [`Folder::prepare`], but allows files of an earlier run (and no other
+    /// files) to be replaced.
     ///
     /// # Errors
     /// When a file that would be replaced was not written by a run, or was changed since.
@@ -186,8 +186,9 @@ impl Folder {
 
     /// Writes all [`files`].
     ///
-    /// The files get temporary names first and are renamed together, so none is ever incomplete,
-    /// and a full disk leaves the files of an earlier run as they were.
+    /// The files are first written under temporary names and then renamed together. No file is
+    /// therefore ever incomplete, and if the disk is full, the files of an earlier run remain
+    /// unchanged.
     ///
     /// # Errors
     /// When a file cannot be written.

@@ -32,12 +32,12 @@ described! {
         pub schema: &'static str ["stability/1"],
         /// Title of the scenario.
         pub title: String,
-        /// The rows: first those of the rack of the scenario, then those of the other racks of the
-        /// catalog.
+        /// The rows: first the rows for the rack of the scenario, then the rows for the other racks
+        /// of the catalog.
         pub rows: Vec<StabilityRow>,
     }
 
-    /// Static stability of one stack, or the reason why it does not stand.
+    /// Static stability of one stack, or the reason why the stack does not stand.
     #[derive(Clone, Debug)]
     pub struct StabilityRow {
         /// Name of the rack.
@@ -48,7 +48,8 @@ described! {
         pub levels: u32,
         /// Stability at rest; null if the stack does not stand on a level floor.
         pub stands: Option<Stability>,
-        /// Why the stack does not stand on a level floor, or cannot be built; null if it stands.
+        /// Reason why the stack does not stand on a level floor, or cannot be built; null if the
+        /// stack stands.
         pub refused: Option<String>,
     }
 
@@ -142,7 +143,7 @@ impl StabilityTable {
 /// not come to rest.
 ///
 /// The shape of the motion is the displacement due to a sideways push; the quotient is the work of
-/// the push over the kinetic energy of that shape.
+/// the push divided by the kinetic energy of that shape.
 fn period_of(standing: &Standing) -> Option<f64> {
     let model = &standing.assembly.model;
     let pull = -model.gravity().z * math::sin_cos(NUDGE).0;

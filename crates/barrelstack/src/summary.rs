@@ -1,4 +1,4 @@
-//! Summary of a run: one JSON document whose numbers the report prints.
+//! Summary of a run: a JSON document with the numbers that the report prints.
 
 mod devices;
 
@@ -52,7 +52,7 @@ described! {
         pub devices: Devices = Devices::of(run),
         /// The energy balance; null if the computation failed.
         pub energy: Option<EnergyBalance> = run.energy.as_ref().map(EnergyBalance::of),
-        /// Ground motion of the run; null without one.
+        /// Ground motion of the run; null if the run has no ground motion.
         pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
         /// Settings of the computation, and its amount of work.
         pub run: RunSummary = RunSummary::of(run, wall_seconds),
@@ -295,7 +295,7 @@ impl Summary {
     }
 }
 
-/// `true` if the numbers of a run are valid, which those of a failed computation are not.
+/// `true` if the numbers of a run are valid; `false` if the computation failed.
 fn sound(run: &Run) -> bool {
     !matches!(run.outcome, Outcome::Invalid { .. })
 }

@@ -171,7 +171,7 @@ pub(crate) struct CheckArgs {
     /// which the stack falls.
     #[arg(long)]
     pub(crate) table: bool,
-    /// Print one JSON document in place of the lines.
+    /// Print one JSON document in place of text.
     #[arg(long)]
     pub(crate) json: bool,
 }

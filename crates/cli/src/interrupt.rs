@@ -1,5 +1,5 @@
 //! Handling of Ctrl-C and other requests to terminate: work stops within a second, finished results
-//! are kept, and the user is told where they are.
+//! are kept, and a message states where the results are.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -191,7 +191,7 @@ impl Interrupt {
         requested
     }
 
-    /// Reports the progress of work on `things`, for tests that stop it at a certain point.
+    /// Reports the progress of work on `things`, for tests that stop the work at a certain point.
     #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
         let Some(Some(place)) = PLACE.get() else { return };

@@ -174,7 +174,7 @@ impl Of {
 /// Returns the ratio of the remaining time to the time spent, for `open` of `all` cases; `None`
 /// before any stack is shaken.
 ///
-/// Cases are expected to end early at the rate observed so far; the first of them are expected to
+/// Cases are expected to end early at the rate observed so far; the first cases are expected to
 /// take 0.7 of their full time. Stacks that are still settling are expected to need the settling
 /// time of the others.
 fn left(work: Work, open: f64, all: f64) -> Option<f64> {
@@ -293,8 +293,8 @@ fn rounded(time: Duration) -> String {
 mod tests {
     use super::*;
 
-    /// A run with the times (s) at which its settling, its shaking and the run itself end or begin,
-    /// and the time (s) that the shaking would take without a collapse.
+    /// Start and end times (s) of the settling and of the shaking of a run, and the time (s) that
+    /// the shaking would take without a collapse.
     struct Timed {
         first: f64,
         start: f64,
@@ -302,8 +302,8 @@ mod tests {
         whole: f64,
     }
 
-    /// Returns runs with these durations and full durations after `settling`, `width` of them side
-    /// by side, in order.
+    /// Returns runs with the given durations and full durations after `settling`, in order; `width`
+    /// runs are computed side by side.
     fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {
@@ -315,7 +315,7 @@ mod tests {
         lengths.iter().map(run).collect()
     }
 
-    /// Returns the time (s) of the first estimate, and the total (s) that it states.
+    /// Returns the time (s) of the first estimate, and the total time (s) that the estimate states.
     fn first(runs: &[Timed], known: bool) -> Option<(f64, f64)> {
         let all = runs.iter().map(|run| run.end).fold(0.0, f64::max);
         let times = (1..).map(|tenth| 0.1 * f64::from(tenth));
@@ -341,7 +341,7 @@ mod tests {
         })
     }
 
-    /// Runs that stand take their full time, and those that collapse a part of it; time is
+    /// Runs that stand take their full time, and runs that collapse take a part of it; time is
     /// simulated, so that the test does not depend on a clock.
     #[test]
     fn first_estimates_come_after_five_seconds_and_are_within_a_factor_of_two() {

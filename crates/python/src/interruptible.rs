@@ -1,5 +1,5 @@
-//! Runs work without the interpreter lock, while the calling thread watches for Ctrl-C and reports
-//! progress.
+//! Runs work without the interpreter lock; meanwhile, the calling thread polls for Ctrl-C and
+//! reports progress.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -387,7 +387,7 @@ pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     barrelstack_motion::Record::of_motion(motion, step).map(Record::from).map_err(errors::motion)
 }
 
-/// Returns periods (s) from 0.01 to 10 s, with the given number per decade.
+/// Returns periods (s) from 0.01 to 10 s, with the given number of periods per decade.
 #[pyfunction]
 pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Numbers<'_> {
     barrelstack_motion::standard_periods(per_decade).into_pyarray(py)

@@ -1,4 +1,4 @@
-//! Runs: outcome, histories without copies, and page.
+//! Runs, with their outcomes, histories (without copies) and pages.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -209,7 +209,8 @@ impl Run {
         Ok((numbers(&envelope.at_rest)?, peaks.0, peaks.1))
     }
 
-    /// Returns the nominal case and its variants, one row each; `None` if no variants were run.
+    /// Returns a table with one row for the nominal case and for each variant; `None` if no
+    /// variants were run.
     fn variants(&self) -> Option<Table> {
         let results = &self.shown().variants.as_ref()?.results;
         Some(Table { columns: ensemble::variants(results.iter()) })

@@ -88,7 +88,7 @@ impl Scenario {
         settings.map(|setting| (setting.path, setting.value, setting.help)).collect()
     }
 
-    /// Returns the ground motion as a record, if there is one.
+    /// Returns the ground motion as a record; `None` if the scenario has no motion.
     fn ground(&self, py: Python<'_>) -> PyResult<Option<Record>> {
         let ground = py.detach(|| self.inner.ground()).map_err(|error| errors::ground(&error))?;
         ground.motion.as_ref().map(of_motion).transpose()

@@ -102,7 +102,7 @@ impl Study {
         done.map_err(errors::study)
     }
 
-    /// Runs one chunk, unless its shard exists; returns `true` if it was run.
+    /// Runs one chunk, unless its shard exists; returns `true` if the chunk was run.
     fn run_chunk(&self, py: Python<'_>, folder: PathBuf, chunk: usize) -> PyResult<bool> {
         let done = run_interruptible(py, None, |state| {
             self.inner.run_chunk(&folder, chunk, Width::widest(), &|| state.stopped())
@@ -120,7 +120,7 @@ impl Study {
         grounds.into_iter().filter_map(record).collect()
     }
 
-    /// Runs the study without a folder and returns its table.
+    /// Runs the study in memory, without a folder, and returns the table of its results.
     fn table(&self, py: Python<'_>) -> PyResult<Table> {
         let table = py.detach(|| self.inner.table()).map_err(errors::study)?;
         Ok(Table { columns: table.columns().to_vec() })

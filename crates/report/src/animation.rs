@@ -31,8 +31,8 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// Paints a film with at most `largest` pixels on its longer side; `None` for a film without
-    /// pictures.
+    /// Paints a film with at most `largest` pixels on its longer side; returns `None` if the film
+    /// has no pictures.
     ///
     /// Viewers hold a picture for whole hundredths of a second, and few show more than 50 pictures
     /// per second.

@@ -134,7 +134,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// Returns the value in a row; `None` if it is missing.
+    /// Returns the value in a row; `None` if the value is missing.
     pub fn get(&self, row: usize) -> Option<Value> {
         match self {
             Self::Integer(values) => values.get(row).copied().flatten().map(Value::Integer),

@@ -112,7 +112,7 @@ pub struct DepthTie {
     pub bodies: [usize; 2],
     /// End points of the band, each in the frame of its body (m).
     pub points: [Point3; 2],
-    /// Time (s) at which the band tears; it is not drawn after that.
+    /// Time (s) at which the band tears; a torn band is not drawn.
     pub torn_at: Option<f64>,
 }
 

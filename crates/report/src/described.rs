@@ -103,7 +103,7 @@ pub struct Field {
     pub key: &'static str,
     /// Meaning: the doc comment of the field.
     pub meaning: &'static str,
-    /// Unit; `None` for a field without a unit.
+    /// Unit; `None` if the field has no unit.
     pub unit: Option<&'static str>,
     /// Permitted values of a text; empty if any text is permitted.
     pub words: &'static [&'static str],
@@ -114,8 +114,8 @@ pub struct Field {
     pub schema: fn(&mut Objects) -> Value,
 }
 
-/// Adds the schema of an object under its name, unless it is there already, and returns a reference
-/// to it.
+/// Adds the schema of an object under its name, unless this name is already present, and returns a
+/// reference to the schema.
 pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
     let reference = json!({ "$ref": format!("#/$defs/{name}") });
     if objects.contains_key(name) {

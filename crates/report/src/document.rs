@@ -2,7 +2,7 @@
 
 use crate::{Figure, Player, Players, Table};
 
-/// The content of a page, independent of the output format.
+/// The content of a report or page, independent of the output format.
 ///
 /// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so both show the
 /// same numbers.
@@ -46,7 +46,7 @@ pub struct Verdict {
     pub sentences: Vec<String>,
     /// Sentences with the numbers that support the headline, in a collapsed section on screen.
     pub fine: Vec<String>,
-    /// Determines the sign and the color beside the headline.
+    /// Tone of the verdict, which determines the sign and the color beside the headline.
     pub tone: Tone,
 }
 
@@ -101,7 +101,7 @@ impl Block {
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
 
-/// One piece of content. All text is plain: it is escaped, never interpreted.
+/// One piece of content. All text is plain text, which is escaped and never interpreted as markup.
 #[expect(
     clippy::large_enum_variant,
     reason = "a document has tens of blocks, so boxing them saves little"
@@ -123,10 +123,10 @@ pub enum Block {
     Table(Table),
     /// A figure with its caption.
     Figure(Figure),
-    /// Moving bodies with controls; on paper and in Markdown, a strip of frames and the events.
+    /// An animated scene with controls; on paper and in Markdown, a strip of frames and the events.
     Player(Player),
     /// Several scenes side by side with one set of controls; on paper and in Markdown, a strip of
-    /// frames for each, all at the same times, and the events.
+    /// frames for each scene (at the same times for all) and the events.
     Players(Players),
     /// Content that is collapsed on screen and always open on paper.
     Details {

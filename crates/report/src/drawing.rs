@@ -66,9 +66,10 @@ pub(crate) enum Item {
         scale: f64,
         drawing: Drawing,
     },
-    /// Bodies in their own units (m), for use by [`Item::Scene`].
+    /// Definitions of bodies (m), for use by [`Item::Scene`].
     Defined(Vec<Body>),
-    /// Bodies placed in a world with z up: `scale` (px/m) and the position of the origin (px).
+    /// Bodies at their positions in a world with z up, with the `scale` (px/m) and the position
+    /// (px) of the origin.
     Scene {
         scale: f64,
         origin: [f64; 2],
@@ -137,7 +138,7 @@ impl Drawing {
         }
     }
 
-    /// Places another drawing inside this one, at its own size.
+    /// Places another drawing inside this drawing without scaling it.
     pub(crate) fn nest(&mut self, at: [f64; 2], drawing: Self) {
         self.push(Item::Nested { at, scale: 1.0, drawing });
     }
@@ -162,13 +163,14 @@ impl Room {
     }
 }
 
-/// Estimates the width (px) of a line of text at `size` px, usually slightly too large.
+/// Estimates the width (px) of a line of text of font size `size` (px); the estimate is usually
+/// slightly too large.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Breaks a text at `size` px into lines that are no wider than `width` where possible; a line may
-/// break after a space or after a character that joins words.
+/// Breaks a text of font size `size` (px) into lines that, if possible, are no wider than `width`;
+/// a line may break after a space or after a character that joins words.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

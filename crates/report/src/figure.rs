@@ -88,9 +88,9 @@ impl Figure {
 
     /// Returns the picture's data as CSV at full precision.
     ///
-    /// A plot gives one pair of `x` and `y` columns per series. Panels give their plots one below
-    /// the other, separated by an empty line. A strip gives one row per instant and body, an
-    /// envelope one row per sample, and a diagram one row per arrow.
+    /// A plot gives one pair of `x` and `y` columns per series. Panels give the columns of each
+    /// plot, one plot below the other, separated by an empty line. A strip gives one row per
+    /// instant and body, an envelope one row per sample, and a diagram one row per arrow.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
@@ -178,7 +178,7 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
 /// Returns the files of a document in reading order.
 ///
 /// Every figure is written as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
-/// printed picture, and then every table as `table-<n>.csv`.
+/// printed picture, and every table as `table-<n>.csv`.
 pub fn attachments(document: &Document) -> Vec<Attachment> {
     let mut files = Vec::new();
     for (id, figure) in figures(document) {
@@ -211,7 +211,7 @@ impl Attachment {
     }
 }
 
-/// Assigns unique names, which are the same for one document in every format.
+/// Assigns unique names; the names of a document are the same in every format.
 #[derive(Default)]
 pub(crate) struct Names {
     taken: HashSet<String>,

@@ -76,7 +76,7 @@ impl Film {
 }
 
 impl Scene {
-    /// Returns the part of the scene between two times (s): the frames in between, and all events.
+    /// Returns the scene reduced to the frames between two times (s), with all events.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let frames = &self.frames;

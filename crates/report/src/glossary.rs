@@ -8,8 +8,8 @@ pub(crate) const TITLE: &str = "Words";
 /// The terms of a page, with a record of the terms that occur on the page.
 pub(crate) struct Glossary {
     words: Vec<Word>,
-    /// For each term: whether it was marked since the last heading, and whether it was marked
-    /// anywhere.
+    /// For each term: `true` if the term was marked since the last heading, and `true` if it was
+    /// marked anywhere.
     marked: Vec<[bool; 2]>,
 }
 

@@ -221,11 +221,11 @@ fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     )
 }
 
-/// A page with an embedded program, with the style and the player of all pages.
+/// A page with an embedded program, which has the same style and player as all other pages.
 ///
 /// The policy of the page allows the embedded program to run, also in workers, and forbids every
-/// request. Large data are at the end, after the scripts, so that the page is usable before the
-/// file is fully loaded.
+/// request. Large data come last, after the scripts, so that the page is usable before the file is
+/// fully loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
     /// Title of the file.
@@ -238,7 +238,7 @@ pub struct Shell<'a> {
     pub at_hand: &'a [(&'a str, &'a [u8])],
     /// Script of the workers, in the element `worker`.
     pub worker: &'a str,
-    /// Scripts of the page, which can access those of the player.
+    /// Scripts of the page, which can access the scripts of the player.
     pub scripts: &'a [&'a str],
     /// Data that are compressed with gzip and loaded last, each under the id of an element.
     pub held: &'a [(&'a str, &'a [u8])],

@@ -120,8 +120,8 @@ impl<'a> Flow<'a> {
         self.size[1] - MARGIN[2]
     }
 
-    /// Writes a structure element; all items drawn meanwhile belong to it, except those in nested
-    /// elements.
+    /// Writes a structure element; all items that `write` draws belong to this element, except
+    /// those in nested elements.
     fn tagged(&mut self, role: StructRole, words: Option<&str>, write: impl FnOnce(&mut Self)) {
         self.settle(Some(self.current));
         let before = self.current;

@@ -42,12 +42,12 @@ pub(crate) fn paint(items: &[Item], scale: f64, painter: &mut dyn Painter) {
     walk.items(items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
 }
 
-/// Transform from the coordinates of an item to those of the picture.
+/// Transform from the coordinates of an item to the coordinates of the picture.
 #[derive(Clone, Copy)]
 struct Place {
     origin: [f64; 2],
     scale: f64,
-    /// Cosine and sine of the rotation, clockwise on the page.
+    /// Cosine and sine of the rotation angle, which is clockwise on the page.
     turn: [f64; 2],
     /// `true` if the item's second coordinate points up.
     up: bool,

@@ -89,8 +89,8 @@ impl File {
         Ref::new(self.last)
     }
 
-    /// Writes a page and returns the structure elements painted on it, by their marked-content
-    /// identifiers.
+    /// Writes a page, and returns the structure elements on the page in the order of their
+    /// marked-content identifiers.
     fn page(
         &mut self,
         (at, page, id): (usize, &Page, Ref),

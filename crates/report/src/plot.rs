@@ -22,8 +22,8 @@ pub struct Plot {
     /// `true` if the page draws the plot interactively, with readout and zoom. If x decreases
     /// anywhere in a series, as in a hysteresis loop, the plot is nevertheless drawn as SVG.
     pub interactive: bool,
-    /// `true` if x is the time of the run (s), so that cursor and zoom are shared with the player
-    /// and with all other such plots. Applies to interactive plots only.
+    /// `true` if x is the time of the run (s), so that the cursor and the zoom are shared with the
+    /// player and with all other plots over the time of the run. Applies to interactive plots only.
     pub timeline: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Creates a linear axis with the range of its data.
+    /// Creates a linear axis that shows the range of the data.
     pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { label: label.into(), unit: unit.into(), ..Self::default() }
     }
@@ -139,7 +139,7 @@ pub struct SeriesStyle {
     pub area: bool,
     /// `true` to draw a dot at every point, for measured or sparse data.
     pub dots: bool,
-    /// `true` to draw dots without a line, for single measurements or raw fractions.
+    /// `true` to draw dots but no line, for single measurements or raw fractions.
     pub points: bool,
     /// `true` to draw the line as a thick bar, for intervals on an axis with names.
     pub bar: bool,

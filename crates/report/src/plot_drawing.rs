@@ -25,7 +25,7 @@ const SAMPLE: f64 = 26.0;
 /// Maximum number of rows of mark labels; labels that do not fit are omitted.
 const MARK_ROWS: usize = 3;
 
-/// A range of data, and the range of pixels to which it is mapped.
+/// A range of data, and the range of pixels to which the data are mapped.
 struct Map {
     range: [f64; 2],
     pixels: [f64; 2],

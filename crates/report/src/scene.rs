@@ -74,7 +74,7 @@ impl Role {
     }
 }
 
-/// A body and how it is drawn, in the frame of the body.
+/// A body, and its outlines and lines in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneBody {
     /// Name shown at the origin of the body.
@@ -185,7 +185,7 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    /// Returns the word shown to the reader.
+    /// Returns the word that names the kind of event for the reader.
     pub fn word(self) -> &'static str {
         match self {
             Self::Uplift => "uplift",
@@ -234,7 +234,7 @@ pub struct Tie {
     pub bodies: [usize; 2],
     /// End points of the line, each in the frame of its body (m).
     pub points: [Point; 2],
-    /// Time (s) at which the line tears; it is not drawn after that.
+    /// Time (s) at which the line tears; a torn line is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -300,7 +300,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the ends of a tie at a frame; `None` if the tie is torn or one of its bodies is not
+    /// Returns the ends of a tie in a frame; `None` if the tie is torn or one of its bodies is not
     /// drawn.
     pub(crate) fn ends(&self, tie: &Tie, frame: usize) -> Option<[Point; 2]> {
         let time = *self.frames.times.get(frame)?;
@@ -398,8 +398,8 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
 /// stack, but may roll farther.
 const REACH: [f64; 2] = [1.75, 0.15];
 
-/// Returns the window that shows the given frames: the extent of the first frame, and bodies that
-/// stay or land near it.
+/// Returns the window for the given frames, which contains the extent of the first frame and all
+/// bodies that stay or land near it.
 ///
 /// A body that moves far away leaves the picture; otherwise all other bodies would be drawn small.
 pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {

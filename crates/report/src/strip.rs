@@ -86,8 +86,8 @@ impl Strip {
     /// Creates a strip of `count` panels that summarize the run.
     ///
     /// The panels are the first and the last frame and the most important events: falls are
-    /// preferred to losses of seat, these to all other events, and earlier events to later ones. If
-    /// there are too few events, instants in the middle of the longest gaps are added.
+    /// preferred to losses of seat, losses of seat to all other events, and earlier events to later
+    /// events. If there are too few events, instants in the middle of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];

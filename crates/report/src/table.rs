@@ -60,7 +60,8 @@ impl Rating {
 pub enum Cell {
     /// Plain text.
     Text(String),
-    /// Text with a rating; the text must state the rating too, because the color only repeats it.
+    /// Text with a rating; the text must state the rating too, because the color only repeats the
+    /// rating.
     Rated(Rating, String),
     /// A number, and its number of significant digits; CSV keeps all digits.
     Number(f64, usize),

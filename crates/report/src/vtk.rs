@@ -18,12 +18,12 @@ use crate::{
 /// `stack.pvd` is the file to open. There are a `bodies-*.vtp` and a `forces-*.vtp` for each time,
 /// and `bodies.csv` lists the names of the bodies by number.
 ///
-/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film).
-/// The plane of the scene is y = 0, z up, lengths in m.
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film). The plane of the scene is y = 0, z
+/// is up, and lengths are in m.
 ///
 /// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
-///   (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
-///   carry `displacement` (m) from the first frame. A body without a finite pose is left out.
+/// (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
+/// carry `displacement` (m) from the first frame. Bodies without a finite pose are left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);

@@ -1,7 +1,7 @@
 //! The engine of a page: handles a request and returns a document.
 //!
-//! A request is four bytes (the length of the following object, little-endian), a JSON object, and the bytes of its
-//! records, one after the other:
+//! A request consists of four bytes (the length of the following object, little-endian), a JSON
+//! object, and the bytes of the records, one after the other:
 //!
 //! ```text
 //! { "ask": "summary", "scenario": "schema = 1 …", "name": "mine.toml", "set": ["stack.levels=5"],
@@ -17,9 +17,9 @@
 //! | export | purpose |
 //! |---|---|
 //! | `room(length) -> address` | allocates a request, which the page then writes there |
-//! | `run() -> status` | handles the request: 0 done, 1 refused, with the reason in the answer |
+//! | `run() -> status` | handles the request; 0 if done, 1 if refused (the answer then states the reason) |
 //! | `answer() -> address` | address of the answer, until the next call of `room` |
-//! | `answer_length() -> length` | its length in bytes |
+//! | `answer_length() -> length` | length of the answer in bytes |
 //!
 //! | import | purpose |
 //! |---|---|

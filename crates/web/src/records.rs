@@ -1,4 +1,5 @@
-//! Record files given together: grouped into motions, and files that contain no motion.
+//! Groups record files that are given together into motions, and lists files that contain no
+//! motion.
 
 use std::collections::BTreeMap;
 

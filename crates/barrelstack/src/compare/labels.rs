@@ -76,7 +76,7 @@ fn topic(path: &str) -> Topic {
     }
 }
 
-/// Describes the straps by the properties that differ from those of the other runs.
+/// Describes the straps of a run by those of their properties that differ between the runs.
 fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {

@@ -84,7 +84,7 @@ fn falls_where(side: &Side) -> String {
     format!(" ({})", listed(views))
 }
 
-/// Returns the names of the runs, followed by the title if all runs have the same one.
+/// Returns the names of the runs, followed by the title if all runs have the same title.
 fn heading(sides: &[Side]) -> String {
     let names = format!("Comparison of {}", listed(sides.iter().map(|side| side.name.clone())));
     let first = sides.first().map(|side| &side.run.stated.title);
@@ -220,7 +220,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let lost = match pair.without_verdict {
                 0 => String::new(),
-                some => format!(" In {some} more variants one of the two runs has no verdict."),
+                some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
             let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
             format!(
@@ -238,7 +238,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     others.iter().enumerate().flat_map(of).collect()
 }
 
-/// Describes the result of the comparison in one sentence.
+/// Describes the result of the comparison in one sentence or two.
 fn headline(sides: &[Side]) -> String {
     if let Some(effect) = effect(sides) {
         return by_themselves(sides) + &effect;
@@ -272,7 +272,7 @@ fn headline(sides: &[Side]) -> String {
             }
         }
         ([up], [down]) if one_height && !straps(up) && straps(down) => {
-            format!("Straps bring the stack down: it stands with {}.", up.name)
+            format!("Straps bring the stack down: the stack stands with {}.", up.name)
         }
         ([], _) => format!("{} fall: {}.", capital(&all), names(&down)),
         (_, []) => format!("{} stand: {}.", capital(&all), names(&up)),
@@ -344,7 +344,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let mut fine = Vec::new();
     fine.push(match differing {
         [one] => format!(
-            "They differ in one input: {}, {}.",
+            "The runs differ in one input: {}, {}.",
             one.path,
             listed(one.values.iter().map(|value| {
                 value
@@ -352,7 +352,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
                     .map_or_else(|| "absent".into(), |value| report::shown(&one.path, value))
             }))
         ),
-        many => format!("They differ in {} inputs, listed below.", many.len()),
+        many => format!("The runs differ in {} inputs, listed below.", many.len()),
     });
     let view = sides[0].run.assembly.view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
@@ -407,8 +407,8 @@ fn players(sides: &[Side]) -> Players {
     }
 }
 
-/// `true` if all runs have the same motion; the length scale must agree too, because it stretches
-/// time.
+/// `true` if all runs have the same motion; the length scales must also be equal, because time is
+/// scaled with them.
 fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     let motion = |side: &'a Side| (&side.run.scenario.motion, side.run.scenario.run.similitude);
     let mut motions = sides.into_iter().map(motion);
@@ -488,7 +488,7 @@ fn histories(sides: &[Side]) -> Vec<Block> {
     blocks
 }
 
-/// Pairs a recorded quantity of a run with its times.
+/// Returns the recording times of a run together with the values of a recorded quantity.
 fn recorded(side: &Side, values: Vec<f64>) -> [Vec<f64>; 2] {
     [side.run.recording.times.clone(), values]
 }

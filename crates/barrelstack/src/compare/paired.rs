@@ -91,10 +91,11 @@ impl Paired {
     }
 }
 
-/// Returns the difference of two shares of the same cases, and its interval; `None` without cases.
+/// Returns the difference between two shares of the same cases, and the interval of the difference;
+/// `None` if there are no cases.
 ///
-/// `[a, b, c, d]` counts the cases that collapse in both runs, in the first only, in the second
-/// only, and in neither. The interval combines Wilson's half-intervals, corrected for their
+/// `[a, b, c, d]` counts the cases that collapse in both runs, only in the first, only in the
+/// second, and in neither. The interval combines Wilson's half-intervals, corrected for their
 /// correlation (method 10 of Newcombe 1998, with his correction for continuity).
 fn newcombe([a, b, c, d]: [u32; 4]) -> Option<(f64, [f64; 2])> {
     let n = a + b + c + d;

@@ -111,7 +111,7 @@ impl Rendering {
                 "expected two times (s), the first not negative and the second later, found {from} and {to}"
             )),
             Some([from, _]) if from > run.end_time => Err(format!(
-                "the run ends at {:.2} s, so there is nothing to render from {from} s on",
+                "the run ends at {:.2} s, so there is nothing to render after {from} s",
                 run.end_time
             )),
             _ => Ok(()),
@@ -350,8 +350,8 @@ fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize
         + put(&folder.join("stack.png"), &animation.apng())?)
 }
 
-/// Writes numbered pictures and the table of their times. All cores render, each with one picture
-/// in memory.
+/// Writes numbered pictures and the table of their times. All cores render, each of them one
+/// picture at a time.
 fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportError> {
     let digits = film.len().to_string().len().max(4);
     let pixels = how.formats.contains(&Format::Png);

@@ -115,8 +115,8 @@ pub fn legend(scene: &Scene) -> String {
     legend
 }
 
-/// Displacement (m) below which a body counts as motionless; if all bodies are, the page opens at
-/// the start of the run.
+/// Displacement (m) below which a body counts as motionless. If no body moves farther, the page
+/// opens at the start of the run.
 const STILL: f64 = 1e-3;
 
 /// Returns the instant at which a page opens: the first loss of seat or, if all seats are kept, the
@@ -278,7 +278,7 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-/// Returns the horizontal acceleration and velocity of the ground; empty without a motion.
+/// Returns the horizontal acceleration and velocity of the ground; empty if there is no motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
     let span = (motion.horizontal.natural_step(), run.end_time);

@@ -37,7 +37,7 @@ pub const WORDS: &[Word] = &[
         "residual",
         "what remains at the end: for the energy balance, the error of the computation; for a displacement, the displacement at the end of the run",
     ),
-    word("similitude", "scaling of a stack so that the model behaves like the full-size stack"),
+    word("similitude", "scaling of a stack to a model that behaves like the full-size stack"),
 ];
 
 const fn word(word: &'static str, meaning: &'static str) -> Word {

@@ -57,7 +57,7 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
     )
 }
 
-/// Tabulates the forces in the elements of a device; empty without elements.
+/// Tabulates the forces in the elements of a device; empty if the device has no elements.
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(

@@ -53,7 +53,7 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
         Outcome::Invalid { .. } => {
-            "The computation failed, so the run says nothing about the stack.".into()
+            "The computation failed, so the run permits no conclusion about the stack.".into()
         }
         Outcome::Collapse { mode: CollapseMode::Gravity, .. } => {
             let plane = plane.map_or_else(String::new, |plane| format!("{}, ", plane.words()));

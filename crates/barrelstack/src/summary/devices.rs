@@ -38,7 +38,7 @@ pub struct ElementSummary {
     pub peak_whole_run: f64,
     /// Time (s) of that force.
     pub peak_whole_run_at: f64,
-    /// Time (s) at which the element failed; `None` if it did not.
+    /// Time (s) at which the element failed; `None` if the element did not fail.
     pub broken_at: Option<f64>,
 }
 

@@ -43,7 +43,7 @@ pub enum RunChoice {
     Typical,
     /// The variant of this number; 0 is the nominal case.
     Number(u32),
-    /// The variant of this number, without running any other variants.
+    /// The variant of this number; no other variants are run.
     Alone(u32),
 }
 
@@ -72,7 +72,7 @@ impl Answer {
 }
 
 impl Answer {
-    /// Returns the planes, the governing one first.
+    /// Returns the results of all planes, the governing plane first.
     fn shown(&self) -> impl Iterator<Item = &Shown> {
         std::iter::once(&self.decides).chain(&self.other)
     }
@@ -243,9 +243,9 @@ const FIRST: u32 = 8;
 
 /// Runs the variants of the first verdict, reports that verdict, and then runs all other variants.
 ///
-/// The first verdict uses the variants with the lowest numbers rather than those that finish first;
-/// these would be a biased sample, because runs that collapse end early. Variants that are not
-/// finished when canceled have the outcome `Interrupted`.
+/// The first verdict uses the variants with the lowest numbers. The variants that finish first
+/// would be a biased sample, because runs that collapse end early. Variants that are not finished
+/// when canceled have the outcome `Interrupted`.
 fn in_order(
     planes: &[Plane],
     numbers: &[u32],
@@ -278,8 +278,8 @@ fn in_order(
     Ok(results)
 }
 
-/// Returns the number of the run to show. If the nominal case cannot be run, it is selected, so
-/// that the reason is reported.
+/// Returns the number of the run to show. If the nominal case cannot be run, the nominal case is
+/// selected, so that the reason is reported.
 fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     let stated = variants.and_then(|variants| variants.results.first());
     match (choice, variants) {

@@ -49,8 +49,8 @@ pub use spread::{LEVEL, Range, Spread, fails};
 pub struct Plane {
     /// The nominal case.
     pub scenario: Scenario,
-    /// The motion with the other horizontal component, for the second half of the variants of a
-    /// stack in both planes.
+    /// The motion with the other horizontal component, which applies to the second half of the
+    /// variants if the stack is analyzed in both planes.
     exchanged: Option<MotionSpec>,
 }
 
@@ -133,8 +133,8 @@ impl Plane {
         exchanged.unwrap_or(&self.scenario.motion)
     }
 
-    /// Returns the horizontal component of the record that a variant states; `None` for the default
-    /// component and for motions without a record.
+    /// Returns the name of the horizontal component that the motion of a variant states; `None` for
+    /// the default component and for motions without a record.
     fn component(&self, number: u32) -> Option<&str> {
         match &self.motion(number).source {
             MotionSource::Record(record) => record.component.as_deref(),

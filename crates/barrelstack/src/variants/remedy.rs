@@ -42,15 +42,15 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
-        /// Number of changes that may be tried, each in every plane; the intervals hold for all of
-        /// them together.
+        /// Number of changes that may be tried, each in every plane; the intervals hold
+        /// simultaneously for all these changes.
         pub candidates: u32,
         /// Every change that was tried; changes of height come first.
         pub tried: Vec<Tried>,
-        /// True if the search is complete; false if it was stopped.
+        /// True if the search is complete; false if the search was stopped.
         pub complete: bool,
-        /// Command that compares the sufficient changes with the stack as it is; null if no change
-        /// suffices, or if no command can express it.
+        /// Command that compares the stack as it is with the sufficient changes; null if no change
+        /// suffices, or if no command can express the changes.
         pub comparison: Option<String>,
     }
 
@@ -67,11 +67,11 @@ described! {
         pub changes: Vec<String>,
         /// True if enough variants stand.
         pub suffices: bool,
-        /// Number of variants counted: all, or only the first ones, by number, if the change was
-        /// rejected early.
+        /// Number of variants counted: all variants, or only those with the lowest numbers if the
+        /// change was rejected early.
         pub variants: u32,
-        /// Number of counted variants that collapse or have no verdict, in the plane with the most
-        /// of them.
+        /// Number of counted variants that collapse or have no verdict, in the plane with the
+        /// largest such number.
         pub failed: u32,
         /// Share of variants that fail; null if not all variants were counted, because the change
         /// was rejected or the search was stopped.
@@ -118,8 +118,8 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, spreads.iter().map(|(_, spread)| *spread), &prepare, observer)
 }
 
-/// Searches for a remedy like [`remedy`], with runs made by `prepare`; `spreads` are the statistics
-/// of the stack as it is.
+/// Searches for a remedy like [`remedy`], with runs prepared by `prepare`; `spreads` are the
+/// statistics of the stack without changes.
 ///
 /// # Errors
 /// As [`remedy`].

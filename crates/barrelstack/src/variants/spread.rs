@@ -30,8 +30,8 @@ described! {
         pub collapsed: u32,
         /// Share of variants with a verdict that collapse; null if no variant has a verdict.
         pub share: Option<f64> as "1",
-        /// Wilson's 95 % interval of that share, widened so that it holds whether the variants
-        /// without a verdict stand or collapse.
+        /// Wilson's 95 % interval of that share, widened so that it holds regardless of whether the
+        /// variants without a verdict stand or collapse.
         pub interval: [f64; 2] as "1",
         /// Range of the share of stacks that collapse, over the constants that nobody has measured:
         /// it contains 95 % of the shares if these constants are drawn from their distributions,
@@ -77,8 +77,8 @@ described! {
         pub reason: Option<String>,
         /// Outcome of the nominal case.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
-        /// Number of the run that is most like all others in outcome, mode, time and fallen
-        /// barrels, over all planes; 0 is the nominal case.
+        /// Number of the most typical run: the one that is most similar to all others in outcome,
+        /// mode, time and fallen barrels, in all planes together; 0 is the nominal case.
         pub typical: u32,
         /// Number of the least severe run.
         pub gentlest: u32,
@@ -114,8 +114,8 @@ impl Range {
 }
 
 impl Spread {
-    /// Summarizes the results of the nominal case of a plane, which comes first, and of its
-    /// variants; `None` for a scene without variants.
+    /// Summarizes the results in a plane, of which the first is that of the nominal case; `None`
+    /// for a scene without variants.
     pub fn of(plane: &Plane, results: &[CaseResult]) -> Option<Self> {
         let imperfections = plane.scenario.imperfections()?;
         let variants = results.get(1..).unwrap_or_default();
@@ -197,7 +197,7 @@ impl Spread {
     }
 
     /// Returns the share that collapses if every variant without a verdict is counted as collapsed;
-    /// `None` if none was run.
+    /// `None` if no variant was run.
     pub fn largest_share(&self) -> Option<f64> {
         let run = self.run();
         (run > 0).then(|| f64::from(self.collapsed + self.broken) / f64::from(run))

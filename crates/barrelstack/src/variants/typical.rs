@@ -30,8 +30,9 @@ impl Order {
     }
 }
 
-/// Compares two results by severity: a collapse is more severe, then more fallen barrels, then an
-/// earlier collapse; of two standing stacks, the one with the larger drift.
+/// Compares two results by severity: a collapse is more severe than standing; of two collapses, the
+/// one with more fallen barrels, then the earlier one; of two standing stacks, the one with the
+/// larger drift.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);
@@ -44,8 +45,9 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
 
 /// Returns the number of the medoid: the run with the smallest sum of distances to all others.
 ///
-/// The distances are added over all planes, because a variant is one stack in all planes. Among
-/// equals, the first is chosen; the result is 0 if no allowed run has a verdict in all planes.
+/// The distances are added over all planes, because a variant is one stack in all planes. Of
+/// several runs with the smallest sum, the first is chosen. The result is 0 if no allowed run has a
+/// verdict in all planes.
 pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);
@@ -55,8 +57,7 @@ pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool)
     least.and_then(|(at, _)| u32::try_from(at).ok()).unwrap_or(0)
 }
 
-/// Returns, for each run, the sum of its distances to all others; `None` for a run without a
-/// verdict.
+/// Returns the sum of the distances of each run to all others; `None` for a run without a verdict.
 fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
     let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
     let times = extent(shown.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));

@@ -45,7 +45,7 @@ impl Judgment {
         }
     }
 
-    /// Returns the worst verdict of all planes; `None` without planes.
+    /// Returns the worst verdict of all planes; `None` if there are no planes.
     fn worst<'a>(spreads: impl IntoIterator<Item = &'a Spread>) -> Option<Self> {
         let worse = |a, b| match (a, b) {
             (Self::Cut(one), Self::Cut(other)) => Self::Cut(one.min(other)),
@@ -349,8 +349,8 @@ fn barrels(fallen: Range, all: usize) -> String {
     }
 }
 
-/// Returns the sentences that precede the verdict: on variants that fall under their own weight,
-/// and on those without a verdict.
+/// Returns the sentences that precede the verdict, about variants that fall under their own weight
+/// and about variants without a verdict.
 fn before((view, spread): Placed<'_>) -> Vec<String> {
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     let (fallen, broken, all) = (spread.cannot_stand, spread.broken, spread.run());

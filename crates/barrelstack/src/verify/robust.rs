@@ -6,7 +6,7 @@ use super::Repeat;
 use crate::summary::OutcomeSummary;
 
 described! {
-    /// Properties of the run that all repeats share; all false without repeats.
+    /// Properties of the run that all repeats share; all false if there are no repeats.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Robust {
         /// True if all repeats agree with the run on whether the stack stands or collapses.
@@ -16,7 +16,7 @@ described! {
         /// True if all repeats agree with the run on the first body that leaves its seat.
         pub first: bool,
         /// Largest difference between the time of the first fall in the run and in a repeat; null
-        /// if in one of these no barrel falls.
+        /// if no barrel falls in the run or in a repeat.
         pub first_fall_within: Option<f64> as "s",
         /// Smallest and largest number of barrels that fall, over the run and its repeats.
         pub barrels_fallen: [usize; 2],

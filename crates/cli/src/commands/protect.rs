@@ -40,7 +40,7 @@ pub(crate) struct ProtectArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
     count: u32,
     /// Number of rounds: the first round tries all protections, and each further round the better
-    /// half of the previous ones.
+    /// half of the protections of the previous round.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
     /// Seed of motions and friction.

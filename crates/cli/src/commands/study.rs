@@ -1,4 +1,5 @@
-//! `barrelstack study`: one scenario run many times, on this machine or in chunks on others.
+//! `barrelstack study`: runs one scenario many times, on this machine or in chunks on several
+//! machines.
 
 mod answer;
 mod emit;

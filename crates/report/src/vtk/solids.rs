@@ -44,8 +44,8 @@ pub struct Solids {
 /// `stack.pvd` is the file to open. There is a `bodies-*.vtp` for each time, and `bodies.csv` lists
 /// the names of the bodies by number.
 ///
-/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, lengths in m. Surfaces are
-/// triangles. Cells carry `body` (the index of the body), `role` (as in
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m.
+/// Surfaces are triangles. Cells carry `body` (the index of the body), `role` (as in
 /// [`paraview`](super::paraview)) and `level`; points carry `displacement` (m) from the first frame
 /// and `velocity` (m/s).
 ///
@@ -146,8 +146,8 @@ fn whole(out: &mut String, name: &str, values: impl Iterator<Item = usize>) {
     array(out, ("Int32", name, 1), &bytes);
 }
 
-/// Writes an array as one block compressed by zlib, preceded by its sizes before and after
-/// compression. Written as text, the series of a collapse would take a gigabyte.
+/// Writes an array as one block compressed by zlib, preceded by the sizes of the block before and
+/// after compression. Written as text, the series of a collapse would take a gigabyte.
 fn array(out: &mut String, (kind, name, components): (&str, &str, u32), bytes: &[u8]) {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
     // Writing to memory cannot fail.

@@ -1,14 +1,14 @@
-//! Sequential search for a remedy: its order and its statistics.
+//! Order and statistics of the sequential search for a remedy.
 //!
-//! It does not depend on how variants are run, so whole searches can be simulated in tests.
+//! The search does not depend on how variants are run, so whole searches can be simulated in tests.
 //!
 //! Variants are counted in whole blocks, in the order of their numbers. Counting runs as they
-//! finish would be biased towards collapses, because runs that collapse end early.
-//! A change is rejected after the first block that brings it above the admissible number of
-//! failures. Its share is then unknown, because the search stopped due to these failures.
-//! The share of a change that ran all its variants has an interval that holds simultaneously for
-//! all changes and planes of the search (Bonferroni), so choosing among them does not invalidate
-//! it.
+//! finish would be biased towards collapses, because runs that collapse end early. A change is
+//! rejected after the first block that brings it above the admissible number of failures. The share
+//! of a rejected change is unknown: the counted variants are a biased sample, because counting
+//! stopped due to their failures. The share of a change that ran all its variants has an interval
+//! that holds simultaneously for all changes and planes of the search (Bonferroni), so choosing
+//! among the changes does not invalidate the interval.
 
 use std::ops::{ControlFlow, Range};
 
@@ -81,13 +81,13 @@ impl Counts {
         self.failed = self.by_plane.iter().copied().max().unwrap_or(0);
     }
 
-    /// `true` if the failures so far already exceed the number that is admissible among all
+    /// `true` if the number of failures already exceeds the number that is admissible among all
     /// variants.
     fn rejected(&self, plan: &Plan) -> bool {
         !may_fail(self.failed, plan.variants)
     }
 
-    /// `true` if all variants were counted, so that their share is that of an unselected sample.
+    /// `true` if all variants were counted, so that the share is that of an unbiased sample.
     pub(super) fn whole(&self, plan: &Plan) -> bool {
         plan.variants > 0 && self.ran == plan.variants
     }

@@ -70,8 +70,8 @@ pub(super) fn bytes_inside(path: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     Ok(Some(bytes))
 }
 
-/// Returns the files of a folder in an archive, without those of subfolders; empty if the folder is
-/// not in an archive.
+/// Returns the files of a folder in an archive, excluding the files of subfolders; empty if the
+/// folder is not in an archive.
 pub(super) fn files_below(folder: &Path) -> Vec<PathBuf> {
     // The root of the archive counts as a folder too.
     let named = folder.join("file");

@@ -217,7 +217,7 @@ fn corners(record: &Record) -> Vec<String> {
         .collect()
 }
 
-/// Formats a channel for one column.
+/// Function that formats a channel for one column.
 type Cell<'a> = &'a dyn Fn(&Channel) -> String;
 
 /// Tabulates the start time and the location of each channel, as stated in the file; empty columns
@@ -270,7 +270,8 @@ fn stated(record: &Record) -> Table {
 }
 
 described! {
-    /// Contents of records. Lengths in m, times in s, directions in degrees clockwise from north.
+    /// Contents of records. Lengths are in m, times in s, and directions in degrees clockwise from
+    /// north.
     pub(crate) struct MotionInfo {
         /// Name and version of this layout.
         schema: &'static str ["motion-info/1"],

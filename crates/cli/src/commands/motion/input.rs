@@ -24,8 +24,9 @@ const LIMIT: u64 = 256 << 20;
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which is bundled. Several files are
-    /// read as components of one record; `info` lists files that do not belong together separately.
-    /// `info`, `plot`, `process` and `convert` also accept folders, and use all records in them.
+    /// read as components of one record; for files that do not belong together, `info` lists each
+    /// file separately. `info`, `plot`, `process` and `convert` also accept folders, and use all
+    /// records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
     /// Join several files that are overlapping parts of one long record.
@@ -50,8 +51,8 @@ pub(super) struct Input {
     /// files; by default, .xml files beside a file in counts are used.
     #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
-    /// Quantity in SEED and SAC files of instruments other than accelerometers; it is
-    /// differentiated to acceleration.
+    /// Quantity recorded in SEED and SAC files of instruments other than accelerometers; this
+    /// quantity is differentiated to acceleration.
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
     recorded: Option<Recorded>,
 }
@@ -297,7 +298,7 @@ impl Choice {
     }
 }
 
-/// Returns the names of the files of a record, without folders.
+/// Returns the file names of a record, without folders.
 fn base_names(record: &Record) -> String {
     let names: Vec<&str> = record
         .file

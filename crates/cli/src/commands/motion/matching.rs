@@ -63,7 +63,7 @@ pub(super) struct MatchArgs {
     figure: Option<PathBuf>,
 }
 
-/// Exit status if a motion was written although it misses its target.
+/// Exit status if a motion was written although its spectrum misses the target.
 const NEAR: u8 = 3;
 
 typed! {
@@ -196,8 +196,8 @@ impl Part {
     }
 }
 
-/// Returns the matched record, and a description of the periods at which it misses the target, if
-/// any.
+/// Returns the matched record and, if the record misses the target, a description of the periods at
+/// which it does.
 fn matched(
     args: &MatchArgs,
     before: &Record,

@@ -1,4 +1,4 @@
-//! Intensity measures in customary units, and tables of them.
+//! Intensity measures in customary units, and tables of intensity measures.
 
 use barrelstack_motion::{
     Channel, IntensityMeasure, MotionError, PulseFit, Quantity, Record, RotatedPeak,
@@ -122,7 +122,7 @@ pub(super) fn pulse(motion: &Sampled) -> Result<PulseFit, MotionError> {
     dominant_pulse(motion, shortest, (0.5 * motion.duration()).min(12.0))
 }
 
-/// Describes the dominant velocity pulse of every channel in one sentence each.
+/// Describes the dominant velocity pulse of every channel, in one sentence per channel.
 pub(super) fn pulses(record: &Record) -> Vec<String> {
     let sentence = |channel: &Channel| match channel.sampled().and_then(|motion| pulse(&motion)) {
         Ok(fit) => format!(

@@ -65,8 +65,8 @@ enum MotionCommand {
     Process(process::ProcessArgs),
     /// Select a set of records whose spectra have the mean and spread of a target.
     Select(select::SelectArgs),
-    /// Scale all components by one factor: to an intensity measure, by a number, or to another
-    /// length.
+    /// Scale all components by one factor: to a value of an intensity measure, by a number, or to
+    /// another length scale.
     Scale(scale::ScaleArgs),
     /// Match the response spectrum to a code spectrum or to a table.
     Match(matching::MatchArgs),

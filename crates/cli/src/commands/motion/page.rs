@@ -15,7 +15,7 @@ use crate::store::store;
 
 /// Text of a page in addition to its figures.
 pub(super) struct PageText {
-    /// Headline of the page: the result in one sentence.
+    /// Headline of the page, which states the result in one sentence.
     pub(super) headline: String,
     /// Tables of measures before and after the change.
     pub(super) tables: Vec<Table>,

@@ -165,7 +165,7 @@ pub(super) fn times(channel: &Channel) -> Vec<f64> {
     (0..channel.acceleration.len()).map(|k| k as f64 * channel.time_step).collect()
 }
 
-/// Returns the value with the largest magnitude, with its sign.
+/// Returns the value with the largest magnitude, including its sign.
 fn at_peak(values: &[f64]) -> f64 {
     let larger =
         |best: usize, k: usize| if values[k].abs() > values[best].abs() { k } else { best };
@@ -201,8 +201,8 @@ fn build_up(record: &Record) -> Plot {
     plot
 }
 
-/// Plots response spectra, over all directions if there are two horizontals, and the target if
-/// there is one.
+/// Plots response spectra, over all directions if there are two horizontals, and the target, if a
+/// target is given.
 fn response(
     channels: &[(String, &Channel)],
     whole: Option<&Record>,

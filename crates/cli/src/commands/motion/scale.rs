@@ -68,7 +68,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     super::change::finish(&target, &read, &after, table.lines())
 }
 
-/// Returns the scale factor, and the name of the component that determines it.
+/// Returns the scale factor, and the name of the component that determines the factor.
 fn factor_to(
     args: &ScaleArgs,
     record: &Record,

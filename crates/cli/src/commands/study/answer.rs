@@ -24,8 +24,8 @@ pub(crate) struct Answer {
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels that several cases share, with counts by outcome. The list holds at most one level
-    /// more than the maximum, which shows that there are too many.
+    /// Levels that several cases share, with counts by outcome. If there are more levels than the
+    /// maximum, the list has one level more than the maximum.
     levels: Vec<(f64, Tally)>,
     unit: String,
 }

@@ -45,7 +45,7 @@ enum Engine {
     Hyperqueue,
     /// A Python script that runs the chunks as tasks of a Dask cluster.
     Dask,
-    /// A Python script that runs the chunks in one job on many nodes, with `PyLauncher`.
+    /// A Python script that runs the chunks with `PyLauncher`, in one job on many nodes.
     Pylauncher,
 }
 

@@ -23,7 +23,7 @@ pub(super) struct ExportArgs {
     asset: String,
 }
 
-/// Writes the files, and prints what they do not contain.
+/// Writes the files, and prints a list of the results that the files do not contain.
 pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
     let (decision, made) = decide_folder(&args.folder, &Request::default())?;
     let found = exported(&decision, &made, &args.asset)?;

@@ -17,7 +17,7 @@ use crate::progress::{Bar, Lines, Of, style};
 pub(super) struct Live {
     bar: Bar,
     lines: Lines,
-    /// `true` if the cases are a sample, so that their share of collapse is meaningful.
+    /// `true` if the cases are a sample, so that the share of cases that collapse is meaningful.
     sample: bool,
     interrupt: Interrupt,
     damaged: AtomicUsize,
@@ -29,7 +29,7 @@ pub(super) struct Live {
 /// process holds its chunk indefinitely.
 pub(super) struct Waiting {
     folder: PathBuf,
-    /// The chunk, the start of the wait, and whether it was reported.
+    /// The chunk, the start of the wait, and `true` if the wait was reported.
     state: Mutex<Option<(usize, Instant, bool)>>,
 }
 

@@ -63,7 +63,7 @@ struct Line {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, or creates one.
+    /// Opens the journal of a folder, or creates a journal.
     ///
     /// If the last line is incomplete, as after a killed process, its record counts as unfinished.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
@@ -119,8 +119,8 @@ impl Journal {
         Ok(Self { path, specs, inner: Mutex::new(inner) })
     }
 
-    /// Returns `true` if a record is in the journal and was measured, `false` if it was refused;
-    /// `None` if it is not in the journal, or if its files have changed.
+    /// Returns `true` if a record is in the journal and was measured, `false` if the record was
+    /// refused; `None` if the record is not in the journal, or if its files have changed.
     pub(super) fn known(&self, record: &str, hash: u64) -> Option<bool> {
         let inner = self.inner.lock().ok()?;
         inner.lines.get(record).filter(|line| line.hash == hash).map(|line| line.measured)

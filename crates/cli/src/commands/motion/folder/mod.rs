@@ -1,5 +1,5 @@
-//! Batch processing of folders: reads, processes and measures every record, and writes one table
-//! row each.
+//! Batch processing of folders: reads, processes and measures every record, and writes one row of a
+//! table per record.
 
 mod columns;
 mod journal;
@@ -78,7 +78,7 @@ pub(super) struct Batch<'a> {
     pub(super) folder: &'a FolderArgs,
     /// Settings that affect the rows, as text; a table continues only with the same settings.
     pub(super) settings: String,
-    /// Periods (s) of the spectra, in place of those of the options.
+    /// Periods (s) of the spectra; replaces the periods of the options.
     pub(super) periods: Option<Vec<f64>>,
     /// Extension of the output file of each record; a record whose output file is missing is
     /// processed again.
@@ -106,13 +106,13 @@ pub(super) struct Worked {
 }
 
 impl Worked {
-    /// Wraps a record as read; it is measured after the default processing of a scenario.
+    /// Wraps a record as read, to be measured after the default processing of a scenario.
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
     }
 
-    /// Wraps a processed record; it is measured unchanged.
+    /// Wraps a processed record, to be measured without further processing.
     pub(super) fn done(record: Record) -> Self {
         Self { record, before: Processing::none() }
     }

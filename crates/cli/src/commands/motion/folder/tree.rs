@@ -32,8 +32,8 @@ impl Source {
     }
 }
 
-/// Returns the records of given files and folders; those of each folder are sorted. Hidden files
-/// and files below `out` are skipped.
+/// Returns the records in given files and folders; the records of each folder are sorted. Hidden
+/// files and files below `out` are skipped.
 pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source>> {
     let out = out.canonicalize().map_err(input::plain).context("cannot find the output folder")?;
     let is_folder =

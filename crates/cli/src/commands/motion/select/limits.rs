@@ -63,14 +63,14 @@ pub(super) struct Limits {
 enum Pulses {
     /// All records.
     Any,
-    /// Pulse-like records only.
+    /// Only pulse-like records.
     Only,
-    /// Records without a pulse only.
+    /// Only records without a pulse.
     None,
 }
 
-/// For each limit, the number of records that it excludes and the number of records without the
-/// data for it.
+/// For each limit, the number of records that the limit excludes and the number of records that
+/// lack the data to apply the limit.
 #[derive(Debug, Default)]
 pub(super) struct LeftOut {
     /// Number of records whose distance is measured to the epicenter.
@@ -136,7 +136,7 @@ impl LeftOut {
         self.counts.push((name, outside, unknown));
     }
 
-    /// Describes how many records are candidates, and why the others are excluded.
+    /// Describes how many records are candidates, and why the other records are excluded.
     pub(super) fn sentence(&self, all: usize, candidates: usize, spectrum: &str) -> String {
         let mut reasons = Vec::new();
         let mut lost = 0;

@@ -65,8 +65,8 @@ impl Set<'_> {
         text
     }
 
-    /// Returns a study of the set as TOML: every horizontal component is a separate motion, with
-    /// the factor of its record.
+    /// Returns a study of the set as TOML; every horizontal component is a separate motion, scaled
+    /// by the factor of its record.
     fn study(&self) -> anyhow::Result<String> {
         let a = self.args;
         let mut text = format!(
