@@ -7,7 +7,7 @@ use anyhow::Context as _;
 /// Number of files in the list of the longest files.
 const LONGEST: usize = 12;
 
-/// Numbers of lines of a text.
+/// Numbers of lines of a source text.
 #[derive(Clone, Copy, Default)]
 struct Lines {
     code: usize,

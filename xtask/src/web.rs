@@ -181,7 +181,7 @@ fn number(bytes: &mut &[u8]) -> Option<usize> {
     None
 }
 
-/// Reads a text that is preceded by its length.
+/// Reads text that is preceded by its length.
 fn word(bytes: &mut &[u8]) -> Option<String> {
     let length = number(bytes)?;
     let (text, after) = bytes.split_at_checked(length)?;

@@ -89,8 +89,8 @@ const SMALLEST: f64 = 0.1;
 
 /// Returns the swings of a history, each from one zero crossing to the next.
 ///
-/// Zero crossings are interpolated linearly between samples. Swings below a tenth of the largest
-/// are left out, because small impacts cause random zero crossings there.
+/// Zero crossings are interpolated linearly between samples. Swings with less than a tenth of the
+/// largest amplitude are left out, because small impacts cause random zero crossings.
 pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
     let count = times.len().min(values.len());
     let mut crossings: Vec<(usize, f64)> = Vec::new();

@@ -32,7 +32,8 @@ pub const DISTURBANCE: f64 = 1e-9;
 pub const DISTURBED: u64 = 4;
 
 described! {
-    /// Comparison of a run with its repeats. Times in s, lengths in m, at the scale of the run.
+    /// Comparison of a run with its repeats. Times are in s and lengths in m, at the scale of the
+    /// run.
     #[derive(Clone, Debug)]
     pub struct Verification {
         /// Distance between the positions of a body in two runs above which the two runs count as

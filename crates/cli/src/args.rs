@@ -116,7 +116,7 @@ pub(crate) struct RunArgs {
     #[arg(long, requires = "out")]
     pub(crate) overwrite: bool,
     /// Repeat the run with half the step, with finer nodes and with disturbances of a nanometer,
-    /// and report how long it is predictable and whether its outcome is robust.
+    /// and report until when the run is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
     /// Do not search for changes that would have kept a fallen stack up; the search may take as

@@ -101,7 +101,7 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     error_document(&ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
-/// Shortens a text that is too long by omitting its middle.
+/// Shortens text that is too long by omitting its middle.
 fn bounded(text: &str) -> String {
     const LONGEST: usize = 2000;
     const KEPT: usize = 400;

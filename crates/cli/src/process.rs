@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Returns whether standard output was closed at the start.
+/// Returns `true` if standard output was closed when the program started.
 pub(crate) fn output_was_closed() -> bool {
     CLOSED.load(Ordering::Relaxed)
 }

@@ -36,7 +36,8 @@ pub(crate) struct Progress {
     interrupt: Interrupt,
 }
 
-/// A bar on a terminal, if requested; removed when dropped, also after an error.
+/// Progress bar on a terminal, if requested. The bar is removed when this value is dropped, also
+/// after an error.
 pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
 
 impl Bar {

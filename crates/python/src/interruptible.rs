@@ -28,7 +28,7 @@ struct Latest {
 }
 
 impl ProgressState {
-    /// Reports progress from the work, and returns whether to continue.
+    /// Reports progress of the work; returns `Break` if the work should stop.
     pub(crate) fn report(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
         *self.latest.lock().unwrap_or_else(PoisonError::into_inner) =
             Some(Latest { done, of, what });

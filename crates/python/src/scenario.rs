@@ -271,7 +271,7 @@ pub(crate) fn report_advance(state: &ProgressState, now: Advance) -> ControlFlow
     }
 }
 
-/// Returns names and texts of the bundled scenarios.
+/// Returns the name and the text of each bundled scenario.
 #[pyfunction]
 pub(crate) fn scenarios() -> Vec<(&'static str, &'static str)> {
     builtin::names().filter_map(|name| Some((name, builtin::get(name)?))).collect()

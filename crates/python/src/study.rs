@@ -131,7 +131,7 @@ fn report_cases(state: &ProgressState, now: &Progress) -> ControlFlow<()> {
     state.report((now.before + now.now) as f64, now.cases as f64, "cases")
 }
 
-/// Returns names and texts of the bundled studies.
+/// Returns the name and the text of each bundled study.
 #[pyfunction]
 pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
     study::builtin_names().filter_map(|name| Some((name, study::builtin(name)?))).collect()

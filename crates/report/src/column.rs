@@ -58,7 +58,7 @@ pub enum Value {
     Integer(i64),
     /// A number in SI units.
     Number(f64),
-    /// A text.
+    /// Text.
     Text(String),
 }
 

@@ -105,7 +105,7 @@ pub struct Field {
     pub meaning: &'static str,
     /// Unit; `None` if the field has no unit.
     pub unit: Option<&'static str>,
-    /// Permitted values of a text; empty if any text is permitted.
+    /// Permitted values of a text field; empty if any text is permitted.
     pub words: &'static [&'static str],
     /// Serialization attribute: `flatten` merges the fields of the value into the object, `skip`
     /// omits the field.

@@ -1,4 +1,4 @@
-//! A drawing: lines, shapes and texts with named styles, independent of the output format.
+//! A drawing: lines, shapes and text with named styles, independent of the output format.
 
 /// A drawing of a known size; y grows downward (px).
 #[derive(Clone, Debug, PartialEq)]
@@ -92,7 +92,7 @@ pub(crate) struct Placed {
     pub(crate) pose: [f64; 3],
 }
 
-/// The point of a text that lies at the position of the text.
+/// Horizontal alignment of text: the point of the text that lies at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -169,8 +169,8 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Breaks a text of font size `size` (px) into lines that, if possible, are no wider than `width`;
-/// a line may break after a space or after a character that joins words.
+/// Breaks text of font size `size` (px) into lines that, if possible, are no wider than `width`; a
+/// line may break after a space or after a character that joins words.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

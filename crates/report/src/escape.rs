@@ -22,7 +22,7 @@ pub(crate) fn html(text: &str) -> String {
     out
 }
 
-/// Capitalizes the first letter of a text.
+/// Capitalizes the first letter of `words`.
 ///
 /// ```
 /// assert_eq!(barrelstack_report::capital("it stands"), "It stands");
@@ -99,7 +99,7 @@ pub fn csv(text: &str) -> String {
     }
 }
 
-/// Converts a text to a name for files and anchors, with lower-case letters, digits and single
+/// Converts text to a name for files and anchors, with lower-case letters, digits and single
 /// hyphens.
 ///
 /// Letters outside ASCII are omitted; an empty result becomes `item`.
@@ -116,7 +116,7 @@ pub(crate) fn slug(text: &str) -> String {
     if out.is_empty() { "item".into() } else { out.into() }
 }
 
-/// Joins a text into one line with single spaces between its words.
+/// Joins the words of a text into one line, separated by single spaces.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -29,7 +29,7 @@ impl Font {
         if strong { &STRONG } else { &REGULAR }
     }
 
-    /// Returns the glyphs of a text in order, each with its character and its width as a share of
+    /// Returns the glyphs of `text` in order, each with its character and its width as a share of
     /// the font size.
     ///
     /// Control characters have no glyph; a character that the font lacks is shown as a box.

@@ -77,12 +77,12 @@ impl Glossary {
     }
 }
 
-/// Returns the terms that occur in a text.
+/// Returns the terms that occur in `text`.
 pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Finds the first occurrence in a text of a whole word or its plural.
+/// Finds the first occurrence of `word` or its plural, as a whole word, in `text`.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
     let letter = |c: char| c.is_alphanumeric() || c == '-';

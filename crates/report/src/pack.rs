@@ -108,7 +108,7 @@ pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     }
 }
 
-/// Encodes bytes in base64, to embed a file in a text.
+/// Encodes bytes in base64, to embed a file in text.
 pub fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
 }

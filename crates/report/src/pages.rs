@@ -81,7 +81,7 @@ struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Top of the next block on the last page (points), from the top of the page.
+    /// Distance (points) of the next block from the top of the last page.
     y: f64,
     names: Names,
     tables: usize,

@@ -116,7 +116,7 @@ fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     wish.iter().zip(least).map(|(wish, least)| least + (wish - least) * spare).collect()
 }
 
-/// Breaks a text into lines that are no wider than `width`; a single word that is wider is split.
+/// Breaks text into lines that are no wider than `width`; a single word that is wider is split.
 pub(crate) fn wrap(font: &Font, size: f64, text: &str, width: f64) -> Vec<String> {
     let fits = |line: &str| font.width(line, size) <= width;
     let mut lines: Vec<String> = Vec::new();

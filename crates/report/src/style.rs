@@ -69,7 +69,7 @@ pub(crate) struct Ink {
     pub(crate) opacity: f64,
 }
 
-/// Style of a shape or a text. Lengths in px.
+/// Style of a shape or of text. Lengths are in px.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Style {
     pub(crate) fill: Option<Ink>,

@@ -52,7 +52,7 @@ pub(crate) struct Looked {
     /// to estimate the computation time.
     work: f64,
     /// End (s) of the opening, which shows the stack in motion while the whole run is computed;
-    /// `None` without ground motion.
+    /// `None` if there is no ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }

@@ -139,7 +139,8 @@ fn moment(run: &Run) -> Option<Moment> {
     }
 }
 
-/// Returns the time and the body of the largest sideways or upward displacement from rest.
+/// Returns the time at which the largest sideways or upward displacement from rest occurs, and the
+/// body that is displaced.
 fn furthest(run: &Run) -> Option<Moment> {
     let mut furthest: Option<(f64, f64, usize, &str)> = None;
     for (body, part) in run.assembly.parts.iter().enumerate() {

@@ -79,7 +79,7 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
 }
 
 /// Draws friction and contact constants at random; all pairs of bodies of the same materials have
-/// the same factors.
+/// the same friction factor.
 fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, dispersion);

@@ -73,7 +73,8 @@ described! {
         /// Number of variants without a verdict, because their model could not be built or their
         /// computation failed.
         pub broken: u32,
-        /// Reason of the first variant that falls before it is shaken or has no verdict.
+        /// Reason why a variant falls before it is shaken or has no verdict, for the first such
+        /// variant.
         pub reason: Option<String>,
         /// Outcome of the nominal case.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
@@ -185,7 +186,7 @@ impl Spread {
     }
 
     /// Returns a phrase for the time during which falls are counted, such as " within 2 s of
-    /// {loss}"; empty if they are counted until rest.
+    /// {loss}"; empty if falls are counted until nothing moves.
     pub fn counted(&self, loss: &str) -> String {
         let within = |time: f64| format!(" within {} s of {loss}", (10.0 * time).round() / 10.0);
         self.counted_for.map_or_else(String::new, within)

@@ -6,10 +6,10 @@ use super::{Range, Spread};
 use crate::scenario::{Imperfection, Imperfections, View};
 use crate::summary::Summary;
 
-/// Share of collapsing variants at and above which the verdict is "Falls".
+/// Smallest share of collapsing variants for which the verdict is "Falls".
 const FALLS: f64 = 0.9;
 
-/// Share of collapsing variants up to which the verdict is "Stands".
+/// Largest share of collapsing variants for which the verdict is "Stands".
 const STANDS: f64 = 0.05;
 
 /// Number of variants needed for the verdict "Stands". With seven variants of which none falls, up

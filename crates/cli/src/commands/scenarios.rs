@@ -64,7 +64,8 @@ fn list(json: bool) -> anyhow::Result<()> {
     printer::lines(scenarios.iter().map(|one| format!("{:widest$}  {}", one.name, one.title)))
 }
 
-/// Returns the rows of the reference that contain a text, below the headings of their tables.
+/// Returns the rows of the reference that contain the text `filter`, below the headings of their
+/// tables.
 fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
     let wanted = filter.to_lowercase();
     let (mut lines, mut head, mut named) = (Vec::new(), Vec::new(), false);

@@ -58,7 +58,7 @@ struct Spectra {
     rotated: Option<Rotated>,
 }
 
-/// Peaks over all horizontal directions, with the directions of the largest peaks.
+/// Peaks over all horizontal directions, with the direction of each largest peak.
 struct Rotated {
     peaks: Vec<RotatedPeak>,
     /// Directions of the largest peaks (degrees): clockwise from north if both azimuths are known,

@@ -118,7 +118,7 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
 /// Placeholder for the number of a chunk.
 const PLACE: &str = "\u{0}";
 
-/// Escapes a text for a here-document of the shell.
+/// Escapes text for a here-document of the shell.
 fn in_document(text: &str) -> String {
     text.replace('\\', "\\\\").replace('$', "\\$").replace('`', "\\`")
 }

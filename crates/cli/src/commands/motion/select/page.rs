@@ -73,8 +73,8 @@ fn document(
     }
 }
 
-/// Plots all selected spectra, and the medians of the set and of the target with two standard
-/// deviations.
+/// Plots all selected spectra, and the medians of the set and of the target with bands of two
+/// standard deviations.
 fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) -> Figure {
     let periods = target.periods().to_vec();
     let line = |label: &str, values: Vec<f64>, style: SeriesStyle| Series {

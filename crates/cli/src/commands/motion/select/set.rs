@@ -24,7 +24,7 @@ impl Set<'_> {
         self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
     }
 
-    /// Returns a text from the table.
+    /// Returns text from the table.
     pub(super) fn text(&self, column: &str, row: usize) -> &str {
         let texts = self.table.texts(column).unwrap_or_default();
         texts.get(row).and_then(Option::as_deref).unwrap_or_default()
@@ -142,7 +142,7 @@ impl Set<'_> {
     }
 }
 
-/// Quotes a text for TOML.
+/// Quotes text for TOML.
 fn quoted(text: &str) -> anyhow::Result<String> {
     // A JSON string is also a basic string in TOML.
     Ok(serde_json::to_string(text)?)
