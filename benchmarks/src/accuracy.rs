@@ -57,7 +57,7 @@ pub(crate) fn work_and_precision(scene: &Scene) -> Result<f64, Failure> {
         }
     }
     println!(
-        "  the longest of these steps of the default method within {} % and {} ms: {} ms",
+        "  longest step of the default method with errors within {} % and {} ms: {} ms",
         100.0 * MOST_ERROR,
         1e3 * MOST_DELAY,
         1e3 * chosen
@@ -85,7 +85,8 @@ struct Seen {
 }
 
 impl Seen {
-    /// Returns the largest error of any body before a time (s), relative to the largest displacement of that body.
+    /// Returns the largest error of the displacement of a body before a time (s), relative to the
+    /// largest displacement of the same body.
     fn error_against(&self, exact: &Self, until: f64) -> f64 {
         let samples = (until / SAMPLE) as usize;
         let bodies = exact.rest.len();

@@ -18,7 +18,7 @@ use crate::{Failure, time};
 /// File that keeps the counts of every release.
 const FILE: &str = "history.csv";
 
-/// Header line of that file.
+/// Header line of the file [`FILE`].
 const HEAD: &str = "version,case,count,value";
 
 /// One count of one case.

@@ -7,22 +7,22 @@ use anyhow::Context as _;
 
 use crate::steps::{build_program, program, target};
 
-/// Script that checks report pages, in the repository.
+/// Path, in the repository, of the script that checks report pages.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 
-/// Script that records the animation of the demo for the README.
+/// Path, in the repository, of the script that records the animation of the demo for the README.
 pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 
 /// File to which the animation is written.
 const FILMED: &str = "docs/pictures/demo.gif";
 
-/// Script that checks the page of the engine, in the repository.
+/// Path, in the repository, of the script that checks the page of the engine.
 pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
 
 /// Folder of the Node.js modules that the checks use.
 const MODULES: &str = "crates/report/tests/browser";
 
-/// Command that installs these modules, to be run in the root of the repository.
+/// Command that installs the modules, to be run in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
 
 /// Program names of the browsers that a script can control.

@@ -39,7 +39,7 @@ pub struct Side {
 /// Results of a stack in the plane that is not shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherPlane {
-    /// Plane of these results.
+    /// Plane in which these results were computed.
     pub view: View,
     /// Outcome of the run in this plane, for the same variant number as the shown run.
     pub outcome: Outcome,

@@ -169,19 +169,19 @@ described! {
         /// Largest vertical force until the first loss of seat; zero if the two bodies touched only
         /// later.
         pub peak_vertical: f64 as "N",
-        /// Time of this vertical force.
+        /// Time of the largest vertical force until the first loss of seat.
         pub peak_vertical_at: f64 as "s",
         /// Largest horizontal force until the first loss of seat.
         pub peak_horizontal: f64 as "N",
-        /// Time of this horizontal force.
+        /// Time of the largest horizontal force until the first loss of seat.
         pub peak_horizontal_at: f64 as "s",
         /// Largest vertical force over the whole run, falls included.
         pub peak_vertical_whole_run: f64 as "N",
-        /// Time of this vertical force.
+        /// Time of the largest vertical force over the whole run.
         pub peak_vertical_whole_run_at: f64 as "s",
         /// Largest horizontal force over the whole run.
         pub peak_horizontal_whole_run: f64 as "N",
-        /// Time of this horizontal force.
+        /// Time of the largest horizontal force over the whole run.
         pub peak_horizontal_whole_run_at: f64 as "s",
     }
 

@@ -135,8 +135,8 @@ fn finer_step(base: &Run) -> (String, Scenario) {
     ("half the step".into(), scenario)
 }
 
-/// Returns the scenario with nodes at half the spacing, or the reason why this would be a different
-/// stack.
+/// Returns the scenario with nodes at half the spacing, or the reason why halving the spacing would
+/// change the stack.
 fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
     let mut finer = scenario.clone();

@@ -108,7 +108,7 @@ pub(crate) const FINE: &str = "The numbers behind it";
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {
-    /// A heading; levels outside 2 to 4 are clamped to that range, because level 1 is the verdict.
+    /// A heading; levels are clamped to the range from 2 to 4, because level 1 is the verdict.
     Heading {
         /// Level; 2 opens a section and is listed in the contents of the page.
         level: u8,

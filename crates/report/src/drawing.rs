@@ -154,7 +154,7 @@ pub(crate) enum Room {
 }
 
 impl Room {
-    /// Returns the length that applies to this width.
+    /// Returns the length for this available width: `page` or `phone`.
     pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
         match self {
             Self::Page => page,

@@ -116,7 +116,7 @@ pub struct Request {
     /// Numbers of variants.
     #[serde(default)]
     pub numbers: Vec<u32>,
-    /// Results of these variants, in each plane.
+    /// Results of the variants `numbers`, in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
     /// Length in bytes of the trails of the barrels, which follow the records.

@@ -75,12 +75,12 @@ impl Paired {
         })
     }
 
-    /// Returns the number of variants with a verdict in both runs.
+    /// Returns the number of paired variants, which have a verdict in both runs.
     pub fn pairs(&self) -> u32 {
         self.both + self.only_first + self.only_second + self.neither
     }
 
-    /// Returns the number of these variants that collapse, in the first run and in the second.
+    /// Returns the numbers of paired variants that collapse in the first run and in the second.
     pub fn collapsed(&self) -> [u32; 2] {
         [self.both + self.only_first, self.both + self.only_second]
     }

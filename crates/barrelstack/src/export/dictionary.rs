@@ -72,9 +72,9 @@ const MEANINGS: [(&str, &str); 39] = [
         "_qw",
         "real part of the quaternion from the frame of the body to the inertial frame of the ground before the motion",
     ),
-    ("_qx", "first imaginary part of that quaternion"),
-    ("_qy", "second imaginary part of that quaternion"),
-    ("_qz", "third imaginary part of that quaternion"),
+    ("_qx", "first imaginary part of the quaternion"),
+    ("_qy", "second imaginary part of the quaternion"),
+    ("_qz", "third imaginary part of the quaternion"),
 ];
 
 /// Returns the file `columns.csv` of a folder: file, name, unit and meaning of each column of its

@@ -81,7 +81,7 @@ pub(super) fn stage(
     }
 }
 
-/// Builds the sections for engineers of one plane.
+/// Builds the sections for engineers for one plane.
 fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) -> Vec<Block> {
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "Outcome of every body", vec![Block::Table(fates(summary))]);
@@ -374,8 +374,8 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// Plots the energies that change during a run, and the sum of those stored and dissipated, which
-/// must equal the work of the ground.
+/// Plots the energies that change during a run, and the sum of the stored and dissipated energies,
+/// which must equal the work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let recording = &run.recording;
     let Some(balance) = &summary.energy else { return Vec::new() };

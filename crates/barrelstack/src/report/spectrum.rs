@@ -75,14 +75,14 @@ fn words(rocking: &Rocking) -> String {
     let measured = match (&drift.swings[..], rocking.widest()) {
         (_, None) => "it made no full swing".to_owned(),
         ([one], _) => format!(
-            "it made one full swing, of {} and with a period of {} s",
+            "it made one full swing, with an amplitude of {} and a period of {} s",
             centimeters(one.amplitude),
             significant(one.period, 2)
         ),
         (many, Some(widest)) => {
             let (low, high) = rocking.range();
             format!(
-                "it made {} full swings with periods of {} to {} s, the widest of {} in {} s",
+                "it made {} full swings with periods of {} to {} s; the widest has an amplitude of {} and a period of {} s",
                 many.len(),
                 significant(low, 2),
                 significant(high, 2),

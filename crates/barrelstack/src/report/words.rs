@@ -322,7 +322,7 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     }
     let similitude = run.scenario.run.similitude;
     if similitude != 1.0 {
-        let scale = format!("length scale {similitude}; all results are at that scale");
+        let scale = format!("length scale {similitude}, which applies to all results");
         pair("similitude", scale);
     }
     pairs

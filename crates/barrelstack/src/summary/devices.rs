@@ -32,11 +32,11 @@ pub struct ElementSummary {
     pub name: String,
     /// Force (N) with the largest magnitude until the first loss of seat.
     pub peak: f64,
-    /// Time (s) of that force.
+    /// Time (s) of the force `peak`.
     pub peak_at: f64,
     /// Force (N) with the largest magnitude over the whole run.
     pub peak_whole_run: f64,
-    /// Time (s) of that force.
+    /// Time (s) of the force `peak_whole_run`.
     pub peak_whole_run_at: f64,
     /// Time (s) at which the element failed; `None` if the element did not fail.
     pub broken_at: Option<f64>,
@@ -117,9 +117,9 @@ impl Described for Devices {
             let element = json!({
                 "name": { "type": "string", "description": "The bodies that the element joins, and its position." },
                 (format!("peak_{force}")): number("N", &format!("The {force} with the largest magnitude until the first loss of seat.")),
-                (format!("peak_{force}_at")): number("s", "Time of that force."),
+                (format!("peak_{force}_at")): number("s", "Time of the largest value until the first loss of seat."),
                 (format!("peak_{force}_whole_run")): number("N", &format!("The {force} with the largest magnitude over the whole run.")),
-                (format!("peak_{force}_whole_run_at")): number("s", "Time of that force."),
+                (format!("peak_{force}_whole_run_at")): number("s", "Time of the largest value over the whole run."),
                 (format!("{broken}_at")): at,
             });
             objects.insert(key(one), closed(&format!("Forces in one {one}."), &element));

@@ -27,9 +27,9 @@ pub enum Advance {
     },
     /// Verdict of the variants with the lowest numbers, reported before the others are run.
     First {
-        /// Number of these variants, in each plane.
+        /// Number of variants in the first verdict, in each plane.
         variants: u32,
-        /// Verdict of these variants in one sentence.
+        /// First verdict in one sentence.
         headline: String,
     },
     /// Combined progress of the runs that are to be shown.

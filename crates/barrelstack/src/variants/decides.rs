@@ -36,7 +36,7 @@ described! {
         /// Share of collapses as a function of the constant, from its 5 % to its 95 % fractile,
         /// averaged over all other constants.
         pub shares: Vec<ShareAt>,
-        /// 95 % interval of the difference between the last and the first of these shares.
+        /// 95 % interval of the difference between the last and the first value of `shares`.
         pub difference: [f64; 2] as "1",
         /// Total-effect index: fraction of the variance of the share that remains if all other
         /// constants are known.

@@ -76,9 +76,9 @@ described! {
         /// Share of variants that fail; null if not all variants were counted, because the change
         /// was rejected or the search was stopped.
         pub share: Option<f64> as "1",
-        /// Interval of that share (Clopper and Pearson, with Bonferroni's correction); the
-        /// intervals of all changes and planes of the search hold simultaneously with 95 %
-        /// confidence. Null if the share is null.
+        /// Interval of the share of variants that fail (Clopper and Pearson, with Bonferroni's
+        /// correction); the intervals of all changes and planes of the search hold simultaneously
+        /// with 95 % confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
     }
 }

@@ -30,8 +30,8 @@ described! {
         pub collapsed: u32,
         /// Share of variants with a verdict that collapse; null if no variant has a verdict.
         pub share: Option<f64> as "1",
-        /// Wilson's 95 % interval of that share, widened so that it holds regardless of whether the
-        /// variants without a verdict stand or collapse.
+        /// Wilson's 95 % interval of the share that collapses, widened so that it holds regardless
+        /// of whether the variants without a verdict stand or collapse.
         pub interval: [f64; 2] as "1",
         /// Range of the share of stacks that collapse, over the constants that nobody has measured:
         /// it contains 95 % of the shares if these constants are drawn from their distributions,

@@ -45,7 +45,7 @@ pub(super) struct Target {
 }
 
 impl Form {
-    /// Writes a record into a file of this format below a folder, creating missing folders.
+    /// Writes a record as a file of this format below the folder `out`, creating missing folders.
     pub(super) fn write(self, source: &Source, out: &Path, record: &Record) -> anyhow::Result<()> {
         let path = source.beside(out, &word(self));
         make_folder_of(&path)?;

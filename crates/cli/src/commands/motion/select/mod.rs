@@ -42,10 +42,10 @@ pub(super) struct SelectArgs {
     /// Period at which Sa is given; must be one of the periods of the table.
     #[arg(long, value_name = "TIME")]
     at: Option<String>,
-    /// Sa at that period, such as "0.6 g".
+    /// Sa at the period --at, such as "0.6 g".
     #[arg(long, value_name = "ACCELERATION", requires = "at", conflicts_with = "epsilon")]
     level: Option<String>,
-    /// Sa at that period, as standard deviations of ln Sa above the median.
+    /// Sa at the period --at, as the number of standard deviations of ln Sa above the median.
     #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true)]
     epsilon: Option<f64>,
     /// Shortest period to match.
