@@ -1,4 +1,4 @@
-//! Results of variants in the form in which engines exchange them: the data that a verdict needs,
+//! Results of variants as engines exchange them, reduced to the data that a verdict needs, and
 //! bit-exact.
 
 use barrelstack::ensemble::CaseResult;

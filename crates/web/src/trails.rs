@@ -1,4 +1,4 @@
-//! Trails of the barrels of variants, in the form in which engines exchange them for a report.
+//! Trails of the barrels of variants, encoded so that engines can exchange them for a report.
 
 use std::collections::BTreeMap;
 

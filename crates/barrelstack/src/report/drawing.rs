@@ -71,7 +71,7 @@ pub(super) fn still(assembly: &Assembly) -> Scene {
 /// Maximum number of variants whose paths are drawn; more paths would merge into a black area.
 const DRAWN: usize = 128;
 
-/// Returns the paths of the top barrels of all variants, and the final poses of their barrels.
+/// Returns, for all variants, the paths of the top barrels and the final poses of the barrels.
 fn ghosts(variants: &Variants) -> Option<Ghosts> {
     let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
     let wide = |place: &[f32; 2]| place.map(f64::from);
