@@ -1,5 +1,5 @@
-//! Cost of a run as a function of the number of bodies, which must not grow faster than the number
-//! of contacts.
+//! Cost of a run as a function of the number of bodies. The cost must not grow faster than the
+//! number of contacts.
 
 use std::fmt::Write as _;
 

@@ -176,7 +176,8 @@ fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
     Ok((passed, Tally::of(lines.iter().map(String::as_str))))
 }
 
-/// Returns the cargo that started this program, so that all steps use the same toolchain.
+/// Returns the path of the cargo program that started this program, so that all steps use the same
+/// toolchain.
 pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }

@@ -16,9 +16,9 @@ use crate::run::RunFailure;
 /// Tilt (rad) of the floor from which the period of sway is computed; so small that nothing slips.
 const NUDGE: f64 = 1e-4;
 
-/// First step (rad) by which the floor is tilted, 2°, and resolution (rad) of the tilt at failure,
-/// 1/16°.
+/// First step (rad) by which the floor is tilted: 2°.
 const FIRST_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// Resolution (rad) of the tilt at failure: 1/16°.
 const FINEST_STEP: f64 = FIRST_STEP / 32.0;
 
 /// Largest tilt (rad) that is tried: 45°.

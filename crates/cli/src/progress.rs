@@ -19,7 +19,7 @@ const EVERY: Duration = Duration::from_secs(5);
 /// Time before an estimate of the total time is shown.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
-/// Minimum finished share of the work for an estimate, unless the work takes long.
+/// Share of the work that must be finished before an estimate is shown, unless the work takes long.
 const SHARE: f64 = 0.02;
 
 /// Number of finished runs from which the time of the other runs is predicted, or half of all runs

@@ -56,7 +56,7 @@ fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
 /// Lead time (s) before strong ground motion at which the player starts.
 const LEAD_IN: f64 = 1.0;
 
-/// Ratio to the peak of a history above which the ground motion counts as strong.
+/// Fraction of the peak of a history above which the ground motion counts as strong.
 const STRONG: f64 = 0.1;
 
 /// Returns the time (s) at which a player starts: shortly before the earliest strong ground motion.

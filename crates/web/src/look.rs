@@ -81,7 +81,7 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
     }
 }
 
-/// Ratio to the peak acceleration above which ground motion counts as strong, as in a player.
+/// Fraction of the peak acceleration above which ground motion counts as strong, as in a player.
 const STRONG: f64 = 0.1;
 /// Duration (s) of the opening from the start of the strong ground motion.
 const IN_PROGRESS: f64 = 3.0;

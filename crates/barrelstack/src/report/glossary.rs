@@ -2,8 +2,8 @@
 
 use barrelstack_report::Word;
 
-/// Terms with their explanations; a page explains each where it occurs. GLOSSARY.md has the same
-/// list.
+/// Terms with their explanations; a page explains each term where it occurs. GLOSSARY.md has the
+/// same list.
 pub const WORDS: &[Word] = &[
     word(
         "variant",

@@ -24,7 +24,7 @@ pub(crate) struct RenderArgs {
     /// paraview/.
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
-    /// Part to write; may be repeated. Runs in space have `paraview` only.
+    /// Part to write; may be repeated. For runs in space, only `paraview` is available.
     #[arg(long, value_enum, value_name = "PART")]
     only: Vec<PartName>,
     #[command(flatten)]

@@ -43,8 +43,8 @@ pub(super) struct Input {
     /// Time step if a file does not state one, such as "0.005 s".
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Sensitivity of files in counts, in counts per m/s2; for a single channel, such as
-    /// HNE=427819, may be repeated.
+    /// Sensitivity of files in counts, in counts per m/s2; HNE=427819 sets that of a single
+    /// channel, and may be repeated for other channels.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
     /// `StationXML` file with the sensitivity and direction of each channel, or a folder of such
