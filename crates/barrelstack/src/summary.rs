@@ -54,7 +54,7 @@ described! {
         pub energy: Option<EnergyBalance> = run.energy.as_ref().map(EnergyBalance::of),
         /// Ground motion of the run; null if the run has no ground motion.
         pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
-        /// Settings of the computation, and its amount of work.
+        /// Settings of the computation, and the amount of work that it took.
         pub run: RunSummary = RunSummary::of(run, wall_seconds),
         /// Warnings about inputs and results.
         pub warnings: Vec<String> = run.warnings.clone(),
@@ -214,7 +214,7 @@ described! {
         pub residual_ratio: f64 as "1" = balance.residual_ratio(),
     }
 
-    /// Settings of the computation, and its amount of work.
+    /// Settings of the computation, and the amount of work that it took.
     #[derive(Clone, Debug)]
     pub struct RunSummary of run: &Run, wall_seconds: Option<f64> {
         /// Integration method.

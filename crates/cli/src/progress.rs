@@ -303,8 +303,9 @@ mod tests {
         whole: f64,
     }
 
-    /// Returns runs with the given durations and full durations after `settling`, in order; `width`
-    /// runs are computed side by side.
+    /// Returns runs that start in order, `width` of them side by side. Each run settles for
+    /// `settling` (s), and then takes the first of its `lengths` (s); without a collapse it would
+    /// take the second.
     fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {

@@ -83,14 +83,14 @@ impl Cell {
         text.map_or(Self::Missing, Self::text)
     }
 
-    /// Creates a cell with a number of the given number of significant digits; `None` gives a
-    /// missing cell.
+    /// Creates a cell with a number, shown with the given number of significant digits; `None`
+    /// gives a missing cell.
     pub fn number(value: Option<f64>, digits: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Number(value, digits))
     }
 
-    /// Creates a cell with a measured number of at most the given number of decimals; `None` gives
-    /// a missing cell.
+    /// Creates a cell with a measured number, shown with at most the given number of decimals;
+    /// `None` gives a missing cell.
     pub fn measured(value: Option<f64>, decimals: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Measured(value, decimals))
     }
