@@ -1,4 +1,5 @@
-//! Error against the converged motion, and cost, of each integration method at several time steps.
+//! Cost of each integration method at several time steps, and its error relative to the converged
+//! motion.
 
 use std::ops::ControlFlow;
 
@@ -7,7 +8,7 @@ use barrelstack_dynamics::{Method, Planar, Scratch, Simulation, State, look, sim
 use crate::scene::Scene;
 use crate::{Failure, time};
 
-/// Time step (s) of the reference run; a shorter one changes no printed digit.
+/// Time step (s) of the reference run; a shorter step changes no printed digit.
 const CONVERGED: f64 = 0.015_625e-3;
 
 /// Drop (m) at which a barrel counts as fallen.
@@ -16,9 +17,10 @@ const DROP: f64 = 0.2;
 /// Interval (s) between the times at which trajectories are compared.
 const SAMPLE: f64 = 4e-3;
 
-/// Largest error of a step that counts as precise enough: of the displacements before the fall, relative, and
-/// of the time of the fall (s).
+/// Largest relative error of the displacements before the fall for which a step counts as precise
+/// enough.
 const MOST_ERROR: f64 = 0.01;
+/// Largest error (s) of the time of the fall for which a step counts as precise enough.
 const MOST_DELAY: f64 = 0.010;
 
 /// Prints the table and returns the longest step (s) of the default method that is precise enough.
@@ -26,8 +28,7 @@ pub(crate) fn work_and_precision(scene: &Scene) -> Result<f64, Failure> {
     let exact = watched(scene, Method::VelocityVerlet, CONVERGED)?;
     let fall = exact.fall.ok_or("nothing falls in the converged run")?;
     println!(
-        "work and precision: eight barrels, supports at ±20°, against velocity Verlet with steps \
-         of {:.4} ms",
+        "work and precision: eight barrels, supports at ±20°, compared with velocity Verlet with steps of {:.4} ms",
         1e3 * CONVERGED
     );
     println!("  the first barrel falls after {fall:.4} s");
@@ -56,7 +57,7 @@ pub(crate) fn work_and_precision(scene: &Scene) -> Result<f64, Failure> {
         }
     }
     println!(
-        "  the longest of these steps of the default method within {} % and {} ms: {} ms",
+        "  longest step of the default method with errors within {} % and {} ms: {} ms",
         100.0 * MOST_ERROR,
         1e3 * MOST_DELAY,
         1e3 * chosen
@@ -74,17 +75,18 @@ fn cost(scene: &Scene, method: Method, step: f64, end_time: f64) -> f64 {
     })
 }
 
-/// The trajectories of a run, and the time at which the first body fell.
+/// The trajectories of a run, and the time at which the first body falls.
 struct Seen {
     /// Heights (m) at rest.
     rest: Vec<f64>,
-    /// Displacements (m) of all bodies along `x` relative to the ground, sample by sample.
+    /// For each sample, the displacements (m) of all bodies along `x` relative to the ground.
     ways: Vec<Vec<f64>>,
     fall: Option<f64>,
 }
 
 impl Seen {
-    /// Returns the largest error of any body before a time (s), relative to the largest displacement of that body.
+    /// Returns the largest error of the displacement of a body before a time (s), relative to the
+    /// largest displacement of the same body.
     fn error_against(&self, exact: &Self, until: f64) -> f64 {
         let samples = (until / SAMPLE) as usize;
         let bodies = exact.rest.len();

@@ -1,6 +1,7 @@
-//! Arithmetic operations of a step, the share of the machine's peak that they reach, and the memory of the lanes.
+//! Number of arithmetic operations in a step, their rate as a share of the peak rate of the
+//! machine, and the memory that the lanes use.
 
-use barrelstack_dynamics::lanes::{Case, Batch, End, Task, Width, run_batch};
+use barrelstack_dynamics::lanes::{Batch, Case, End, Task, Width, run_batch};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
 use barrelstack_validation::counting::Work;
@@ -9,7 +10,8 @@ use barrelstack_validation::drive::Shake;
 use crate::scene::Scene;
 use crate::{memory, time};
 
-/// Prints the operations of a step and, for every width of the lanes, the share of the machine's peak.
+/// Prints the number of operations in a step and, for every width of the lanes, their rate as a
+/// share of the peak rate.
 pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
     let end_time = 1.0;
     let Work { steps, touching, operations } = Work::of(method, case(scene, step, end_time));
@@ -61,11 +63,14 @@ pub(crate) fn per_step(scene: &Scene, method: Method, step: f64) {
         );
     }
     if time::instructions(|| {}).is_none() {
-        println!("  (this machine or its operating system does not let programs count instructions)");
+        println!(
+            "  (this machine or its operating system does not let programs count instructions)"
+        );
     }
 }
 
-/// Measures the additions and multiplications per second of `COUNT` independent bundles in registers.
+/// Measures the number of additions and multiplications per second for `COUNT` independent bundles
+/// in registers.
 struct Peak<const COUNT: usize>;
 
 impl<const COUNT: usize> Task for Peak<COUNT> {
@@ -107,7 +112,7 @@ struct Many<'a> {
 }
 
 impl Task for Many<'_> {
-    /// Bytes in use by all lanes together.
+    /// Number of bytes that all lanes together use.
     type Output = usize;
 
     fn run<R: Real>(self) -> usize {

@@ -1,4 +1,5 @@
-//! Cost of a run against the number of bodies: it must not grow faster than the number of contacts.
+//! Cost of a run as a function of the number of bodies. The cost must not grow faster than the
+//! number of contacts.
 
 use std::fmt::Write as _;
 
@@ -6,7 +7,7 @@ use barrelstack::Scenario;
 
 use crate::{Failure, time};
 
-/// Simulated time (s), in which nothing falls.
+/// Simulated time (s), during which nothing falls.
 const UNTIL: f64 = 0.25;
 
 /// A family of scenes of increasing size.
@@ -33,10 +34,11 @@ const FAMILIES: [Family; 4] = [
 
 const BODIES: &[usize] = &[10, 50, 200, 500, 1000, 2000, 5000];
 
-/// Prints, for every family, the set-up time, the cost per contact element, and the ratio of largest to least.
+/// Prints, for every family, the set-up time and the cost per contact element, with the ratio of
+/// the largest to the smallest value of each.
 pub(crate) fn with_size() -> Result<(), Failure> {
     println!(
-        "single runs against their size: set-up (from text to the first step), and cost per contact element tested"
+        "single runs of increasing size: set-up (from text to the first step), and cost per contact element tested"
     );
     for Family { name, sizes, scenario } in FAMILIES {
         println!("  {name:24}  bodies  elements   set-up ms   µs / (n log₂ n)    ns per element");
@@ -66,7 +68,7 @@ pub(crate) fn with_size() -> Result<(), Failure> {
             shares.push(share);
         }
         println!(
-            "  largest over least: {:.2} per element, {:.2} for the set-up",
+            "  largest divided by smallest: {:.2} per element, {:.2} for the set-up",
             spread(&costs),
             spread(&shares)
         );

@@ -1,7 +1,7 @@
-//! Counts of work of a few runs, compared with those of the last release.
+//! Work counts of a few runs, compared with those of the last release.
 //!
-//! Counts do not depend on the machine, so a commit that adds work shows on any of them.
-//! Cases and counts are taken from two test suites: `crates/barrelstack/tests/golden` for whole runs, and
+//! The counts do not depend on the machine, so added work shows on every machine. Cases and counts
+//! are taken from two test suites: `crates/barrelstack/tests/golden` for whole runs, and
 //! `crates/validation/tests/arithmetic.rs` for single steps.
 
 #[path = "../../crates/validation/tests/arithmetic.rs"]
@@ -18,7 +18,7 @@ use crate::{Failure, time};
 /// File that keeps the counts of every release.
 const FILE: &str = "history.csv";
 
-/// Header line of that file.
+/// Header line of the file [`FILE`].
 const HEAD: &str = "version,case,count,value";
 
 /// One count of one case.
@@ -28,9 +28,10 @@ struct Count {
     value: u64,
 }
 
-/// Prints the present counts beside the last ones on file, and how many differ.
+/// Prints the present counts beside the last counts in the file, and the number of counts that
+/// differ.
 ///
-/// With `keep` the present counts are written to the file under the present version.
+/// With `keep`, the present counts are added to the file under the present version.
 pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(FILE);
     let kept = std::fs::read_to_string(&path).unwrap_or_else(|_| format!("{HEAD}\n"));
@@ -53,7 +54,7 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
         let last = last.map_or("none".to_owned(), |last| last.to_string());
         println!("{case:30} {count:22} {value:14} {last:>14}  {change:>8}  {since}");
     }
-    println!("{changed} of {} counts differ from the last ones on file", now.len());
+    println!("{changed} of {} counts differ from the last counts in the file", now.len());
     if now.iter().all(|count| count.count != "instructions") {
         println!("(this machine or its operating system does not let programs count instructions)");
     }
@@ -70,7 +71,8 @@ pub(crate) fn compare(keep: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the version of the workspace, read from its manifest since this program is not a member.
+/// Returns the version of the workspace, which is read from its manifest because this program is
+/// not a member of the workspace.
 fn release() -> Result<String, Failure> {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml");
     let text = std::fs::read_to_string(&manifest)?;

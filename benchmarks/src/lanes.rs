@@ -1,6 +1,6 @@
-//! Cost of many cases in lanes, against the width of the lanes.
+//! Cost of many cases in lanes, as a function of the width of the lanes.
 
-use barrelstack_dynamics::lanes::{Case, Batch, End, Task, Width, run_batch};
+use barrelstack_dynamics::lanes::{Batch, Case, End, Task, Width, run_batch};
 use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{Method, Planar, Scratch, State};
 use barrelstack_validation::drive::Shake;
@@ -8,13 +8,13 @@ use barrelstack_validation::drive::Shake;
 use crate::scene::Scene;
 use crate::time;
 
-/// Number of cases in the batch, more than any bundle has lanes.
+/// Number of cases in the batch, which exceeds the number of lanes of any bundle.
 const CASES: usize = 64;
 
 /// Simulated time (s), during which the stack stands.
 const STANDING: f64 = 1.2;
 
-/// Returns the processor time (s) per simulated second of a case in the widest lanes.
+/// Returns the processor time (s) per simulated second of a case, with the widest lanes.
 pub(crate) fn of_widest(scene: &Scene, step: f64) -> f64 {
     let run = || Width::widest().run(InLanes { scene, step });
     time::least(|| {

@@ -9,8 +9,9 @@
 //! cargo xtask bench history keep        # writes these counts to benchmarks/history.csv
 //! ```
 //!
-//! One process measures all figures, so their ratios hold on a busy machine, too. Times are processor
-//! times where the operating system reports them, and of one core unless a table states otherwise.
+//! One process measures all figures, so their ratios also hold on a busy machine. Times are
+//! processor times if the operating system reports these, and apply to one core unless a table
+//! states otherwise.
 
 mod accuracy;
 mod count;
@@ -28,7 +29,7 @@ use barrelstack_dynamics::Method;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Number of cases of the study of ten thousand that are run by default.
+/// Number of cases that are run by default, of the study of ten thousand cases.
 const CASES: usize = 128;
 
 fn main() -> Result<(), Failure> {

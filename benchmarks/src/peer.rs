@@ -4,7 +4,7 @@ use barrelstack_dynamics::{Model, Nodes, Planar, Shape, State, Vec2};
 
 use crate::time;
 
-/// Time step (s) of a game at 240 Hz, the longest with which stacks stand in Rapier.
+/// Time step (s) of a game at 240 Hz, which is the longest step with which stacks stand in Rapier.
 pub(crate) const COARSE: f64 = 1.0 / 240.0;
 
 /// Simulated time (s).
@@ -16,11 +16,12 @@ pub(crate) struct Stage<'a> {
     pub(crate) rest: &'a State<Planar>,
     /// Displacement (m) of the ground along `x` at a time (s).
     pub(crate) ground: &'a dyn Fn(f64) -> f64,
-    /// Friction coefficients: on the ground, and between bodies.
+    /// Friction coefficients on the ground and between bodies.
     pub(crate) friction: [f64; 2],
 }
 
-/// Returns the processor time (s) of Rapier per simulated second, in 32 and in 64 bits.
+/// Returns the processor time (s) of Rapier per simulated second, in single and in double
+/// precision.
 pub(crate) fn costs(stage: &Stage<'_>, step: f64) -> [f64; 2] {
     [
         time::least(|| single::shake(stage, step)) / END,

@@ -8,8 +8,9 @@ use barrelstack_validation::problems::consensus;
 
 use crate::Failure;
 
-/// Amplitude (m) and period (s) of the ground.
+/// Amplitude (m) of the ground motion.
 pub(crate) const AMPLITUDE: f64 = 0.1016;
+/// Period (s) of the ground motion.
 pub(crate) const PERIOD: f64 = 1.0748;
 
 /// A stack at rest.
@@ -19,7 +20,8 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Returns the scene on which five independent codes agree, with cradle supports at ± an angle (degrees).
+    /// Returns the scene on which five independent codes agree, with cradle supports at an angle
+    /// (degrees) to both sides of the vertical.
     pub(crate) fn consensus(degrees: f64) -> Result<Self, Failure> {
         let model = consensus::eight_barrels(degrees)?;
         let mut rest = State::initial(&model);

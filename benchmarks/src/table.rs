@@ -1,4 +1,5 @@
-//! Targets of performance and present measurements, with the peer (Rapier) measured in the same run.
+//! Performance targets and present measurements, including measurements of the peer (Rapier) in the
+//! same run.
 
 use std::f64::consts::TAU;
 
@@ -18,7 +19,7 @@ const MANY: f64 = 10_000.0;
 /// Simulated time (s) of each case.
 const LENGTH: f64 = 20.0;
 
-/// Prints the table; only `cases` of the ten thousand cases of the study are run.
+/// Prints the table; of the ten thousand cases of the study, only `cases` are run.
 pub(crate) fn print(cases: usize) -> Result<(), Failure> {
     let sine = |amplitude: f64| move |time: f64| amplitude * (TAU / PERIOD * time).sin();
     let scene = Scene::consensus(20.0)?;
@@ -47,7 +48,8 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
     let (cores, clock) = user::on_all_cores(cases)?;
     // The demo runs in both planes; here only in the one in which it falls.
     let along = ["stack.view=longitudinal".to_owned()];
-    let (eight, demo) = (user::single("candia-8-barrels", &[])?, user::single("demo-napa", &along)?);
+    let (eight, demo) =
+        (user::single("candia-8-barrels", &[])?, user::single("demo-napa", &along)?);
     let all = clock * MANY / cases as f64;
 
     let (peers, users) = (peers_single.min(peers_double), users_single.min(users_double));
@@ -103,7 +105,7 @@ pub(crate) fn print(cases: usize) -> Result<(), Failure> {
         ),
         ("single run, demo", format!("{demo:.0} × real time"), "250", ratio(users, 1.0 / demo)),
         (
-            "cheapest run of the peer ÷ our costlier study",
+            "cheapest run of the peer ÷ costlier study of this program",
             ratio(users, standing.second.max(half.second)),
             "3",
             "-".to_owned(),

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-/// Number of measurements of a figure; the least is printed, since disturbances only add time.
+/// Number of measurements of each figure; the smallest is printed, because disturbances only add
+/// time.
 const REPEATS: usize = 5;
 
 /// Returns the processor time (s) used so far, or the wall time since `start` if the system does not report it.
@@ -12,15 +13,17 @@ fn spent(start: Instant) -> f64 {
     nanoseconds.map_or_else(|| start.elapsed().as_secs_f64(), |ns| 1e-9 * ns)
 }
 
-/// Shortest measurement (s): the system updates processor time only every few milliseconds, so work is repeated.
+/// Shortest duration (s) of a measurement. Work is repeated until this time is reached, because the
+/// system updates processor times only every few milliseconds.
 const LONG: f64 = 0.1;
 
-/// Returns the least processor time (s) of `work` on this thread, of [`REPEATS`] measurements.
+/// Returns the smallest processor time (s) of `work` on this thread in [`REPEATS`] measurements.
 pub(crate) fn least(work: impl FnMut()) -> f64 {
     least_of(REPEATS, work)
 }
 
-/// Returns the least processor time (s) of `work` on this thread, of a given number of measurements.
+/// Returns the smallest processor time (s) of `work` on this thread in a given number of
+/// measurements.
 pub(crate) fn least_of(repeats: usize, mut work: impl FnMut()) -> f64 {
     let start = Instant::now();
     let mut least = f64::INFINITY;

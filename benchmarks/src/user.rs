@@ -18,9 +18,9 @@ const CASES: usize = 32;
 /// Simulated time (s) of each case.
 const DURATION: f64 = 20.0;
 
-/// Ranges of the amplitude (m) of the paper's sine: the stack stands in the first, half of the cases collapse in
-/// the second.
+/// Range of the amplitude (m) of the sine motion of the paper in which the stack stands.
 pub(crate) const STANDING: [f64; 2] = [0.01, 0.02];
+/// Range of the amplitude (m) in which half of the cases collapse.
 pub(crate) const HALF: [f64; 2] = [0.0165, 0.0265];
 
 /// Cost of a study.
@@ -31,8 +31,8 @@ pub(crate) struct Cost {
     pub(crate) collapsed: f64,
 }
 
-/// Measures a study of one stack on one core, with its outcomes and demands, under motions whose amplitudes (m)
-/// span a range.
+/// Measures a study of one stack on one core, including outcomes and demands, under motions whose
+/// amplitudes (m) span a range.
 pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
     let scenario = Arc::new(Scenario::builtin(STACK, &[format!("run.duration=\"{DURATION} s\"")])?);
     let case = |at: usize| {
@@ -50,7 +50,8 @@ pub(crate) fn study(amplitudes: [f64; 2]) -> Result<Cost, Failure> {
     Ok(Cost { second: spent / simulated.get(), collapsed: fallen.get() as f64 / CASES as f64 })
 }
 
-/// Returns the time (s) to build and settle a case that differs from the others in its friction.
+/// Returns the time (s) that it takes to build and settle a case that differs from the other cases
+/// in its friction.
 pub(crate) fn settling() -> Result<f64, Failure> {
     let cases = differing(CASES, 1e-3)?;
     Ok(time::least(|| drop(on_one_core(&cases))) / CASES as f64)
@@ -67,7 +68,8 @@ pub(crate) fn on_all_cores(cases: usize) -> Result<(usize, f64), Failure> {
     Ok((cores, start.elapsed().as_secs_f64()))
 }
 
-/// Returns how many times faster than real time a single run of a built-in scenario is, with all its recordings.
+/// Returns the ratio of the simulated time to the real time of a single run of a built-in scenario,
+/// with all recordings.
 pub(crate) fn single(name: &str, settings: &[String]) -> Result<f64, Failure> {
     let scenario = Scenario::builtin(name, settings)?;
     let run: Run = scenario.run()?;
@@ -79,7 +81,8 @@ fn on_one_core(cases: &[Prepared]) -> Vec<barrelstack::ensemble::CaseResult> {
     simulate(cases, &mut audience).unwrap_or_default()
 }
 
-/// Returns cases of a duration (s) that differ in two friction coefficients and stand.
+/// Returns cases of a given duration (s) that differ in two friction coefficients and in which the
+/// stack stands.
 fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
     let case = |at: usize| {
         let share = |turn: f64| (at as f64 * turn).fract();
@@ -95,7 +98,8 @@ fn differing(cases: usize, duration: f64) -> Result<Vec<Prepared>, Failure> {
     (0..cases).map(case).collect()
 }
 
-/// Returns the settings of the paper's motion with an amplitude (m), as long as the run.
+/// Returns the settings of the motion of the paper with an amplitude (m), for the duration of the
+/// run.
 fn shaking(amplitude: f64) -> Vec<String> {
     vec![format!("motion.sine.amplitude=\"{amplitude} m\""), "motion.sine.cycles=20".to_owned()]
 }

@@ -1,4 +1,4 @@
-//! Checks of pages in a browser: their scripts, their requirements, and the commands that run them.
+//! Checks of pages in a browser: scripts, requirements, and the commands that run the checks.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -7,22 +7,22 @@ use anyhow::Context as _;
 
 use crate::steps::{build_program, program, target};
 
-/// Script that checks report pages, in the repository.
+/// Path, in the repository, of the script that checks report pages.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 
-/// Script that records the animation of the demo for the README.
+/// Path, in the repository, of the script that records the animation of the demo for the README.
 pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 
-/// File that the film is written to.
+/// File to which the animation is written.
 const FILMED: &str = "docs/pictures/demo.gif";
 
-/// Script that checks the page of the engine, in the repository.
+/// Path, in the repository, of the script that checks the page of the engine.
 pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
 
 /// Folder of the Node.js modules that the checks use.
 const MODULES: &str = "crates/report/tests/browser";
 
-/// Command that installs these modules, to be run in the root of the repository.
+/// Command that installs the modules, to be run in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
 
 /// Program names of the browsers that a script can control.
@@ -43,8 +43,8 @@ pub(crate) fn find(root: &Path, script: &'static str) -> Option<Check> {
 impl Check {
     /// Returns the command, or the reason why it cannot be run here.
     ///
-    /// The variable `CHROMIUM` has the path of the browser, and `BARRELSTACK` that of the program that writes
-    /// the pages.
+    /// The environment variable `CHROMIUM` is set to the path of the browser, and `BARRELSTACK` to
+    /// the path of the program that writes the pages.
     pub(crate) fn command(&self) -> Result<Command, String> {
         let browser = BROWSERS.into_iter().find_map(on_path).ok_or(
             "no chromium on the PATH; install the package `chromium` of your system to check pages",
@@ -89,7 +89,7 @@ impl Check {
         Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 
-    /// Saves the present look of all pages as the reference of later checks.
+    /// Saves the present appearance of all pages as the reference for later checks.
     pub(crate) fn renew(&self) -> anyhow::Result<ExitCode> {
         let mut command = self.command().map_err(anyhow::Error::msg)?;
         self.build()?;

@@ -9,7 +9,7 @@ use anyhow::{Context as _, ensure};
 /// Folder of the modules and the entry point of the bundle.
 const SOURCE: &str = "crates/report/bundle";
 
-/// Folder of the committed bundle, which pages include.
+/// Folder of the committed bundle that pages include.
 const KEPT: &str = "crates/report/assets/vendor";
 
 /// Command that installs the modules, to be run in the root of the repository.
@@ -36,7 +36,8 @@ impl Bundle {
         }
     }
 
-    /// Packs the bundle and writes it and its license to the folder that pages include.
+    /// Packs the bundle, and writes the bundle and its license to the folder from which pages
+    /// include them.
     pub(crate) fn write(&self) -> anyhow::Result<()> {
         for (name, bytes) in self.packed()? {
             let path = self.root.join(KEPT).join(name);
@@ -47,7 +48,7 @@ impl Bundle {
         Ok(())
     }
 
-    /// Compares bundle and license with the committed files, byte for byte.
+    /// Compares the bundle and its license with the committed files, byte for byte.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         for (name, bytes) in self.packed()? {
             let path = self.root.join(KEPT).join(name);

@@ -1,4 +1,5 @@
-//! Checks that need more than the Rust toolchain; where a requirement is missing, the check is reported as skipped.
+//! Checks that need more than the Rust toolchain; a check with a missing requirement is reported as
+//! skipped.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -15,7 +16,7 @@ pub(crate) struct Extra {
     pub(crate) command: Result<Command, String>,
     /// Advice after a failure.
     pub(crate) remedy: &'static str,
-    /// Check of pages that the program writes, so the program is built first.
+    /// Check of pages that the program writes; the program is built before the check.
     pub(crate) pages: Option<browser::Check>,
 }
 
@@ -98,7 +99,7 @@ fn with(mut command: Command, words: &[&str]) -> Command {
     command
 }
 
-/// Returns `true` if a command exists and succeeds.
+/// Runs a command, and returns `true` if the command exists and succeeds.
 fn succeeds(command: &mut Command) -> bool {
     let status = command.stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())

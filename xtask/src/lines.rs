@@ -1,13 +1,13 @@
-//! Numbers of lines of code by crate, and the longest files, for information.
+//! Number of lines of code of each crate, and the longest files, for information.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
-/// Number of files in the list of the longest ones.
+/// Number of files in the list of the longest files.
 const LONGEST: usize = 12;
 
-/// Numbers of lines of a text.
+/// Numbers of lines of a source text.
 #[derive(Clone, Copy, Default)]
 struct Lines {
     code: usize,
@@ -15,7 +15,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// Counts the lines that are not blank, up to the tests at the end of a file.
+    /// Counts the lines that are not blank, excluding the tests at the end of a file.
     fn of(text: &str) -> Self {
         let mut lines = Self::default();
         let product = text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or(text);
@@ -59,7 +59,7 @@ pub(crate) fn list(root: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the paths of the entries of a folder; none if the folder does not exist.
+/// Returns the paths of the entries of a folder; empty if the folder does not exist.
 pub(crate) fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !folder.is_dir() {
         return Ok(Vec::new());

@@ -73,7 +73,7 @@ fn done((): ()) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Returns the exit status of a task, and prints the reason if it failed.
+/// Returns the exit status of a task, and prints the reason if the task failed.
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     result.unwrap_or_else(|error| {
         eprintln!("xtask: {error:#}");

@@ -27,12 +27,13 @@ const TESTS: [&str; 16] = [
     "distributed",
 ];
 
-/// Packages that only the heavy tests need, and that take long to install.
+/// Packages that only the heavy tests need, because their installation takes long.
 const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
 
 /// Pelicun, and the packages that `OpenQuake` imports.
 ///
-/// `OpenQuake` is installed without its own list of dependencies, for which pip would have to build GDAL.
+/// `OpenQuake` is installed without the dependencies that its package lists, because pip would have
+/// to build GDAL for them.
 const OTHERS: [&str; 14] = [
     "alpha_shapes",
     "decorator",
@@ -77,7 +78,8 @@ fn interpreter() -> Result<&'static str, String> {
 
 /// Builds the package, then builds its site and runs its tests.
 ///
-/// With `heavy` the tests include those that take long to install; with `site` only the site is built.
+/// With `heavy`, the tests include those whose packages take long to install; with `site`, only the
+/// site is built.
 pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     let Some(python) = environment(root, what == Some("heavy"))? else {
         println!("skipped: pip cannot install maturin; is there a network connection?");
@@ -104,7 +106,8 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if what == Some("heavy") { run_others(root) } else { Ok(()) }
 }
 
-/// Runs `OpenQuake` and Pelicun on exported files, in a second environment since Pelicun needs an older pandas.
+/// Runs `OpenQuake` and Pelicun on exported files, in a second environment, because Pelicun needs
+/// an older pandas.
 fn run_others(root: &Path) -> anyhow::Result<()> {
     let python = environment_at(&target(root).join("python-others"))?;
     for words in [&OTHERS[..], &["--no-deps", "openquake-engine"]] {
@@ -116,7 +119,8 @@ fn run_others(root: &Path) -> anyhow::Result<()> {
     checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
 }
 
-/// Returns the Python of the virtual environment in a folder, and creates the environment if it does not exist.
+/// Returns the Python interpreter of the virtual environment in a folder, and creates the
+/// environment if it does not exist.
 fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     let bin = if cfg!(windows) { "Scripts" } else { "bin" };
     let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));
@@ -127,7 +131,8 @@ fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     Ok(python)
 }
 
-/// Returns the Python of the environment with the present package; `None` if maturin cannot be installed.
+/// Returns the Python interpreter of the environment, in which the present package is installed;
+/// `None` if maturin cannot be installed.
 ///
 /// The environment is kept between runs.
 fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
@@ -171,7 +176,8 @@ fn pip(python: &Path) -> Command {
     pip
 }
 
-/// Returns the command of a Python whose own environment comes first on the search path.
+/// Returns the command of a Python interpreter, with the programs of its environment first on the
+/// search path.
 fn inside(python: &Path) -> Command {
     let mut command = Command::new(python);
     let path = std::env::var_os("PATH").unwrap_or_default();

@@ -14,7 +14,7 @@ use crate::extra;
 use crate::tally::Tally;
 use crate::web;
 
-/// One command, with advice for the case that it fails.
+/// One command, with advice in case the command fails.
 struct Step {
     /// Arguments of `cargo`.
     arguments: &'static [&'static str],
@@ -127,7 +127,7 @@ pub(crate) fn film() -> anyhow::Result<ExitCode> {
     check.film()
 }
 
-/// Saves the present look of all report pages as the reference of later checks.
+/// Saves the present appearance of all report pages as the reference for later checks.
 pub(crate) fn golden() -> anyhow::Result<ExitCode> {
     let check = browser::find(&root(), browser::REPORTS)
         .context("this repository does not contain the script that checks pages")?;
@@ -141,7 +141,7 @@ fn after(begin: Instant) -> String {
 
 /// Prints the counts and the time of each step, and the total counts on the last line.
 ///
-/// Prints nothing if no test ran, since `0 passed, 0 failed` would look like a success.
+/// Prints nothing if no test was run, because `0 passed, 0 failed` would look like a success.
 fn close(closing: &[String], total: Tally, start: Instant) {
     if total == Tally::default() {
         return;
@@ -153,8 +153,8 @@ fn close(closing: &[String], total: Tally, start: Instant) {
     println!("{total}");
 }
 
-/// Runs a command and prints its output as it arrives; returns whether the command succeeded, and the counts of
-/// the test runners in its output.
+/// Runs a command and prints its output as it arrives; returns `true` if the command succeeded, and
+/// the counts of the test runners in the output.
 fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
     let program = Path::new(command.get_program()).display().to_string();
     let mut child = command
@@ -176,7 +176,8 @@ fn watched(command: &mut Command) -> anyhow::Result<(bool, Tally)> {
     Ok((passed, Tally::of(lines.iter().map(String::as_str))))
 }
 
-/// Returns the cargo that started this program, so that all steps use the same toolchain.
+/// Returns the path of the cargo program that started this program, so that all steps use the same
+/// toolchain.
 pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }

@@ -1,4 +1,4 @@
-//! Counts of tests, read from the closing lines of test runners.
+//! Counts of tests, read from the last lines that test runners print.
 
 use std::fmt;
 
@@ -14,9 +14,9 @@ impl Tally {
     /// Counts the tests in the output of a command.
     ///
     /// Closing lines are `test result: ok. 3 passed; 0 failed; 1 ignored; …` of Rust's runner, and
-    /// `3 passed, 0 failed, 1 skipped` of scripts.
-    /// A test whose data are missing, such as a record that cannot be distributed, prints a line with `skipped: `
-    /// and ends. The test runner counts it as passed, this function as skipped.
+    /// `3 passed, 0 failed, 1 skipped` of scripts. A test whose data are missing, such as a record
+    /// that cannot be distributed, prints a line with `skipped: ` and ends. The test runner counts
+    /// such a test as passed, but this function counts it as skipped.
     pub(crate) fn of<'a>(lines: impl IntoIterator<Item = &'a str>) -> Self {
         let mut total = Self::default();
         let mut notices = 0;
@@ -45,8 +45,8 @@ impl Tally {
     }
 }
 
-/// Returns the counts in parts such as `3 passed`; `None` if a part has another form, or if no part counts
-/// passed tests.
+/// Returns the counts from parts such as `3 passed`; `None` if a part has another form, or if no
+/// part states the number of passed tests.
 fn counts_of<'a>(parts: impl Iterator<Item = &'a str>) -> Option<Tally> {
     let mut tally = Tally::default();
     let mut closing = false;

@@ -1,5 +1,5 @@
-//! The page that contains the engine: builds the engine as WebAssembly with the tools of this machine, and checks that
-//! it imports only functions that the page provides.
+//! Builds the page that contains the engine: compiles the engine to WebAssembly with the tools of
+//! this machine, and checks that the engine imports only functions that the page provides.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -12,10 +12,10 @@ use crate::steps::{cargo, target};
 /// Target triple of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Functions that the page provides, the only ones that the engine may import.
+/// Functions that the page provides; the engine may import no others.
 const GIVEN: [&str; 1] = ["page.progress"];
 
-/// Compiler with this target that Debian's packages `rustc-web` and `libstd-rust-web-dev` install.
+/// Compiler for this target, which Debian's packages `rustc-web` and `libstd-rust-web-dev` install.
 const DEBIAN: &str = "/usr/bin/rustc";
 
 /// Build of the engine and its page.
@@ -27,8 +27,9 @@ pub(crate) struct Build {
 impl Build {
     /// Returns the build, or a message that names what is missing and how to install it.
     ///
-    /// Uses the installed standard library of the target. Without one, builds it from Debian's `rust-web-src`, with
-    /// Debian's compiler and the linker of the toolchain.
+    /// The build uses the installed standard library of the target. If there is none, the standard
+    /// library is built from Debian's `rust-web-src`, with Debian's compiler and the linker of the
+    /// toolchain.
     pub(crate) fn find(root: &Path) -> Result<Self, String> {
         let mut command = Command::new(cargo());
         command.args(["build", "--package", "barrelstack-web", "--profile", "web"]);
@@ -136,7 +137,7 @@ fn said(command: &mut Command) -> Option<String> {
 ///
 /// Spec: WebAssembly 2.0, sections 5.5.2 and 5.5.5.
 fn imports(bytes: &[u8]) -> Option<Vec<String>> {
-    /// Number of the import section.
+    /// Identifier of the import section.
     const IMPORTS: u8 = 2;
     /// Kind of an imported function; the index of its type follows.
     const FUNCTION: u8 = 0;
@@ -180,7 +181,7 @@ fn number(bytes: &mut &[u8]) -> Option<usize> {
     None
 }
 
-/// Reads a text that is preceded by its length.
+/// Reads text that is preceded by its length.
 fn word(bytes: &mut &[u8]) -> Option<String> {
     let length = number(bytes)?;
     let (text, after) = bytes.split_at_checked(length)?;

@@ -1,4 +1,5 @@
-//! Limits on vague words for which the field has better ones, such as `report`, `request` and `displacement`.
+//! Limits on vague words for which more precise terms exist, such as `report`, `request` and
+//! `displacement`.
 
 use std::path::Path;
 
@@ -8,7 +9,7 @@ use crate::steps::root;
 /// Maximum number of occurrences of each group of words in the sources.
 const LIMIT: usize = 20;
 
-/// Groups of words whose occurrences are added up.
+/// Groups of words; the occurrences of all words of a group are added up.
 const GROUPS: [&[&str]; 5] = [
     &["told", "tell", "tells"],
     &["asked", "asks", "ask"],
@@ -17,11 +18,12 @@ const GROUPS: [&[&str]; 5] = [
     &["way", "ways"],
 ];
 
-/// Fixed phrases that do not count; to give way is to fail, of a stack or a part.
+/// Fixed phrases whose words do not count; for example, a stack or a part that fails gives way.
 const PHRASES: [&str; 7] =
     ["by the way", "either way", "all the way", "half way", "give way", "gives way", "gave way"];
 
-/// Returns how often `words` occur in a line as whole words, in letters of any case and outside of [`PHRASES`].
+/// Returns how often `words` occur in a line as whole words, in upper or lower case and outside of
+/// [`PHRASES`].
 ///
 /// A word next to a letter, a digit or an underscore is part of a longer word and does not count.
 fn count(line: &str, words: &[&str]) -> usize {

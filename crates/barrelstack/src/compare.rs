@@ -31,15 +31,15 @@ pub struct Side {
     pub summary: Summary,
     /// Results in the plane that is not shown, if the scenario has both planes.
     pub other: Option<OtherPlane>,
-    /// For each plane, the shown one first: whether each variant collapses, in the order of the
-    /// variant numbers; `None` for a variant without a verdict.
+    /// For each plane, the shown plane first: `true` for each variant that collapses, in the order
+    /// of the variant numbers; `None` for a variant without a verdict.
     pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
 }
 
 /// Results of a stack in the plane that is not shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherPlane {
-    /// Plane of these results.
+    /// Plane in which these results were computed.
     pub view: View,
     /// Outcome of the run in this plane, for the same variant number as the shown run.
     pub outcome: Outcome,
@@ -49,9 +49,9 @@ pub struct OtherPlane {
 
 /// Makes all answers show the same variant under the same component of the motion.
 ///
-/// The variant is the medoid over all answers. Answers that show another variant run the common
-/// one; the observer receives the progress and may cancel. Answers are returned unchanged if any of
-/// them has no variants.
+/// The variant is the medoid over all answers. For every answer that shows another variant, the
+/// medoid is run; the observer receives the progress and may cancel. Answers are returned unchanged
+/// if any of them has no variants.
 ///
 /// # Errors
 /// When the common variant cannot be run.
@@ -72,7 +72,7 @@ pub fn aligned(
 
 /// Returns the runs of the answers with their names.
 ///
-/// If all answers have both planes, every run is shown in the plane that governs the worst answer.
+/// If all answers have both planes, every run is shown in the governing plane of the worst answer.
 pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
     let share = |answer: &Answer| match &answer.decides.summary.ensemble {
         Some(spread) => spread.share.unwrap_or(0.0),
@@ -107,19 +107,19 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
 /// Error of a comparison.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CompareError {
-    /// A single run has no counterpart.
+    /// Fewer than two runs.
     #[error("a comparison needs at least two runs, found {0}")]
     TooFew(usize),
     /// More runs than a page can show.
     #[error("a comparison shows at most {most} runs side by side, found {found}: leave some out")]
     TooMany {
-        /// Number of runs requested.
+        /// Number of requested runs.
         found: usize,
         /// Maximum number of runs.
         most: usize,
     },
     /// Two runs have equal inputs.
-    #[error("{first} and {second} ask for the same run: every input is equal")]
+    #[error("{first} and {second} are the same run: all their inputs are equal")]
     Identical {
         /// The first of the two.
         first: String,
@@ -134,7 +134,7 @@ pub const MOST: usize = 6;
 /// Checks a comparison before any work is done.
 ///
 /// # Errors
-/// When there are too few or too many runs, or two of them have equal inputs.
+/// When there are too few or too many runs, or two runs have equal inputs.
 pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
     match scenarios.len() {
         found @ 0..=1 => return Err(CompareError::TooFew(found)),
@@ -191,7 +191,7 @@ described! {
         pub path: String,
         /// Meaning of the input.
         pub help: &'static str,
-        /// Value of the input in each run; null where a run has no such input.
+        /// Value of the input in each run; null for a run that has no such input.
         pub values: Vec<Option<String>>,
     }
 }

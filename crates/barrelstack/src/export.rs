@@ -34,8 +34,8 @@ const FILES_OF_PLANE: [&str; 5] =
 /// Maximum size (bytes) of a summary that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Longest time between writing the first and the last file of a run; a later modification is by
-/// someone else.
+/// Longest time between writing the first and the last file of a run; a later modification is
+/// attributed to another program.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
 /// Error of writing output files.
@@ -86,7 +86,7 @@ impl ExportError {
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// `true` if the folder existed before.
+    /// `true` if the folder existed when it was checked.
     existed: bool,
     /// `true` if existing files must not be replaced.
     fresh: bool,
@@ -122,9 +122,9 @@ impl Folder {
         Ok(Self { path: path.to_owned(), existed: path.exists(), fresh: !overwrite, claimed })
     }
 
-    /// Creates the folder if it is missing, and returns whether it did.
+    /// Creates the folder if it is missing, and returns `true` if it was missing.
     ///
-    /// A folder that another run has created or filled since the check is refused.
+    /// Refuses a folder that another run has created or filled since the check.
     fn claim(&self) -> Result<bool, ExportError> {
         let refused = |error: std::io::Error| ExportError::refused(&self.path, &error);
         if let Some(above) = self.path.parent() {
@@ -146,8 +146,8 @@ impl Folder {
         }
     }
 
-    /// Checks a folder like [`Folder::prepare`], but allows the files of an earlier run to be
-    /// replaced, and no others.
+    /// Checks a folder like [`Folder::prepare`], but allows files of an earlier run (and no other
+    /// files) to be replaced.
     ///
     /// # Errors
     /// When a file that would be replaced was not written by a run, or was changed since.
@@ -186,8 +186,9 @@ impl Folder {
 
     /// Writes all [`files`].
     ///
-    /// The files get temporary names first and are renamed together, so none is ever incomplete,
-    /// and a full disk leaves the files of an earlier run as they were.
+    /// The files are first written under temporary names and then renamed together. No file is
+    /// therefore ever incomplete, and if the disk is full, the files of an earlier run remain
+    /// unchanged.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -200,8 +201,8 @@ impl Folder {
         self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
-    /// Writes a page as `report.html` and as `report.md`, the latter with its figures and tables in
-    /// `figures/`.
+    /// Writes a page as `report.html` and as `report.md`, with the figures and tables of
+    /// `report.md` in `figures/`.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -284,8 +285,8 @@ fn first_in(folder: &Path) -> Option<String> {
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by name; with two planes, those of one plane have its name as a
-/// prefix.
+/// Returns the files of an answer by name; with two planes, the names of the files of one plane are
+/// prefixed with the name of the plane.
 ///
 /// # Errors
 /// When the archive of histories cannot be written.
@@ -323,7 +324,8 @@ pub fn files(
 }
 
 /// Returns the start data of a page that contains the program: the scenario as text, and its
-/// records by file name in base64, so that the page does not depend on paths.
+/// records in base64, under their file names without folders, so that the page does not depend on
+/// paths.
 fn start_of(scenario: &Scenario) -> Value {
     let mut packed = scenario.clone();
     let mut records = Vec::new();
@@ -365,8 +367,8 @@ fn force_names(contact: &str) -> [String; 2] {
     ["vertical", "horizontal"].map(|axis| format!("{}_{axis}_force", column_name(contact)))
 }
 
-/// Writes a table whose first column is `time (s)`: column names, then one row per time; missing
-/// values are left empty.
+/// Writes a table whose first column is `time (s)`: the column names, then one row per time, with
+/// empty cells for missing values.
 fn csv<R: Iterator<Item = Option<f64>>>(
     times: &[f64],
     names: impl Iterator<Item = String>,

@@ -1,4 +1,5 @@
-//! Amplitude-dependent rocking period: of an equivalent rigid block, and as measured in a run.
+//! Amplitude-dependent rocking period of a stack, for an equivalent rigid block and as measured in
+//! a run.
 
 use barrelstack_dynamics::Motion;
 
@@ -10,18 +11,19 @@ use crate::run::Run;
 pub struct RigidBlock {
     /// Distance (m) from the edge about which the block rocks to its center of mass.
     pub radius: f64,
-    /// Angle (rad) between that radius and the vertical; the block overturns if it tilts farther.
+    /// Angle (rad) between that radius and the vertical at rest; the block overturns if it tilts by
+    /// more than this angle.
     pub slenderness: f64,
     /// Frequency parameter `p` (1/s): `p² = m g R / I`, with `I` about the edge.
     pub frequency: f64,
 }
 
-/// Share of the total height, measured from the lowest point, up to which a point belongs to the
-/// foot.
+/// Height up to which a point belongs to the foot, measured from the lowest point, as a share of
+/// the total height.
 const FOOT: f64 = 1e-3;
 
 impl RigidBlock {
-    /// Returns the block equivalent to all free bodies as assembled, under gravity (m/s²).
+    /// Returns the rigid block equivalent to all free bodies as assembled; `gravity` is in m/s².
     ///
     /// `None` if there are no free bodies, or if their foot has no width.
     pub fn of(assembly: &Assembly, gravity: f64) -> Option<Self> {
@@ -71,12 +73,12 @@ impl RigidBlock {
     }
 }
 
-/// One half-cycle of a history: a swing to one side and back.
+/// A half-cycle of a history: a swing to one side and back to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swing {
     /// Start (s).
     pub start: f64,
-    /// Period (s) of a motion made of such swings: twice the duration of this one.
+    /// Period (s), which is twice the duration of the swing.
     pub period: f64,
     /// Largest absolute value during the swing, in the unit of the history.
     pub amplitude: f64,
@@ -87,8 +89,8 @@ const SMALLEST: f64 = 0.1;
 
 /// Returns the swings of a history, each from one zero crossing to the next.
 ///
-/// Zero crossings are interpolated linearly between samples. Swings below a tenth of the largest
-/// are left out, because small impacts cause random zero crossings there.
+/// Zero crossings are interpolated linearly between samples. Swings with less than a tenth of the
+/// largest amplitude are left out, because small impacts cause random zero crossings.
 pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
     let count = times.len().min(values.len());
     let mut crossings: Vec<(usize, f64)> = Vec::new();

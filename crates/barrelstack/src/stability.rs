@@ -13,31 +13,31 @@ use barrelstack_stack::stand::{Standing, UNBALANCED, stand};
 
 use crate::run::RunFailure;
 
-/// Tilt (rad) of the floor for the period of sway; so small that nothing slips.
+/// Tilt (rad) of the floor from which the period of sway is computed; so small that nothing slips.
 const NUDGE: f64 = 1e-4;
 
-/// Step (rad) by which the floor is tilted at first, 2°, and the resolution of the tilt at failure,
-/// 1/16°.
+/// First step (rad) by which the floor is tilted: 2°.
 const FIRST_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// Resolution (rad) of the tilt at failure: 1/16°.
 const FINEST_STEP: f64 = FIRST_STEP / 32.0;
 
 /// Largest tilt (rad) that is tried: 45°.
 const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 
 described! {
-    /// Static stability of stacks, one row for each rack, plane and height.
+    /// Static stability of stacks, with one row for each rack, plane and height.
     #[derive(Clone, Debug)]
     pub struct StabilityTable {
         /// Name and version of this layout.
         pub schema: &'static str ["stability/1"],
         /// Title of the scenario.
         pub title: String,
-        /// The rows: first those of the rack of the scenario, then those of the other racks of the
-        /// catalog.
+        /// The rows: first the rows for the rack of the scenario, then the rows for the other racks
+        /// of the catalog.
         pub rows: Vec<StabilityRow>,
     }
 
-    /// Static stability of one stack, or the reason why it does not stand.
+    /// Static stability of one stack, or the reason why the stack does not stand.
     #[derive(Clone, Debug)]
     pub struct StabilityRow {
         /// Name of the rack.
@@ -48,7 +48,8 @@ described! {
         pub levels: u32,
         /// Stability at rest; null if the stack does not stand on a level floor.
         pub stands: Option<Stability>,
-        /// Why the stack does not stand on a level floor, or cannot be built; null if it stands.
+        /// Reason why the stack does not stand on a level floor, or cannot be built; null if the
+        /// stack stands.
         pub refused: Option<String>,
     }
 
@@ -142,7 +143,7 @@ impl StabilityTable {
 /// not come to rest.
 ///
 /// The shape of the motion is the displacement due to a sideways push; the quotient is the work of
-/// the push over the kinetic energy of that shape.
+/// the push divided by the kinetic energy of that shape.
 fn period_of(standing: &Standing) -> Option<f64> {
     let model = &standing.assembly.model;
     let pull = -model.gravity().z * math::sin_cos(NUDGE).0;
@@ -211,7 +212,7 @@ fn tilt_at_failure_to(
     failure.map(|failure| (tilt, failure))
 }
 
-/// Returns the failure mode that a cause of failure stands for.
+/// Returns the failure mode that corresponds to the cause of a failure.
 fn word(lack: &Lack) -> &'static str {
     match lack {
         Lack::Friction { .. } | Lack::Stick { .. } => "slides",
@@ -220,8 +221,8 @@ fn word(lack: &Lack) -> &'static str {
     }
 }
 
-/// Returns a model on a floor that is tilted by an angle (rad), in the frame of the floor, where
-/// gravity has a horizontal component.
+/// Returns a model on a floor that is tilted by an angle (rad). The model is expressed in the frame
+/// of the floor, where gravity has a component along the floor.
 fn tilted(model: &Model<Planar>, angle: f64) -> Model<Planar> {
     let (sin, cos) = math::sin_cos(angle);
     let down = -model.gravity().z;

@@ -1,4 +1,4 @@
-//! Summary of a run: one JSON document whose numbers the report prints.
+//! Summary of a run: a JSON document with the numbers that the report prints.
 
 mod devices;
 
@@ -18,8 +18,8 @@ use crate::watch::{Fate, Joint, PeakForces, StressEnvelope};
 pub use devices::{Device, Devices, ElementSummary};
 
 described! {
-    /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null for what
-    /// did not happen or does not apply.
+    /// The summary of a run. Lengths are in m, times in s, forces in N and angles in rad; a value
+    /// is null if it does not apply or if the event did not happen.
     #[derive(Clone, Debug)]
     pub struct Summary of run: &Run, wall_seconds: Option<f64> {
         /// Name and version of this layout.
@@ -30,12 +30,12 @@ described! {
         pub view: Option<&'static str> ["transverse", "longitudinal"] = run.assembly.view.map(View::name),
         /// Number of the variant of the stack; 0 is the stack as stated.
         pub variant: u32 = 0,
-        /// Statistics of all variants; null if none were run.
+        /// Statistics of all variants; null if no variants were run.
         pub ensemble: Option<Spread> = None,
         /// Progress of the runs; null unless they were stopped early.
         pub unfinished: Option<Unfinished> = None,
-        /// Changes that would have kept the stack up; null if the stack stands, or if none were
-        /// searched.
+        /// Changes that would have kept the stack up; null if the stack stands, or if there was no
+        /// search.
         pub remedy: Option<Remedy> = None,
         /// Outcome of the run.
         pub outcome: OutcomeSummary = outcome(run),
@@ -52,15 +52,15 @@ described! {
         pub devices: Devices = Devices::of(run),
         /// The energy balance; null if the computation failed.
         pub energy: Option<EnergyBalance> = run.energy.as_ref().map(EnergyBalance::of),
-        /// Ground motion of the run; null without one.
+        /// Ground motion of the run; null if the run has no ground motion.
         pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
-        /// Settings of the computation, and its amount of work.
+        /// Settings of the computation, and the amount of work that it took.
         pub run: RunSummary = RunSummary::of(run, wall_seconds),
         /// Warnings about inputs and results.
         pub warnings: Vec<String> = run.warnings.clone(),
         /// Provenance of the result.
         pub provenance: Provenance = Provenance::of(run),
-        /// Comparison of the run with its repeats; null if there were none.
+        /// Comparison of the run with its repeats; null if there were no repeats.
         pub verification: Option<Verification> = None,
         /// Summary of the other plane, if the scenario has both planes; the outer summary is that
         /// of the governing plane.
@@ -92,7 +92,7 @@ described! {
         pub from_level: Option<u32>,
         /// The highest level involved in the collapse.
         pub to_level: Option<u32>,
-        /// Time at which the first barrel had fallen.
+        /// Time at which the first barrel counts as fallen.
         pub first_fall: Option<f64> as "s",
         /// Number of barrels that had fallen at the end; null if the run is invalid or was stopped
         /// early.
@@ -116,16 +116,16 @@ described! {
         pub column: Option<u32> = part.column,
         /// Time at which the body left its seat.
         pub left_seat_at: Option<f64> as "s" = fate.left_seat.map(|(time, _)| time),
-        /// Time at which the body had fallen.
+        /// Time at which the body counts as fallen.
         pub fell_at: Option<f64> as "s" = fate.fell_at,
-        /// Largest drop of a fallen body below its position at rest.
+        /// Largest drop of a fallen body below its position at rest; null if the body did not fall.
         pub fall_height: Option<f64> as "m" = fate.fell_at.map(|_| fate.drop),
         /// Time at which a fallen body landed: when its downward speed fell below half of its
         /// maximum since the fall.
         pub landed_at: Option<f64> as "s" = fate.landed_at,
         /// Largest downward speed before the landing.
         pub landing_speed: Option<f64> as "m/s" = fate.landing_speed,
-        /// Largest force on the body since it had fallen.
+        /// Largest force on the body after its fall.
         pub fall_force: Option<f64> as "N" = fate.fall_force,
         /// Displacement along x relative to the ground, at the end.
         pub residual_displacement: f64 as "m" = fate.residual_displacement,
@@ -142,48 +142,50 @@ described! {
         pub peak_tilt: Option<f64> as "rad" = (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
         /// Largest normal stress at rest, per meter of boundary.
         pub stress_at_rest: Option<f64> as "N/m" = stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
-        /// Largest normal stress until the first loss of seat, over the largest at rest; the two
-        /// may occur at different points.
+        /// Largest normal stress until the first loss of seat, divided by the largest normal stress
+        /// at rest; the two may occur at different points.
         pub stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification),
-        /// Largest normal stresses until the first loss of seat over those at rest, each averaged
-        /// over the boundary that is loaded at rest.
+        /// Average of the largest normal stresses until the first loss of seat, divided by the
+        /// average of the normal stresses at rest; both averages are taken over the boundary that
+        /// is loaded at rest.
         pub mean_stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::mean_amplification),
-        /// Largest sum of all normal contact forces on the body until the first loss of seat, over
-        /// that sum at rest.
+        /// Largest sum of all normal contact forces on the body until the first loss of seat,
+        /// divided by the sum at rest.
         pub total_force_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::total_amplification),
         /// Stress amplification over the whole run.
         pub stress_amplification_whole_run: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification_whole_run),
     }
 
-    /// The force between two bodies: on the upper one, or on the one named first if neither rests
-    /// on the other. Largest forces are those with the largest magnitude in any step; in a plane
-    /// they have a sign.
+    /// The force between two bodies, as it acts on the upper body, or on the body named first if
+    /// neither rests on the other. Largest forces are those with the largest magnitude in any step;
+    /// in a plane they have a sign.
     #[derive(Clone, Debug)]
     pub struct JointSummary {
-        /// Names of the bodies, such as "R1 on ground", or "R1.1 against R1.2" for bodies that met
-        /// during the motion.
+        /// Names of the bodies, such as "R1 on ground", or "R1.1 against R1.2" for bodies that
+        /// touched only during the motion.
         pub name: String,
         /// Vertical force at rest.
         pub at_rest: f64 as "N",
-        /// Largest vertical force until the first loss of seat; zero if the two met only later.
+        /// Largest vertical force until the first loss of seat; zero if the two bodies touched only
+        /// later.
         pub peak_vertical: f64 as "N",
-        /// Time of this vertical force.
+        /// Time of the largest vertical force until the first loss of seat.
         pub peak_vertical_at: f64 as "s",
         /// Largest horizontal force until the first loss of seat.
         pub peak_horizontal: f64 as "N",
-        /// Time of this horizontal force.
+        /// Time of the largest horizontal force until the first loss of seat.
         pub peak_horizontal_at: f64 as "s",
         /// Largest vertical force over the whole run, falls included.
         pub peak_vertical_whole_run: f64 as "N",
-        /// Time of this vertical force.
+        /// Time of the largest vertical force over the whole run.
         pub peak_vertical_whole_run_at: f64 as "s",
         /// Largest horizontal force over the whole run.
         pub peak_horizontal_whole_run: f64 as "N",
-        /// Time of this horizontal force.
+        /// Time of the largest horizontal force over the whole run.
         pub peak_horizontal_whole_run_at: f64 as "s",
     }
 
-    /// The energy balance at the end (J), relative to the start.
+    /// The energy balance (J) at the end of the run, relative to the start.
     #[derive(Clone, Debug)]
     pub struct EnergyBalance of balance: &EnergySummary {
         /// Kinetic energy.
@@ -205,13 +207,14 @@ described! {
         pub ground_work: f64 as "J" = balance.ground_work,
         /// Residual of the balance, the error of the computation.
         pub residual: f64 as "J" = balance.residual,
-        /// Energy supplied: absolute work of the ground plus the drop of potential energy.
+        /// Energy supplied: absolute value of the work of the ground, plus the decrease of
+        /// potential energy.
         pub input: f64 as "J" = balance.throughput,
-        /// Absolute residual over the energy supplied.
+        /// Absolute value of the residual divided by the energy supplied.
         pub residual_ratio: f64 as "1" = balance.residual_ratio(),
     }
 
-    /// Settings of the computation, and its amount of work.
+    /// Settings of the computation, and the amount of work that it took.
     #[derive(Clone, Debug)]
     pub struct RunSummary of run: &Run, wall_seconds: Option<f64> {
         /// Integration method.
@@ -292,7 +295,7 @@ impl Summary {
     }
 }
 
-/// `true` if the numbers of a run are valid; those of a failed computation only look like results.
+/// `true` if the numbers of a run are valid; `false` if the computation failed.
 fn sound(run: &Run) -> bool {
     !matches!(run.outcome, Outcome::Invalid { .. })
 }

@@ -1,8 +1,8 @@
 //! Reliability of a run, from repeats with a finer step, finer nodes and tiny perturbations.
 //!
 //! Contact is chaotic: after enough impacts, two runs that differ only in the last digit diverge.
-//! Results before the divergence are predictions; later results are one possible course.
-//! A verdict that all repeats share is robust nevertheless.
+//! Results before the divergence are predictions; later results are one possible course. A verdict
+//! that all repeats share is nevertheless robust.
 
 mod robust;
 
@@ -21,8 +21,8 @@ use crate::variants::run_together;
 
 pub use robust::Robust;
 
-/// Distance (m at full scale) between the positions of a body in two runs above which they count as
-/// diverged.
+/// Distance (m at full scale) between the positions of a body in two runs above which the two runs
+/// count as diverged.
 pub const APART: f64 = 0.01;
 
 /// Largest initial displacement (m at full scale) of a body in a perturbed repeat.
@@ -32,14 +32,15 @@ pub const DISTURBANCE: f64 = 1e-9;
 pub const DISTURBED: u64 = 4;
 
 described! {
-    /// Comparison of a run with its repeats. Times in s, lengths in m, at the scale of the run.
+    /// Comparison of a run with its repeats. Times are in s and lengths in m, at the scale of the
+    /// run.
     #[derive(Clone, Debug)]
     pub struct Verification {
-        /// Distance between the positions of a body in two runs above which they count as
-        /// different.
+        /// Distance between the positions of a body in two runs above which the two runs count as
+        /// diverged.
         pub apart: f64 as "m",
         /// Time until which every body in every repeat stays within the distance `apart` of its
-        /// position in the run; null if it does so to the end.
+        /// position in the run; null if this holds to the end.
         pub predictable_until: Option<f64> as "s",
         /// Properties of the run that all repeats share.
         pub robust: Robust,
@@ -59,12 +60,12 @@ described! {
         /// True if kind, mode and first body are the same as in the run.
         pub same_outcome: bool = same_outcome(base, other),
         /// Time at which a body is first farther than the distance `apart` from its position in the
-        /// run; null if none ever is.
+        /// run; null if no body ever is.
         pub apart_at: Option<f64> as "s" = apart_at(base, other),
         /// Largest difference between the fall times of a barrel in the repeat and in the run,
         /// before any repeat diverges; null if no barrel falls by then.
         pub fall_difference: Option<f64> as "s" = None,
-        /// Time at which each barrel had fallen.
+        /// Time at which each barrel counts as fallen.
         #[serde(skip)]
         falls: Vec<Option<f64>> = falls(other),
     }
@@ -122,8 +123,8 @@ pub fn verify(
     Ok(judge(base, repeats, skipped))
 }
 
-/// Returns the scenario with half the step, or with a tenth of the tolerance for an adaptive
-/// method, and the name of the change.
+/// Returns the scenario with half the time step (for an adaptive method, with a tenth of the
+/// tolerance), and the name of the change.
 fn finer_step(base: &Run) -> (String, Scenario) {
     let mut scenario = base.scenario.clone();
     if let Method::BogackiShampine { tolerance } = &mut scenario.run.method {
@@ -134,8 +135,8 @@ fn finer_step(base: &Run) -> (String, Scenario) {
     ("half the step".into(), scenario)
 }
 
-/// Returns the scenario with nodes at half the spacing, or the reason why this would be a different
-/// stack.
+/// Returns the scenario with nodes at half the spacing, or the reason why halving the spacing would
+/// change the stack.
 fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
     let mut finer = scenario.clone();
@@ -146,19 +147,20 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
                 return Err(PER_NODE.into());
             }
             if stack.rack.contact != SeatContact::Nodes {
-                return Err("no rack carries nodes along its faces".into());
+                return Err("no rack has contact nodes along its faces".into());
             }
             let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
             if stack.view == View::Transverse && !per_seat {
                 return Err(
-                    "across the barrels, single nodes (cradle supports, corners of beams, rolling \
-                            barrels) represent one spacing, so halving the spacing would soften them"
+                    "across the barrels, each single node (cradle supports, corners of beams, rolling barrels) represents one spacing, so halving the spacing would make these contacts softer"
                         .into(),
                 );
             }
             stack.rack.node_spacing *= 0.5;
         }
-        Scene::Spatial(_) => return Err("no body in space carries nodes".into()),
+        Scene::Spatial(_) => {
+            return Err("bodies of a three-dimensional model have no contact nodes".into());
+        }
         Scene::Free(scene) => {
             if scene.interfaces.iter().any(|interface| interface.law.basis == Basis::Node) {
                 return Err(PER_NODE.into());
@@ -176,7 +178,7 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
                 }
             }
             if !refined {
-                return Err("no body carries nodes along its sides".into());
+                return Err("no body has contact nodes along its sides".into());
             }
         }
     }
@@ -235,7 +237,7 @@ fn same_outcome(base: &Run, other: &Run) -> bool {
     (outcome.kind, outcome.mode, outcome.first) == (own.kind, own.mode, own.first)
 }
 
-/// Returns the time at which each barrel had fallen (s).
+/// Returns the time (s) at which each barrel counts as fallen.
 fn falls(run: &Run) -> Vec<Option<f64>> {
     run.assembly.of_kind(PartKind::Barrel).map(|body| run.fates.fate(body).fell_at).collect()
 }
@@ -319,8 +321,8 @@ impl Verification {
         self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged")
     }
 
-    /// Returns the parts of the outcome that are compared; of a stack that stands everywhere, its
-    /// kind alone.
+    /// Returns the parts of the outcome that are compared; only the kind of the outcome if the
+    /// stack stands in all runs.
     fn parts(&self) -> &'static [&'static str] {
         let collapses = self.repeats.iter().any(|repeat| repeat.outcome.mode.is_some());
         if collapses { &["kind", "mode", "first body"] } else { &["kind"] }
@@ -352,7 +354,7 @@ impl Verification {
             });
             sentences.extend(first_fall_within.map(|late| {
                 format!(
-                    "The first barrel falls within {} of its time in this run in all repeats.",
+                    "In all repeats, the first barrel falls within {} of the time at which it falls in this run.",
                     shortly(late)
                 )
             }));
@@ -364,8 +366,7 @@ impl Verification {
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
         sentences.push(match self.predictable_until {
             Some(time) => format!(
-                "Details are predictable until {time:.2} s; after that, a body in some repeat is more than \
-                 {centimeters} cm from its position here, so the run shows one possible course."
+                "Details are predictable until {time:.2} s; after that, a body in some repeat is more than {centimeters} cm from its position in this run, so the run shows only one possible course."
             ),
             None => format!(
                 "Details are predictable to the end: in every repeat each body stays within \
@@ -384,7 +385,7 @@ impl Verification {
         let predictable = match self.predictable_until {
             None if self.repeats.is_empty() => UNKNOWN.to_owned(),
             Some(time) => format!(
-                "until {time:.2} s; then a body in a repeat is more than {centimeters} cm from its position in the run"
+                "until {time:.2} s; after that, a body in some repeat is more than {centimeters} cm from its position in the run"
             ),
             None => {
                 format!(
@@ -397,7 +398,7 @@ impl Verification {
         let outcome = if self.repeats.is_empty() {
             UNKNOWN.to_owned()
         } else if !self.judged() {
-            "not judged: a free scene has no verdict that could change".to_owned()
+            "not judged, because a free scene has no verdict".to_owned()
         } else if self.robust.outcome() {
             format!("robust in {}: the same in all {count} repeats", self.parts().join(", "))
         } else {

@@ -91,7 +91,7 @@ fn too_few_too_many_and_the_same_twice_are_refused() {
     };
     assert_eq!(compare::check(&[named(3)]), Err(CompareError::TooFew(1)));
     let error = compare::check(&[named(3), named(4), named(3)]).unwrap_err();
-    assert_eq!(error.to_string(), "3 and 3 ask for the same run: every input is equal");
+    assert_eq!(error.to_string(), "3 and 3 are the same run: all their inputs are equal");
     let many: Vec<_> = (2..9).map(named).collect();
     assert_eq!(compare::check(&many), Err(CompareError::TooMany { found: 7, most: 6 }));
     assert_eq!(compare::check(&many[..6]), Ok(()));
@@ -118,7 +118,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     let inputs = table(&document, "Differences");
     assert_eq!(inputs.rows.len(), 1);
     let text = markdown(&document, "figures").text;
-    assert!(text.contains("They differ in one input: stack.levels, 4 and 2."), "{text}");
+    assert!(text.contains("The runs differ in one input: stack.levels, 4 and 2."), "{text}");
     assert!(text.contains("A, four: ") && text.contains("B, two: "), "{text}");
 }
 

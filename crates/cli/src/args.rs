@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Stop as by Ctrl-C at a point of the work, WORK:THINGS:DONE; for tests.
+    /// Stop at a point of the work, WORK:THINGS:DONE, as Ctrl-C does; for tests.
     #[arg(long, global = true, hide = true, value_name = "PLACE")]
     pub(crate) stop_at: Option<crate::interrupt::Place>,
 }
@@ -42,9 +42,10 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Shake a five-level stack with the South Napa earthquake of 2014 and write a report.
     Demo(DemoArgs),
-    /// Safe height: collapse of stacks of two to six levels, on one page.
+    /// Safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Best protection of a stack for its cost: levels, racks, devices, or pairs of these.
+    /// Protection of a stack with the best benefit for its cost: levels, racks, devices, or pairs
+    /// of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
@@ -52,7 +53,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
-    /// Run every case of the paper behind the model and compare the paper's numbers with ours.
+    /// Run every case of the paper on which the model is based, and compare the numbers of the
+    /// paper with those of the program.
     Reproduce(ReproduceArgs),
     /// Read, inspect, change and make ground motions.
     Motion(Box<crate::commands::motion::MotionArgs>),
@@ -73,7 +75,7 @@ pub(crate) enum Command {
     Man(crate::commands::shell::ManArgs),
 }
 
-/// A scenario, and changes to it.
+/// A scenario, and changes to be made to the scenario.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ScenarioArgs {
     /// A scenario file (TOML), the name of a built-in scenario, or - for standard input.
@@ -82,7 +84,7 @@ pub(crate) struct ScenarioArgs {
     /// Change a value, such as stack.levels=5 or "motion.scale.pgv=60 cm/s"; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
-    /// File of the ground motion, in place of the scenario's.
+    /// File of the ground motion, in place of the motion that the scenario states.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
 }
@@ -114,7 +116,7 @@ pub(crate) struct RunArgs {
     #[arg(long, requires = "out")]
     pub(crate) overwrite: bool,
     /// Repeat the run with half the step, with finer nodes and with disturbances of a nanometer,
-    /// and report how long it is predictable and whether its outcome is robust.
+    /// and report until when the run is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
     /// Do not search for changes that would have kept a fallen stack up; the search may take as
@@ -127,8 +129,8 @@ pub(crate) struct RunArgs {
     /// Paper size of report.pdf.
     #[arg(long, value_enum, value_name = "PAPER", default_value = "a4", requires = "pdf")]
     pub(crate) paper: crate::figures::PaperName,
-    /// Page that contains the program, such as barrelstack.html of a release. It is embedded in
-    /// report.html, so that a reader of the report can change the stack and shake it again.
+    /// Page that contains the program, such as barrelstack.html of a release. The page is embedded
+    /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
     pub(crate) with_engine: Option<PathBuf>,
     /// Draw the stack in the summary with ASCII characters only.
@@ -165,11 +167,11 @@ pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,
     /// Tabulate the static stability of the stack with two to seven levels, on its own rack and on
-    /// every rack of the catalog: settlement, longest period of sway, and the tilt of the floor at
-    /// which it falls.
+    /// every rack of the catalog: settlement, longest period of sway, and tilt of the floor at
+    /// which the stack falls.
     #[arg(long)]
     pub(crate) table: bool,
-    /// Print one JSON document in place of the lines.
+    /// Print one JSON document in place of text.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -182,13 +184,13 @@ pub(crate) struct ReproduceArgs {
     /// compared.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// Leave out the studies, which are most of the work: the influence of each input, and contact
+    /// Leave out the studies, which take most of the time: the influence of each input, and contact
     /// parameters changed by 10 %.
     #[arg(long)]
     pub(crate) no_studies: bool,
     #[command(flatten)]
     pub(crate) figures: crate::figures::FigureArgs,
-    /// Folder for the page, for screen and print, and its figures; files of an earlier page are
+    /// Folder for the page (for screen and print) and its figures; files of an earlier page are
     /// replaced.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-reproduce")]
     pub(crate) out: PathBuf,

@@ -4,7 +4,7 @@ use barrelstack::variants::Remedy;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 
-/// Arguments of the run with which the remedy is compared.
+/// Arguments of the run of the stack as it is, with which the remedy is compared.
 pub(crate) struct Command<'a> {
     scenario: &'a ScenarioArgs,
     variants: VariantArgs,
@@ -17,8 +17,8 @@ impl<'a> Command<'a> {
 
     /// Returns the command for all sufficient changes.
     ///
-    /// `None` if there is no sufficient change, if one option cannot express it, or if the scenario
-    /// was read from standard input.
+    /// `None` if there is no sufficient change, if a single option cannot express the change, or if
+    /// the scenario was read from standard input.
     pub(crate) fn against(&self, found: &Remedy) -> Option<String> {
         let ScenarioArgs { scenario, set, record } = self.scenario;
         let all = [&found.height, &found.straps].into_iter().flatten();

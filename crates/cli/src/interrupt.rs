@@ -1,5 +1,5 @@
 //! Handling of Ctrl-C and other requests to terminate: work stops within a second, finished results
-//! are kept, and the user is told where they are.
+//! are kept, and a message states where the results are.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use crate::printer;
 /// `true` if the user requested a stop; global, because a program can have only one handler.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// `true` if some work polls the stop request.
+/// `true` if some piece of work polls the stop request.
 static LISTENS: AtomicBool = AtomicBool::new(false);
 
 /// `true` if work has stopped on request, and its finished results are being kept.
@@ -29,10 +29,11 @@ static KEPT: Mutex<Option<String>> = Mutex::new(None);
 /// Folders that may contain unfinished files.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Time for work to react to the request; the rest of a second is for printing what is kept.
+/// Time that work has to react to the request; in the rest of one second, the program prints which
+/// results are kept.
 const GRACE: Duration = Duration::from_millis(600);
 
-/// Time for stopped work to print and write its finished results.
+/// Time that stopped work has to print and write its finished results.
 const KEEPING: Duration = Duration::from_secs(30);
 
 /// Exit status of an interrupted program.
@@ -82,7 +83,7 @@ pub(crate) fn stop_at(place: Option<Place>) {
 ///
 /// The first signal requests a stop. Work that does not listen, or does not react in time, is
 /// terminated; work that stops gets time to keep its finished results. A second signal terminates
-/// at once. Files get their own names only when they are complete, and unfinished files are
+/// at once. Files are given their final names only when they are complete, and unfinished files are
 /// removed.
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
@@ -112,7 +113,7 @@ fn request_stop() {
     });
 }
 
-/// Terminates the program, after printing what is kept and removing unfinished files.
+/// Terminates the program, after printing which results are kept and removing unfinished files.
 #[expect(clippy::exit, reason = "the work does not stop by itself")]
 fn end(json: bool) -> ! {
     system::write_no_more();
@@ -135,8 +136,8 @@ pub(crate) fn has_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// Marks all work as finished: its results are being written, and a first signal does not interrupt
-/// that.
+/// Marks all work as finished. Its results are then being written, which a first signal does not
+/// interrupt.
 pub(crate) fn finished() {
     FINISHED.store(true, Ordering::Relaxed);
 }
@@ -158,7 +159,8 @@ pub(crate) fn writes_to(folder: &Path) {
     }
 }
 
-/// Error of work that stopped on request; what is kept has been printed before.
+/// Error of work that stopped on request; a message about the kept results has already been
+/// printed.
 #[derive(Debug)]
 pub(crate) struct Stopped;
 
@@ -189,7 +191,7 @@ impl Interrupt {
         requested
     }
 
-    /// Reports the progress of work on `things`, for tests that stop it at a certain point.
+    /// Reports the progress of work on `things`, for tests that stop the work at a certain point.
     #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
         let Some(Some(place)) = PLACE.get() else { return };

@@ -6,7 +6,8 @@ use barrelstack::ensemble::Width;
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(crate) struct LanesArgs {
     /// Vector unit in which cases run side by side: avx512, avx2, or scalar for one case at a time;
-    /// by default the widest of this machine. Results do not depend on it.
+    /// by default, the widest vector unit of this machine. Results do not depend on the vector
+    /// unit.
     #[arg(long, value_name = "UNIT", value_parser = here)]
     pub(crate) lanes: Option<Width>,
 }

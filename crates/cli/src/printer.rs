@@ -28,15 +28,15 @@ pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow
     text(&whole)
 }
 
-/// Prints a text, unchanged except for control characters.
+/// Prints text, in which only control characters are replaced.
 ///
 /// A reader that has closed the pipe (`| head`) is not an error. Any other failure, such as a full
-/// disk, would leave an incomplete result and is an error.
+/// disk, is an error, because the result would be incomplete.
 pub(crate) fn text(text: &str) -> anyhow::Result<()> {
     raw(&harmless(text))
 }
 
-/// Prints a text as [`text`] does, without replacing control characters.
+/// Prints text as [`text`] does, but without replacing control characters.
 fn raw(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
@@ -75,7 +75,7 @@ pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     raw(&whole)
 }
 
-/// `true` if a document was printed, so that no second one follows.
+/// `true` if a document was printed; no second document is printed then.
 static PRINTED: AtomicBool = AtomicBool::new(false);
 
 /// Replaces control characters, which could disturb a terminal.
@@ -84,7 +84,7 @@ pub(crate) fn harmless(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Formats a number of things, such as "1 case" or "2 cases".
+/// Formats a count with its noun, such as "1 case" or "2 cases".
 pub(crate) fn counted(count: u64, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
@@ -101,7 +101,7 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     error_document(&ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
-/// Shortens an overlong text by omitting its middle.
+/// Shortens text that is too long by omitting its middle.
 fn bounded(text: &str) -> String {
     const LONGEST: usize = 2000;
     const KEPT: usize = 400;
@@ -143,14 +143,14 @@ described! {
         schema: &'static str ["error/1"] = "error/1",
         /// Error message, with the causes.
         error: String = error.0.to_owned(),
-        /// Command or option that may help; null if there is no single one.
+        /// Command or option that may help; null if no single command or option does.
         next: Option<String> = error.1.map(str::to_owned),
-        /// The file that contains the error; null if none does.
+        /// The file that contains the error; null if the error is not in a file.
         file: Option<String> = match error.2 {
             Some(Place::File { file, .. } | Place::Whole { file }) => Some(file.clone()),
             Some(Place::Override { .. } | Place::Unknown) | None => None,
         },
-        /// The override that contains the error, as typed; null if none does.
+        /// The override that contains the error, as typed; null if the error is not in an override.
         change: Option<String> = if let Some(Place::Override { text }) = error.2 { Some(text.clone()) } else { None },
         /// Line of the error, counted from 1.
         line: Option<usize> = if let Some(Place::File { line, .. }) = error.2 { Some(*line) } else { None },
@@ -216,7 +216,7 @@ pub(crate) fn answer(
     lines(all)
 }
 
-/// Prints the results of repeats of a run.
+/// Prints the comparison of a run with its repeats.
 pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow::Result<()> {
     let rows = found.rows();
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;

@@ -2,14 +2,15 @@
 //!
 //! If standard output is closed (`>&-`), the runtime opens `/dev/null` in its place, and results
 //! would be lost without an error. A file that grows beyond the limit of the process (`ulimit -f`)
-//! kills the process and leaves an incomplete file. A function that the loader calls therefore tests
-//! the output and ignores the signal. On systems without such a function, neither is detected.
+//! kills the process and leaves an incomplete file. A function that the loader calls therefore
+//! tests the output and ignores the signal. On systems whose loader calls no such function, neither
+//! condition is detected.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Returns whether standard output was closed at the start.
+/// Returns `true` if standard output was closed when the program started.
 pub(crate) fn output_was_closed() -> bool {
     CLOSED.load(Ordering::Relaxed)
 }

@@ -13,17 +13,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::interrupt::Interrupt;
 use crate::printer;
 
-/// Interval between lines without a terminal.
+/// Interval between lines if the output is not a terminal.
 const EVERY: Duration = Duration::from_secs(5);
 
 /// Time before an estimate of the total time is shown.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
-/// Minimum finished share of the work for an estimate, unless the work takes long.
+/// Share of the work that must be finished before an estimate is shown, unless the work takes long.
 const SHARE: f64 = 0.02;
 
-/// Number of finished runs from which the others are predicted; half of all runs suffices if that
-/// is less.
+/// Number of finished runs from which the time of the other runs is predicted, or half of all runs
+/// if that is fewer.
 const ENOUGH: f64 = 24.0;
 
 /// Shortest total time for which an estimate is printed.
@@ -36,11 +36,12 @@ pub(crate) struct Progress {
     interrupt: Interrupt,
 }
 
-/// A bar on a terminal, if requested; removed when dropped, also after an error.
+/// Progress bar on a terminal, if requested. The bar is removed when this value is dropped, also
+/// after an error.
 pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
 
 impl Bar {
-    /// Creates the bar if there is a terminal.
+    /// Creates the bar if the output is a terminal.
     pub(crate) fn new(show: bool, make: impl FnOnce() -> ProgressBar) -> Self {
         Self((show && std::io::stderr().is_terminal()).then(make))
     }
@@ -73,7 +74,7 @@ impl Progress {
         self.report(time, end_time, Of::One, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
-    /// Reports the number of finished things, of a total.
+    /// Reports the number of finished things and their total number.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.interrupt.reached(things, done as f64);
         self.report(done as f64, of as f64, Of::Many, || format!("{done} of {of} {things}"))
@@ -134,20 +135,22 @@ impl Progress {
     }
 }
 
-/// Kind of work, which determines when its beginning predicts the rest.
+/// Kind of work, which determines how much of the work must be finished before the remaining time
+/// is predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Of {
     /// One run, whose simulated time advances steadily.
     One,
-    /// Many runs side by side, of which the short ones end first.
+    /// Many runs side by side, the shortest of which end first.
     Many,
 }
 
 impl Of {
     /// Returns the estimated remaining time; `None` while too little is done.
     ///
-    /// Many runs are judged by their total simulated time, if that is known: the first runs to end
-    /// are those that collapse early, and possibly none has ended when all are half finished.
+    /// The progress of many runs is measured by their total simulated time, if known, rather than
+    /// by the number of finished runs: the first runs to end are those that collapse early, and
+    /// possibly no run has ended when all are half finished.
     fn to_go(
         self,
         spent: Duration,
@@ -172,9 +175,9 @@ impl Of {
 /// Returns the ratio of the remaining time to the time spent, for `open` of `all` cases; `None`
 /// before any stack is shaken.
 ///
-/// Cases are expected to end early at the rate observed so far; the first of them are expected to
-/// take 0.7 of their full time. Stacks that are still settling are expected to settle as long as
-/// the others did.
+/// Cases are expected to end early at the rate observed so far; the first cases are expected to
+/// take 0.7 of their full time. Stacks that are still settling are expected to need the settling
+/// time of the others.
 fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     let rate = (work.early + 0.75) / (work.done + 1.0);
     // Close to (1 - exp(-rate)) / rate, the mean share of a case that ends early at a constant
@@ -188,8 +191,8 @@ fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     Some((shaking + settling) / (work.shaking + work.settling))
 }
 
-/// Lines without a terminal: first an estimate of the total time, then the progress every few
-/// seconds.
+/// Lines printed if the output is not a terminal: first an estimate of the total time, then the
+/// progress every few seconds.
 pub(crate) struct Lines {
     /// State of the lines; `None` if no lines are requested.
     last: Option<Mutex<LastLine>>,
@@ -201,8 +204,8 @@ struct LastLine {
     last: Instant,
     /// `true` if the total time was printed or cannot be known.
     whole: bool,
-    /// Start of this work, or of this part of it, and the amount finished by then, because results
-    /// of an earlier run took no time now.
+    /// Time at which this work, or this part of it, started, and the amount that was finished at
+    /// that time. That amount comes from an earlier run, so it is excluded from the estimate.
     start: Option<(Instant, f64, Work)>,
     /// Amount finished at the last report, and the total.
     done: f64,
@@ -210,7 +213,7 @@ struct LastLine {
 }
 
 impl Lines {
-    /// Starts the display, which prints only if requested and only without a terminal.
+    /// Starts the display, which prints only if requested and only if the output is not a terminal.
     pub(crate) fn new(show: bool) -> Self {
         let line = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
@@ -291,8 +294,8 @@ fn rounded(time: Duration) -> String {
 mod tests {
     use super::*;
 
-    /// A run with the times (s) at which its settling, its shaking and the run itself end or begin,
-    /// and the time (s) that the shaking would take without a collapse.
+    /// Start and end times (s) of the settling and of the shaking of a run, and the time (s) that
+    /// the shaking would take without a collapse.
     struct Timed {
         first: f64,
         start: f64,
@@ -300,8 +303,9 @@ mod tests {
         whole: f64,
     }
 
-    /// Returns runs with these durations and full durations after `settling`, `width` of them side
-    /// by side, in order.
+    /// Returns runs that start in order, `width` of them side by side. Each run settles for
+    /// `settling` (s), and then takes the first of its `lengths` (s); without a collapse it would
+    /// take the second.
     fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {
@@ -313,7 +317,7 @@ mod tests {
         lengths.iter().map(run).collect()
     }
 
-    /// Returns the time (s) of the first estimate, and the total (s) that it states.
+    /// Returns the time (s) of the first estimate, and the total time (s) that the estimate states.
     fn first(runs: &[Timed], known: bool) -> Option<(f64, f64)> {
         let all = runs.iter().map(|run| run.end).fold(0.0, f64::max);
         let times = (1..).map(|tenth| 0.1 * f64::from(tenth));
@@ -339,7 +343,7 @@ mod tests {
         })
     }
 
-    /// Runs that stand take their full time, and those that collapse a part of it; time is
+    /// Runs that stand take their full time, and runs that collapse take a part of it; time is
     /// simulated, so that the test does not depend on a clock.
     #[test]
     fn first_estimates_come_after_five_seconds_and_are_within_a_factor_of_two() {

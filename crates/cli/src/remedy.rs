@@ -36,8 +36,7 @@ fn of_ground(error: &GroundError) -> Option<&'static str> {
     match error {
         GroundError::Unreadable { .. } => Some("give your file with --record FILE"),
         GroundError::Motion(MotionError::NoChannel { .. }) => Some(
-            "select a horizontal component with --set motion.component=NAME; a vertical component alone moves \
-             nothing sideways",
+            "select a horizontal component with --set motion.component=NAME; a vertical component alone does not shake the stack sideways",
         ),
         GroundError::Read(_)
         | GroundError::Motion(_)

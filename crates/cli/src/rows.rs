@@ -8,9 +8,9 @@ use barrelstack::variants::words::{course, percent};
 use barrelstack::{Run, Summary};
 use barrelstack_report::{Characters, measured};
 
-/// Width (characters) of the name of a row.
+/// Width (characters) of the column of names.
 const NAME: usize = 24;
-/// Width (characters) of the history of the drift.
+/// Width (characters) of the plot of the drift over time.
 const SPARKS: usize = 40;
 
 /// Returns the rows in reading order; `changes` are the values changed on the command line.

@@ -30,14 +30,15 @@ pub(crate) fn folder(path: &Path) -> anyhow::Result<()> {
         .with_context(|| format!("cannot create the folder {}", path.display()))
 }
 
-/// Creates a folder within the folder of results; refuses a link in its place.
+/// Creates a folder within the folder of results; a symbolic link in its place is an error.
 pub(crate) fn folder_below(root: &Path, name: &str) -> anyhow::Result<PathBuf> {
     system::folder_below(root, Path::new(name))
         .map_err(plain)
         .with_context(|| format!("cannot create the folder {}", root.join(name).display()))
 }
 
-/// Refuses a folder that is not writable, before the computation starts.
+/// Returns an error if a folder is not writable, so that this is known before the computation
+/// starts.
 pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     system::writable(folder).map_err(|reason| {
@@ -45,7 +46,7 @@ pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
     })
 }
 
-/// Converts an error of the system to an error in plain words.
+/// Converts a system error to an error in plain words.
 #[expect(clippy::needless_pass_by_value, reason = "used with map_err")]
 pub(crate) fn plain(error: std::io::Error) -> anyhow::Error {
     anyhow!(system::words(&error))

@@ -2,7 +2,8 @@
 
 use clap::ValueEnum;
 
-/// Declares the argument words for the members of a closed set, with their help.
+/// Declares, for the members of a closed set, the words that the command line accepts and their
+/// help.
 macro_rules! typed {
     (
         $(#[$about:meta])*
@@ -28,7 +29,7 @@ macro_rules! typed {
 
 pub(crate) use typed;
 
-/// Returns the argument word of a member of a closed set.
+/// Returns the command-line word for a member of a closed set.
 pub(crate) fn word(member: impl ValueEnum + Copy) -> String {
     member.to_possible_value().map_or_else(String::new, |word| word.get_name().to_owned())
 }

@@ -249,7 +249,7 @@ fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
     assert!(
-        text.contains("The computation failed, so the run says nothing about the stack."),
+        text.contains("The computation failed, so the run permits no conclusion about the stack."),
         "{text}"
     );
     assert!(text.contains("outcome                 invalid\n"), "{text}");

@@ -23,7 +23,7 @@ fn block(name: &str) -> String {
     )
 }
 
-/// Quotes a text for TOML.
+/// Quotes text for TOML.
 fn toml_text(text: &str) -> String {
     let escaped = text.chars().fold(String::new(), |mut all, c| {
         match c {

@@ -28,7 +28,7 @@ use crate::interruptible::run_interruptible;
 use crate::page::Page;
 use crate::scenario::{Scenario, report_advance, with_variants};
 
-/// Runs scenarios and compares them; unnamed scenarios are named by their differences.
+/// Runs scenarios and compares them; scenarios without a name are named by their differences.
 #[pyfunction]
 pub(crate) fn compare(
     py: Python<'_>,
@@ -99,8 +99,8 @@ pub(crate) fn heights(
     Page::of(&found.to_document(), document)
 }
 
-/// Ranks protections of a stack by benefit and cost, for the hazard of a site or at given
-/// velocities (m/s).
+/// Ranks protections of a stack by benefit and cost, for the hazard of a site or at given peak
+/// ground velocities (m/s).
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn protect(
@@ -174,12 +174,12 @@ pub(crate) fn score(
     Page::of(&sheet.to_document(), sheet.document)
 }
 
-/// A set of records: indices and factors of the selected records; mean and standard deviation of ln
-/// Sa, of the target and then of the set; number of candidates.
+/// A set of records: indices and scale factors of the selected records; mean and standard deviation
+/// of ln Sa, first of the target and then of the set; number of candidates.
 type SetFacts = (Vec<(usize, f64)>, [Vec<f64>; 4], usize);
 
-/// Selects spectra (m/s²), given at the periods (s) of a target, that together match its mean and
-/// standard deviation.
+/// Selects spectra (m/s²) that together match the mean and the standard deviation of a target. The
+/// spectra are given at the periods (s) of the target.
 ///
 /// The target is the name of a code, or medians (m/s²) and standard deviations of ln Sa. `given` is
 /// a period (s) with the pseudo-acceleration (m/s²) at that period.

@@ -29,7 +29,7 @@ fn table(name: &str, text: &str) -> PyResult<Table> {
     Table::parse(name, text).map_err(errors::general)
 }
 
-/// Parses a positive quantity to SI units.
+/// Parses a positive quantity, and converts it to SI units.
 fn positive(name: &str, text: &str, dimension: Dimension) -> PyResult<f64> {
     let value = Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value);
     let example = dimension.example();
@@ -57,7 +57,7 @@ fn parameters(fit: &[String]) -> PyResult<Vec<Parameter>> {
     Ok(found)
 }
 
-/// Fits the stiffness of a press test.
+/// Fits the stiffness to a press test.
 #[pyfunction]
 pub(crate) fn calibrate_stiffness(
     name: &str,
@@ -68,7 +68,7 @@ pub(crate) fn calibrate_stiffness(
     page(stiffness::stiffness(&table(name, text)?, nodes, interface), None)
 }
 
-/// Fits restitution and damping of drop tests.
+/// Fits restitution and damping to drop tests.
 #[pyfunction]
 pub(crate) fn calibrate_drop(
     name: &str,
@@ -89,7 +89,7 @@ pub(crate) fn calibrate_drop(
     page(drop::drop(&table(name, text)?, striker, interface), None)
 }
 
-/// Fits friction of pull or tilt tests.
+/// Fits friction to pull or tilt tests.
 #[pyfunction]
 pub(crate) fn calibrate_friction(name: &str, text: &str, interface: &str) -> PyResult<Page> {
     page(friction::friction(&table(name, text)?, interface), None)

@@ -10,13 +10,13 @@ use barrelstack_motion::{MotionError, ReadError};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Position of an error, as far as it is known.
+/// Position of an error; unknown parts are `None`.
 #[derive(Default)]
 struct Spot {
     path: Option<String>,
     line: Option<usize>,
     column: Option<usize>,
-    /// The given value, as `field=value`, if it is not in a file.
+    /// The value that contains the error, as `field=value`, if the value is not in a file.
     value: Option<String>,
 }
 
@@ -126,7 +126,7 @@ pub(crate) fn study(error: StudyError) -> PyErr {
     }
 }
 
-/// Converts the error of a study whose results support no decision or cannot be written.
+/// Converts the error of a study whose results do not permit a decision or cannot be written.
 pub(crate) fn study_result<E: ToString>(error: E) -> PyErr {
     raise("StudyError", error.to_string(), Spot::default())
 }

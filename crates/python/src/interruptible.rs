@@ -1,5 +1,5 @@
-//! Runs work without the interpreter lock, while the calling thread watches for Ctrl-C and reports
-//! progress.
+//! Runs work without the interpreter lock; meanwhile, the calling thread polls for Ctrl-C and
+//! reports progress.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-/// Interval at which signals are polled; far below the promised second.
+/// Interval at which signals are polled, so that work stops well within a second.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
 
 /// Progress and cancellation state of the work.
@@ -28,7 +28,7 @@ struct Latest {
 }
 
 impl ProgressState {
-    /// Reports progress from the work, and returns whether to continue.
+    /// Reports progress of the work; returns `Break` if the work should stop.
     pub(crate) fn report(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
         *self.latest.lock().unwrap_or_else(PoisonError::into_inner) =
             Some(Latest { done, of, what });
@@ -52,8 +52,8 @@ impl ProgressState {
 
 /// Runs work on another thread without the interpreter lock.
 ///
-/// If a signal or the `progress` callback stops the work, its exception is raised after the work
-/// has ended.
+/// If a signal or the `progress` callback stops the work, the exception of the signal or callback
+/// is raised after the work has ended.
 pub(crate) fn run_interruptible<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use crate::errors;
 use crate::scenario::bytes;
 
-/// A result with its numbers as JSON and its page.
+/// A result: its numbers as JSON, and its page.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Page {
     numbers: String,
@@ -62,13 +62,13 @@ impl Page {
     }
 }
 
-/// Returns the paper size with a name.
+/// Returns the paper size of a name.
 pub(crate) fn paper_of(name: &str) -> PyResult<Paper> {
     match name {
         "a4" => Ok(Paper::A4),
         "letter" => Ok(Paper::Letter),
         other => {
-            let said = format!("paper is \"a4\" or \"letter\", found \"{other}\"");
+            let said = format!("paper: expected \"a4\" or \"letter\", found \"{other}\"");
             Err(PyValueError::new_err(said))
         }
     }

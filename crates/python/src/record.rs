@@ -30,7 +30,7 @@ impl From<barrelstack_motion::Record> for Record {
     }
 }
 
-/// Facts of a channel: name, azimuth (degrees), whether vertical, time step (s), start time.
+/// Facts of a channel: name, azimuth (degrees), `true` if vertical, time step (s), start time.
 type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>);
 
 #[pymethods]
@@ -165,7 +165,7 @@ impl Record {
         })
     }
 
-    /// Returns the record with one component only, which may be rotated to an azimuth.
+    /// Returns a record with a single component, which may be obtained by rotation to an azimuth.
     fn component(&self, name: &str) -> PyResult<Self> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let channel = self.inner.component(&wanted).map_err(errors::motion)?;
@@ -248,8 +248,8 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Returns the matched record, its misfit, and a description of the remaining misfits; one
-    /// component is matched, or both horizontals over all directions.
+    /// Matches one component, or both horizontals over all directions; returns the matched record,
+    /// its largest misfit, and a description of the remaining misfits.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python method")]
     fn matched(
         &self,
@@ -286,8 +286,8 @@ impl Record {
         Ok((record.into(), misfit, missed_in_words(&missed)))
     }
 
-    /// Returns a measure of every component (SI units) and its unit; NaN for a component that is
-    /// too short.
+    /// Returns the value (SI units) of a measure for every component, and the unit; the value is
+    /// NaN for a component that is too short.
     fn intensity(&self, py: Python<'_>, measure: &str) -> PyResult<(Vec<f64>, &'static str)> {
         let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
         let of = |channel: &Channel| measure.of(&channel.sampled()?);
@@ -309,7 +309,7 @@ impl Record {
         Ok(values.map_err(errors::motion)?.into_pyarray(py))
     }
 
-    /// Returns the record as the bytes of a file.
+    /// Returns the bytes of a file that contains the record.
     fn written<'py>(&self, py: Python<'py>, form: &str) -> PyResult<Bound<'py, PyBytes>> {
         let text = |text: Result<String, MotionError>| text.map(String::into_bytes);
         let written = match form {
@@ -376,7 +376,8 @@ impl Record {
     }
 }
 
-/// Samples a motion as a record, at the step of its samples, or at the natural step of its formula.
+/// Samples a motion as a record, with the time step of its samples, or with the natural time step
+/// of its formula.
 pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     let step = match &motion.vertical {
         // A purely vertical motion has a horizontal component of length zero.
@@ -386,7 +387,7 @@ pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     barrelstack_motion::Record::of_motion(motion, step).map(Record::from).map_err(errors::motion)
 }
 
-/// Returns periods (s) from 0.01 to 10 s, with the given number per decade.
+/// Returns periods (s) from 0.01 to 10 s, with the given number of periods per decade.
 #[pyfunction]
 pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Numbers<'_> {
     barrelstack_motion::standard_periods(per_decade).into_pyarray(py)

@@ -1,4 +1,4 @@
-//! Runs: outcome, histories without copies, and page.
+//! Runs, with their outcomes, histories (without copies) and pages.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{Numbers, Rows, rows, view};
 
-/// Results of a scenario, in the governing plane or in the other one.
+/// Results of a scenario, in the governing plane or in the other plane.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Run {
     answer: Arc<Answer>,
@@ -64,7 +64,8 @@ impl Run {
     }
 }
 
-/// Returns the members with the given names, in their own order; all members if no names are given.
+/// Returns the members with the given names, in the order of `all`; all members if no names are
+/// given.
 fn chosen<T: Copy, const N: usize>(
     what: &str,
     names: &[String],
@@ -175,7 +176,8 @@ impl Run {
             .reshape([stresses.len(), bodies])
     }
 
-    /// Returns the contact forces of a frame: `x` (m), `z` (m), and the force (N) on the contactor.
+    /// Returns the contact forces of a frame, one row each: `x` (m), `z` (m), and the components
+    /// (N) of the force on the contactor.
     fn frame_forces<'py>(&self, py: Python<'py>, frame: usize) -> PyResult<Rows<'py>> {
         let forces =
             self.run().recording.frames.forces.get(frame).ok_or_else(|| missing("frame"))?;
@@ -195,7 +197,8 @@ impl Run {
         rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
     }
 
-    /// Returns stresses (N/m) at rest, largest until the first loss of seat, and largest over the whole run.
+    /// Returns the stresses (N/m) at rest, the largest stresses until the first loss of seat, and
+    /// the largest stresses over the whole run.
     fn envelope_stresses<'py>(
         slf: &Bound<'py, Self>,
         at: usize,
@@ -206,7 +209,8 @@ impl Run {
         Ok((numbers(&envelope.at_rest)?, peaks.0, peaks.1))
     }
 
-    /// Returns the nominal case and its variants, one row each; `None` if no variants were run.
+    /// Returns a table with one row for the nominal case and for each variant; `None` if no
+    /// variants were run.
     fn variants(&self) -> Option<Table> {
         let results = &self.shown().variants.as_ref()?.results;
         Some(Table { columns: ensemble::variants(results.iter()) })
@@ -224,7 +228,8 @@ impl Run {
         Ok(bytes(py, &made))
     }
 
-    /// Writes parts of a rendering; returns the place and the number of files of each.
+    /// Writes parts of a rendering; for each part, returns its folder or file and the number of
+    /// files.
     #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
     fn render(
         &self,

@@ -1,4 +1,4 @@
-//! Scenarios: read, changed and run.
+//! Scenarios, which can be read, changed and run.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -88,7 +88,7 @@ impl Scenario {
         settings.map(|setting| (setting.path, setting.value, setting.help)).collect()
     }
 
-    /// Returns the ground motion as a record, if there is one.
+    /// Returns the ground motion as a record; `None` if the scenario has no motion.
     fn ground(&self, py: Python<'_>) -> PyResult<Option<Record>> {
         let ground = py.detach(|| self.inner.ground()).map_err(|error| errors::ground(&error))?;
         ground.motion.as_ref().map(of_motion).transpose()
@@ -175,7 +175,7 @@ impl Scenario {
 
     /// Runs the scenario as stated in one plane, with an observer function.
     ///
-    /// The observer is called every few steps, and stops the run by returning a true value.
+    /// The observer is called every few steps; a true return value stops the run.
     fn run_before(
         &self,
         py: Python<'_>,
@@ -234,14 +234,14 @@ impl Scenario {
 fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     match variant {
         Some(number) if number > count => Err(PyValueError::new_err(format!(
-            "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as stated"
+            "there is no variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated"
         ))),
         Some(number) => Ok(RunChoice::Number(number)),
         None => Ok(RunChoice::Typical),
     }
 }
 
-/// Returns a scenario with the given number of variants, and that number.
+/// Returns a scenario that states the given number of variants, and this number.
 pub(crate) fn with_variants(
     of: &barrelstack::Scenario,
     variants: Option<u32>,
@@ -271,7 +271,7 @@ pub(crate) fn report_advance(state: &ProgressState, now: Advance) -> ControlFlow
     }
 }
 
-/// Returns names and texts of the bundled scenarios.
+/// Returns the name and the text of each bundled scenario.
 #[pyfunction]
 pub(crate) fn scenarios() -> Vec<(&'static str, &'static str)> {
     builtin::names().filter_map(|name| Some((name, builtin::get(name)?))).collect()

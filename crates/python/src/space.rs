@@ -30,7 +30,7 @@ impl SpatialRun {
         &self.answer.run.frames
     }
 
-    /// Returns the numbers of every frame and body as one array.
+    /// Returns numbers that are given per frame and body as one array.
     fn stacked<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -82,7 +82,8 @@ impl SpatialRun {
         self.stacked(py, &self.frames().twists)
     }
 
-    /// Returns the nominal case and its variants, one row each; `None` if no variants were run.
+    /// Returns a table with one row for the nominal case and for each variant; `None` if no
+    /// variants were run.
     fn variants(&self) -> Option<Table> {
         let cases = &self.answer.cases;
         if cases.is_empty() {
@@ -95,7 +96,7 @@ impl SpatialRun {
         py.detach(|| html(&document(&self.answer)))
     }
 
-    /// Writes the same files as the command, with the scenario as stated.
+    /// Writes the same files as the command, including the scenario as stated.
     fn write(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! Studies: planned, run in chunks, collected and evaluated.
+//! Studies, which can be planned, run in chunks, collected and evaluated.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -102,7 +102,7 @@ impl Study {
         done.map_err(errors::study)
     }
 
-    /// Runs one chunk, unless its shard exists; returns `true` if it was run.
+    /// Runs one chunk, unless its shard exists; returns `true` if the chunk was run.
     fn run_chunk(&self, py: Python<'_>, folder: PathBuf, chunk: usize) -> PyResult<bool> {
         let done = run_interruptible(py, None, |state| {
             self.inner.run_chunk(&folder, chunk, Width::widest(), &|| state.stopped())
@@ -120,7 +120,7 @@ impl Study {
         grounds.into_iter().filter_map(record).collect()
     }
 
-    /// Runs the study without a folder and returns its table.
+    /// Runs the study in memory, without a folder, and returns the table of its results.
     fn table(&self, py: Python<'_>) -> PyResult<Table> {
         let table = py.detach(|| self.inner.table()).map_err(errors::study)?;
         Ok(Table { columns: table.columns().to_vec() })
@@ -131,7 +131,7 @@ fn report_cases(state: &ProgressState, now: &Progress) -> ControlFlow<()> {
     state.report((now.before + now.now) as f64, now.cases as f64, "cases")
 }
 
-/// Returns names and texts of the bundled studies.
+/// Returns the name and the text of each bundled study.
 #[pyfunction]
 pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
     study::builtin_names().filter_map(|name| Some((name, study::builtin(name)?))).collect()
@@ -176,8 +176,8 @@ pub(crate) fn decision(
     Page::of(&decision.to_document(), decision.document)
 }
 
-/// Exports the curves of the study in a folder for other programs; returns name and text of each
-/// file, and a list of missing parts.
+/// Exports the curves of the study in a folder for other programs; returns the name and the text of
+/// each file, and a list of the parts that cannot be exported.
 #[pyfunction]
 pub(crate) fn export(
     py: Python<'_>,

@@ -158,7 +158,7 @@ impl Table {
             Some(Value::Text(_)) | None => f64::NAN,
         };
         if column.spec.kind == ValueKind::Text {
-            return Err(PyTypeError::new_err(format!("the column `{name}` contains texts")));
+            return Err(PyTypeError::new_err(format!("the column `{name}` contains text")));
         }
         Ok((0..column.values.len()).map(number).collect::<Vec<f64>>().into_pyarray(py))
     }
@@ -207,7 +207,7 @@ impl Table {
     }
 }
 
-/// Reads the record batches of a table of another library.
+/// Reads the record batches of a table that belongs to another library.
 fn stream(table: &Bound<'_, PyAny>) -> PyResult<RecordBatchStreamReader> {
     let capsule = table.call_method0("__arrow_c_stream__")?;
     let capsule = capsule.cast_into::<PyCapsule>()?;
@@ -370,7 +370,7 @@ impl Cases<'_> {
         Ok(Prepared { scenario: Arc::new(scenario), ground })
     }
 
-    /// Returns a hash of the topology, to separate cases that cannot run together.
+    /// Returns a hash of the topology; cases with different hashes cannot run together.
     fn kind(scenario: &barrelstack::Scenario) -> u64 {
         let Some(stack) = scenario.stack() else { return 0 };
         fnv1a(format!("{:?} {} {}", stack.view, stack.levels, stack.columns).as_bytes())

@@ -1,4 +1,4 @@
-//! NumPy arrays over numbers of the library, without copies.
+//! NumPy arrays that share the memory of numbers of the library.
 
 use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};

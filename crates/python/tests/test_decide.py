@@ -46,7 +46,7 @@ def test_a_comparison_has_the_numbers_of_the_command(command: str, tmp_path: Pat
     assert (tmp_path / "both.pdf").read_bytes().startswith(b"%PDF")
     named = compare({"high": stack, "low": stack.set("stack.levels", 2)}, variants=0)
     assert list(named.runs) == ["high", "low"]
-    with pytest.raises(barrelstack.Error, match="ask for the same run"):
+    with pytest.raises(barrelstack.Error, match="are the same run"):
         compare([stack, stack])
 
 
@@ -168,7 +168,7 @@ def test_a_run_becomes_pictures_and_a_film(command: str, tmp_path: Path) -> None
     assert Path("animation/stack.gif") in ours
     assert ours == theirs
     assert sum(written.values()) <= len(ours)
-    for wrong, words_of_it in (({"dpi": 1.0}, "dots per inch"), ({"between": (1e3, 2e3)}, "nothing to film")):
+    for wrong, words_of_it in (({"dpi": 1.0}, "dots per inch"), ({"between": (1e3, 2e3)}, "nothing to render")):
         with pytest.raises(ValueError, match=words_of_it):
             run.render(tmp_path / "wrong", **wrong)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="paraview"):

@@ -94,7 +94,7 @@ def test_columns_say_what_they_mean(table: Table) -> None:
     assert np.isnan(table.numbers("first_fall")).sum() == table["first_fall"].count(None)
     with pytest.raises(KeyError):
         table["no such"]
-    with pytest.raises(TypeError, match="contains texts"):
+    with pytest.raises(TypeError, match="contains text"):
         table.numbers("outcome")
     assert len(table) == 4
     assert barrelstack.__version__ in ("0.1.0",)

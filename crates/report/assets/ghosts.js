@@ -24,7 +24,7 @@ function drawPaths({ context, toX, toY, paint }, { paths: [xs, zs] }, [gx, gz]) 
   context.globalAlpha = 1;
 }
 
-// Draws the final positions: the darker a place, the larger the share of runs with a body there.
+// Draws the final positions: the darker a spot, the larger the share of runs with a body there.
 // The picture is drawn once per view.
 function drawEnds(pen, ghosts, shapes, at, cache) {
   const { context, width, height, view, paint } = pen;

@@ -1,7 +1,7 @@
-//! A film as an animated image file: GIF, or APNG, which is smaller and keeps its colors.
+//! A film as an animated image file: GIF, or APNG, which is smaller and preserves all colors.
 //!
-//! Each picture stores only the pixels that differ from the previous one. The palette is small; one
-//! of its indices means "unchanged".
+//! Each picture stores only the pixels that differ from the previous one. One index of the small
+//! palette means "unchanged".
 
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
@@ -24,15 +24,15 @@ const KEEP: u8 = 0;
 /// Number of pictures painted at a time, which bounds the memory use.
 const BLOCK: usize = 32;
 
-/// A film as a palette and the changes from picture to picture.
+/// A film as a palette and, for each picture, the pixels that differ from the previous picture.
 pub struct Animation {
     palette: Vec<u8>,
     pictures: Vec<Picture>,
 }
 
 impl Animation {
-    /// Paints a film with at most `largest` pixels on its longer side; `None` for a film without
-    /// pictures.
+    /// Paints a film with at most `largest` pixels on its longer side; returns `None` if the film
+    /// has no pictures.
     ///
     /// Viewers hold a picture for whole hundredths of a second, and few show more than 50 pictures
     /// per second.
@@ -64,7 +64,7 @@ impl Animation {
         Some(Self { palette: palette.bytes(), pictures })
     }
 
-    /// Encodes the film as a GIF that repeats, at the speed of the run.
+    /// Encodes the film as a GIF that repeats and plays at the speed of the run.
     pub fn gif(&self) -> Vec<u8> {
         // Writing to memory cannot fail, and every picture has the size that it states.
         self.write_gif().expect("a film in memory")
@@ -96,8 +96,8 @@ impl Animation {
         Ok(file)
     }
 
-    /// Encodes the film as an animated PNG that repeats at the speed of the run; viewers without
-    /// support for animation show the first picture.
+    /// Encodes the film as an animated PNG that repeats and plays at the speed of the run; viewers
+    /// without support for animation show the first picture.
     pub fn apng(&self) -> Vec<u8> {
         // Writing to memory cannot fail, and every picture has the size that it states.
         self.write_apng().expect("a film in memory")
@@ -134,7 +134,7 @@ impl Animation {
     }
 }
 
-/// Paints a range of pictures on all cores; returns width and RGB bytes of each.
+/// Paints a range of pictures on all cores; returns the width and the RGB bytes of each picture.
 fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8>)> {
     let numbers: Vec<usize> = numbers.collect();
     let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -167,7 +167,8 @@ fn hundredths(time: f64) -> u32 {
     whole
 }
 
-/// The rectangle that a picture changes, and the time for which the picture is shown.
+/// The rectangle of a picture that differs from the previous picture, and the time for which the
+/// picture is shown.
 struct Picture {
     corner: [usize; 2],
     size: [usize; 2],
@@ -182,8 +183,8 @@ impl Picture {
     }
 }
 
-/// Returns the smallest rectangle that contains all changes; `None` without changes, or if the
-/// sizes differ.
+/// Returns the smallest rectangle that contains all changes; `None` if there are no changes, or if
+/// the sizes differ.
 fn change(before: &[u8], now: &[u8], wide: usize) -> Option<Picture> {
     if before.len() != now.len() {
         return None;
@@ -217,9 +218,9 @@ struct Palette {
 impl Palette {
     /// Builds the palette from a sample of the pictures.
     ///
-    /// The pictures have few flat colors, and blends of these at edges. The most frequent colors
-    /// are kept exactly; further ones only if they differ visibly from those kept, because fewer
-    /// colors make a smaller file.
+    /// The pictures have a few flat colors, and blends of these colors at edges. The most frequent
+    /// colors are kept exactly. Further colors are kept only if they differ visibly from those
+    /// already kept, because fewer colors make a smaller file.
     fn of(film: &Film, scale: f64) -> Self {
         const SAMPLES: usize = 8;
         const MOST: usize = 64;
@@ -244,8 +245,8 @@ impl Palette {
         Self { colors, known: HashMap::new() }
     }
 
-    /// Returns the palette index of each pixel; if its color is not in the palette, the index of
-    /// the nearest color.
+    /// Returns the palette index of each pixel, or that of the nearest color if the color of the
+    /// pixel is not in the palette.
     fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
         let mut last = None;
         let index = |color: &[u8; 3]| match last {

@@ -13,11 +13,11 @@ use crate::{csv_field, described, escape::with_unit, shortest};
 pub enum Role {
     /// Identifies the case.
     Key,
-    /// A factor that the study varies.
+    /// A parameter that the study varies.
     Factor,
     /// The motion and its target intensity.
     Motion,
-    /// Intensity of the motion as applied.
+    /// Intensity of the scaled motion.
     Intensity,
     /// Outcome of the run.
     Outcome,
@@ -58,7 +58,7 @@ pub enum Value {
     Integer(i64),
     /// A number in SI units.
     Number(f64),
-    /// A text.
+    /// Text.
     Text(String),
 }
 
@@ -89,7 +89,7 @@ impl ColumnSpec {
     }
 }
 
-/// Converts words to the name of a column, which is the same in all formats.
+/// Converts words to the name of a column; the name is the same in all file formats.
 ///
 /// Letters, digits, `.` and `-` are kept, and every other character becomes `_`. For example,
 /// `B4.1 displacement x` becomes `B4.1_displacement_x`.
@@ -98,7 +98,7 @@ pub fn column_name(words: &str) -> String {
     words.chars().map(kept).collect()
 }
 
-/// The values of a column, one per row; `None` for a value that does not apply or does not exist.
+/// The values of a column, one per row; a value is `None` if it does not apply or does not exist.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Values {
@@ -134,7 +134,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// Returns the value in a row; `None` if it is missing.
+    /// Returns the value in a row; `None` if the value is missing.
     pub fn get(&self, row: usize) -> Option<Value> {
         match self {
             Self::Integer(values) => values.get(row).copied().flatten().map(Value::Integer),
@@ -143,7 +143,7 @@ impl Values {
         }
     }
 
-    /// Splits off the values from `row` on and returns them.
+    /// Removes the values from `row` to the end, and returns the removed values.
     #[must_use]
     pub fn split_off(&mut self, row: usize) -> Self {
         match self {
@@ -153,7 +153,7 @@ impl Values {
         }
     }
 
-    /// Appends values of the same kind.
+    /// Appends values of the same type.
     ///
     /// # Errors
     /// If the values have a different type.
@@ -163,7 +163,7 @@ impl Values {
             (Self::Number(values), Self::Number(more)) => values.extend(more),
             (Self::Text(values), Self::Text(more)) => values.extend(more),
             _ => {
-                return Err("the values have a different type than their column".to_owned());
+                return Err("the values do not have the type of the column".to_owned());
             }
         }
         Ok(())
@@ -216,7 +216,7 @@ impl Column {
 /// Writes columns of equal length as CSV: a heading line with units, then one line per row; missing
 /// values are empty.
 ///
-/// Numbers have the fewest digits from which the same bits can be read back.
+/// Numbers are written with the fewest digits that read back to the same bits.
 pub fn to_csv(columns: &[Column]) -> String {
     csv_heading(columns) + &csv_rows(columns)
 }

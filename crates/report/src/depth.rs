@@ -24,7 +24,8 @@ pub enum Volume {
         at: Point3,
         /// Direction of the axis, a unit vector.
         axis: Point3,
-        /// Position along the axis and radius (m), from end to end; the ends are closed by flat heads.
+        /// Points from one end to the other, each as the position along the axis and the radius
+        /// (m). The ends are closed by flat heads.
         profile: Vec<[f64; 2]>,
     },
     /// A round tube.
@@ -38,7 +39,7 @@ pub enum Volume {
     Block {
         /// Center (m).
         at: Point3,
-        /// Half of each side, as vectors (m).
+        /// Vectors (m) from the center to the middle of three faces.
         sides: [Point3; 3],
     },
     /// A ball.
@@ -74,7 +75,7 @@ impl Volume {
     }
 }
 
-/// Rounds a length (m) to a tenth of a millimeter, as for outlines.
+/// Rounds a length (m) to a tenth of a millimeter, which is also the precision of outlines.
 fn tenths(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
@@ -88,17 +89,17 @@ pub struct DepthBody {
     pub role: Role,
     /// Solids of the body; empty for a body that is not drawn.
     pub volumes: Vec<Volume>,
-    /// Positions (m) at which the body is drawn: a plane models one of several barrels that lie one
-    /// behind the other and move alike.
+    /// Positions (m) at which copies of the body are drawn: a barrel of a planar model stands for
+    /// several barrels that lie one behind the other and move alike.
     pub rows: Vec<Point3>,
 }
 
 /// Poses of the bodies of a scene in three dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DepthPoses {
-    /// Poses of the planar scene, whose bodies have the same indices, in the plane of x and z.
+    /// Poses of the planar scene, placed in the plane of x and z; its bodies have the same indices.
     Across,
-    /// Poses of the planar scene, in the plane of y and z.
+    /// Poses of the planar scene, placed in the plane of y and z; its bodies have the same indices.
     Along,
     /// For each frame of the planar scene, the pose of each body.
     Free(Vec<Vec<Pose3>>),
@@ -111,7 +112,7 @@ pub struct DepthTie {
     pub bodies: [usize; 2],
     /// End points of the band, each in the frame of its body (m).
     pub points: [Point3; 2],
-    /// Time (s) at which the band tears; it is not drawn after that.
+    /// Time (s) at which the band tears; a torn band is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -131,8 +132,8 @@ pub struct Depth {
 }
 
 impl Depth {
-    /// Returns the data for the page; `count` is the number of frames. A list of solids that
-    /// several bodies share is written once.
+    /// Returns the data for the page; `count` is the number of frames. If several bodies have the
+    /// same list of solids, the list is written only once.
     pub(crate) fn value(&self, count: usize) -> Value {
         let mut shapes: Vec<Value> = Vec::new();
         let mut shape = |body: &DepthBody| {
@@ -176,8 +177,8 @@ impl Depth {
         })
     }
 
-    /// Packs poses as seven channels per body; the signs of the quaternions are chosen so that they
-    /// do not jump.
+    /// Packs poses as seven channels per body; the signs of the quaternions are chosen so that the
+    /// components change continuously.
     fn packed(&self, frames: &[Vec<Pose3>], count: usize) -> Value {
         let mut channels = vec![Vec::with_capacity(count); 7 * self.bodies.len()];
         for (body, own) in channels.chunks_mut(7).enumerate() {

@@ -9,13 +9,14 @@ use serde_json::{Map, Value, json};
 
 use crate::escape::one_line;
 
-/// The schemas of the objects of a document, by name; an object may contain itself.
+/// The schemas of the objects of a document, by name; an object may contain objects of its own
+/// type.
 pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.
 pub trait Described {
-    /// Returns the schema of the type, and adds the objects to which it refers. The unit of a
-    /// number is under `unit`.
+    /// Returns the schema of the type, and adds to `objects` those to which the schema refers. The
+    /// unit of a number is stated under the key `unit`.
     fn schema(objects: &mut Objects) -> Value;
 }
 
@@ -77,8 +78,8 @@ impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
     }
 }
 
-/// Returns a document as indented JSON text without negative zeros, such as Rust's sum of no
-/// numbers.
+/// Returns a document as indented JSON text, in which negative zeros (such as the sum of an empty
+/// list in Rust) are written as zero.
 ///
 /// # Errors
 /// For maps with keys other than text.
@@ -100,11 +101,11 @@ pub fn to_json(document: &impl Serialize) -> serde_json::Result<String> {
 pub struct Field {
     /// Key of the field.
     pub key: &'static str,
-    /// Meaning, as written in the doc comment of the field.
+    /// Meaning: the doc comment of the field.
     pub meaning: &'static str,
-    /// Unit; `None` for a field without a unit.
+    /// Unit; `None` if the field has no unit.
     pub unit: Option<&'static str>,
-    /// Permitted values of a text; empty if the text is free.
+    /// Permitted values of a text field; empty if any text is permitted.
     pub words: &'static [&'static str],
     /// Serialization attribute: `flatten` merges the fields of the value into the object, `skip`
     /// omits the field.
@@ -113,8 +114,8 @@ pub struct Field {
     pub schema: fn(&mut Objects) -> Value,
 }
 
-/// Adds the schema of an object under its name, unless it is there already, and returns a reference
-/// to it.
+/// Adds the schema of an object under its name, unless this name is already present, and returns a
+/// reference to the schema.
 pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
     let reference = json!({ "$ref": format!("#/$defs/{name}") });
     if objects.contains_key(name) {
@@ -176,8 +177,8 @@ pub fn document<T: Described>(title: &str) -> Value {
 
 /// Lists every field of a document with key, unit and meaning.
 ///
-/// Fields of list items have `[]` after the key of the list; fields under free keys have `.*`. An
-/// object that contains itself is listed once.
+/// Fields of list items have `[]` after the key of the list; fields of maps with arbitrary keys
+/// have `.*` in place of the key. An object that contains objects of its own type is listed once.
 pub fn dictionary(document: &Value) -> Vec<[String; 3]> {
     let none = Objects::new();
     let mut walk = Walk {
@@ -230,9 +231,9 @@ impl<'a> Walk<'a> {
 
 /// Declares an object of a document: a struct that is serialized as JSON and has a JSON Schema.
 ///
-/// The doc comment of a field is its meaning. After the type there may follow the unit (`as "m/s"`,
-/// or `as "1"` for a ratio) and the permitted values (`["a", "b"]`). In a struct built `of` one or
-/// more arguments, the expression of the value follows last.
+/// The doc comment of a field states the meaning of the field. The type may be followed by the unit
+/// (`as "m/s"`, or `as "1"` for a ratio) and by the permitted values (`["a", "b"]`). In a struct
+/// built `of` one or more arguments, the expression of the value comes last.
 ///
 /// ```
 /// barrelstack_report::described! {

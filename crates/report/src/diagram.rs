@@ -33,8 +33,9 @@ pub struct Arrow {
     pub meaning: String,
 }
 
-/// Largest width and height (px), and the width (px) on a phone.
+/// Maximum width and height (px).
 const MOST: [f64; 2] = [620.0, 520.0];
+/// Width (px) on a phone.
 const PHONE: f64 = 358.0;
 /// Length and half width of an arrow's head (px).
 const HEAD: [f64; 2] = [8.0, 3.6];

@@ -2,7 +2,7 @@
 
 use crate::{Figure, Player, Players, Table};
 
-/// The content of a page, independent of the output format.
+/// The content of a report or page, independent of the output format.
 ///
 /// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so both show the
 /// same numbers.
@@ -16,11 +16,11 @@ pub struct Document {
     pub blocks: Vec<Block>,
     /// Provenance: pairs of name and value, shown at the end.
     pub provenance: Vec<(String, String)>,
-    /// Technical terms with their meanings; those that occur are explained in place and listed at
-    /// the end.
+    /// Technical terms with their meanings; terms that occur in the document are explained where
+    /// they occur and listed at the end.
     pub words: Vec<Word>,
-    /// Warnings that the reader must know before trusting the result; shown right after the first
-    /// player.
+    /// Warnings that the reader must know before relying on the result; shown directly after the
+    /// first player.
     pub warnings: Vec<String>,
 }
 
@@ -51,9 +51,9 @@ pub struct Verdict {
     pub command: String,
     /// Sentences that support the headline, in order.
     pub sentences: Vec<String>,
-    /// Sentences with the numbers behind the headline, folded away on screen.
+    /// Sentences with the numbers that support the headline, in a collapsed section on screen.
     pub fine: Vec<String>,
-    /// Determines the sign and the color beside the headline.
+    /// Tone of the verdict, which determines the sign and the color beside the headline.
     pub tone: Tone,
 }
 
@@ -99,23 +99,23 @@ impl Block {
         Self::Heading { level, text: text.into() }
     }
 
-    /// Creates a block that is folded away under a summary line.
+    /// Creates a block that is collapsed under a summary line.
     pub fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::Details { summary: summary.into(), blocks }
     }
 }
 
-/// Summary line of the fold that contains [`Verdict::fine`].
+/// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
 
-/// One piece of content. All text is plain: it is escaped, never interpreted.
+/// One piece of content. All text is plain text, which is escaped and never interpreted as markup.
 #[expect(
     clippy::large_enum_variant,
     reason = "a document has tens of blocks, so boxing them saves little"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {
-    /// A heading; levels outside 2 to 4 are clamped to that range, because level 1 is the verdict.
+    /// A heading; levels are clamped to the range from 2 to 4, because level 1 is the verdict.
     Heading {
         /// Level; 2 opens a section and is listed in the contents of the page.
         level: u8,
@@ -130,16 +130,16 @@ pub enum Block {
     Table(Table),
     /// A figure with its caption.
     Figure(Figure),
-    /// Moving bodies with controls; on paper and in Markdown, a strip of frames and the events.
+    /// An animated scene with controls; on paper and in Markdown, a strip of frames and the events.
     Player(Player),
     /// Several scenes side by side with one set of controls; on paper and in Markdown, a strip of
-    /// frames for each, all at the same times, and the events.
+    /// frames for each scene (at the same times for all) and the events.
     Players(Players),
-    /// Content folded away on screen and always open on paper.
+    /// Content that is collapsed on screen and always open on paper.
     Details {
         /// The line that stays visible.
         summary: String,
-        /// The folded content.
+        /// The collapsed content.
         blocks: Vec<Block>,
     },
 }

@@ -1,4 +1,4 @@
-//! A drawing: lines, shapes and texts with named styles, independent of the output format.
+//! A drawing: lines, shapes and text with named styles, independent of the output format.
 
 /// A drawing of a known size; y grows downward (px).
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub(crate) enum Item {
         center: [f64; 2],
         radius: f64,
     },
-    /// Polylines (px); `dash` precedes the dash pattern of the style.
+    /// Polylines (px); `dash` takes precedence over the dash pattern of the style.
     Path {
         class: String,
         dash: &'static str,
@@ -66,9 +66,10 @@ pub(crate) enum Item {
         scale: f64,
         drawing: Drawing,
     },
-    /// Bodies in their own units (m), for use by [`Item::Scene`].
+    /// Definitions of bodies (m), for use by [`Item::Scene`].
     Defined(Vec<Body>),
-    /// Bodies placed in a world with z up: `scale` (px/m) and the position of the origin (px).
+    /// Bodies at their positions in a world with z up, with the `scale` (px/m) and the position
+    /// (px) of the origin.
     Scene {
         scale: f64,
         origin: [f64; 2],
@@ -91,7 +92,7 @@ pub(crate) struct Placed {
     pub(crate) pose: [f64; 3],
 }
 
-/// The point of a text that is placed at its position.
+/// Horizontal alignment of text: the point of the text that lies at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -137,13 +138,13 @@ impl Drawing {
         }
     }
 
-    /// Places another drawing inside this one, at its own size.
+    /// Places another drawing inside this drawing without scaling it.
     pub(crate) fn nest(&mut self, at: [f64; 2], drawing: Self) {
         self.push(Item::Nested { at, scale: 1.0, drawing });
     }
 }
 
-/// The available width; font sizes do not depend on it.
+/// The available width; font sizes do not depend on the width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Room {
     /// A page on a desk, or on paper.
@@ -153,7 +154,7 @@ pub(crate) enum Room {
 }
 
 impl Room {
-    /// Returns the length that applies to this width.
+    /// Returns the length for this available width: `page` or `phone`.
     pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
         match self {
             Self::Page => page,
@@ -162,13 +163,14 @@ impl Room {
     }
 }
 
-/// Estimates the width (px) of a line of text at `size` px, usually slightly too large.
+/// Estimates the width (px) of a line of text of font size `size` (px); the estimate is usually
+/// slightly too large.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Breaks a text at `size` px into lines that are no wider than `width` where possible; lines break
-/// after spaces and after characters that join words.
+/// Breaks text of font size `size` (px) into lines that, if possible, are no wider than `width`; a
+/// line may break after a space or after a character that joins words.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

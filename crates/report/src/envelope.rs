@@ -1,4 +1,5 @@
-//! Normal stress along the boundary of a body: at rest, in front of the largest during the run.
+//! Normal stress along the boundary of a body: the stress at rest, drawn over the largest stress
+//! during the run.
 
 use crate::{
     Polyline,
@@ -23,7 +24,7 @@ pub struct Envelope {
     pub dynamic_stress: Vec<f64>,
     /// Unit of both stresses, such as `kPa` or `kN/m`.
     pub unit: String,
-    /// Ratio of dynamic to static stress, as defined by the caller; shown if given.
+    /// Ratio of dynamic to static stress, as defined by the caller; shown unless it is `None`.
     pub amplification: Option<f64>,
     /// Name and unit of the sample coordinate, such as `angle`, for the CSV.
     pub coordinate: (String, String),
@@ -120,8 +121,9 @@ impl Envelope {
         [sample.x + sample.nx * length, sample.z + sample.nz * length]
     }
 
-    /// Returns runs of loaded samples, each with the adjacent unloaded samples, so that its shape
-    /// closes on the boundary. On a closed boundary a run may extend across the first sample.
+    /// Returns sequences of consecutive loaded samples, each with the adjacent unloaded samples, so
+    /// that the drawn shape closes on the boundary. On a closed boundary, a sequence may extend
+    /// across the first sample.
     fn runs(&self, stresses: &[f64]) -> Vec<Vec<usize>> {
         let count = self.count();
         let loaded = |at: usize| stresses[at] > 0.0;
@@ -156,7 +158,12 @@ impl Envelope {
     /// phone.
     fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
         drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
-        drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest until a seat is lost");
+        drawing.text(
+            "label",
+            [SIDE + 33.0, 18.0],
+            Anchor::Start,
+            "largest until the first loss of seat",
+        );
         drawing.rect("static", [SIDE, 28.5], [26.0, 10.0]);
         drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "at rest");
         let (edge, top, anchor) = match room {

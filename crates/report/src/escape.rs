@@ -22,7 +22,7 @@ pub(crate) fn html(text: &str) -> String {
     out
 }
 
-/// Capitalizes the first letter of a text.
+/// Capitalizes the first letter of `words`.
 ///
 /// ```
 /// assert_eq!(barrelstack_report::capital("it stands"), "It stands");
@@ -32,7 +32,7 @@ pub fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Joins words into a list: "a, b and c".
+/// Joins words into a list, such as "a, b and c".
 pub fn listed(words: impl IntoIterator<Item = impl Into<String>>) -> String {
     let mut words: Vec<String> = words.into_iter().map(Into::into).collect();
     match (words.pop(), words.len()) {
@@ -49,7 +49,7 @@ pub(crate) fn with_unit(name: &str, unit: &str) -> String {
 
 /// Escapes JSON so that it cannot end the script element that contains it.
 ///
-/// In JSON `<` occurs only inside strings, where `\u003c` means the same.
+/// In JSON, `<` occurs only inside strings, where `\u003c` has the same meaning.
 pub(crate) fn json_in_script(json: &str) -> String {
     json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
@@ -77,8 +77,8 @@ pub(crate) fn markdown(text: &str) -> String {
 
 /// Escapes a CSV field, quoting it where necessary.
 ///
-/// Spreadsheets evaluate fields that begin with `=`, `+`, `-` or `@`. Such a field gets a leading
-/// apostrophe, which marks it as text, unless it is a number.
+/// Spreadsheets evaluate fields that begin with `=`, `+`, `-` or `@`. Unless such a field is a
+/// number, it is given a leading apostrophe, which marks it as text.
 ///
 /// ```
 /// use barrelstack_report::csv_field;
@@ -99,10 +99,10 @@ pub fn csv(text: &str) -> String {
     }
 }
 
-/// Converts a text to a name for files and anchors, with lower-case letters, digits and single
+/// Converts text to a name for files and anchors, with lower-case letters, digits and single
 /// hyphens.
 ///
-/// Letters outside ASCII are dropped; an empty result becomes `item`.
+/// Letters outside ASCII are omitted; an empty result becomes `item`.
 pub(crate) fn slug(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -116,7 +116,7 @@ pub(crate) fn slug(text: &str) -> String {
     if out.is_empty() { "item".into() } else { out.into() }
 }
 
-/// Joins a text into one line with single spaces between its words.
+/// Joins the words of a text into one line, separated by single spaces.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -11,7 +11,8 @@ use crate::{
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Short name, made safe for files and anchors; a number is appended to a repeated name.
+    /// Short name, from which names of files and anchors are derived; a number is appended to a
+    /// repeated name.
     pub id: String,
     /// Caption: what the picture shows and how to read it.
     pub caption: String,
@@ -22,7 +23,7 @@ pub struct Figure {
 /// The kinds of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureKind {
-    /// Series over a pair of axes.
+    /// Series plotted on a pair of axes.
     Plot(Plot),
     /// Several plots in rows.
     Panels(Panels),
@@ -56,8 +57,7 @@ impl Figure {
         Self { id: id.into(), caption: caption.into(), kind: picture.into() }
     }
 
-    /// Returns the picture as a standalone SVG document with a white background, text as text, and
-    /// f64 coordinates.
+    /// Returns the picture as a standalone SVG document with a white background; text remains text.
     pub fn to_svg(&self) -> String {
         self.draw(&escape::slug(&self.id)).standalone()
     }
@@ -71,8 +71,8 @@ impl Figure {
         }
     }
 
-    /// Returns the picture as a PNG on white, with a resolution of `dpi` dots per inch; its 12 px
-    /// letters are 9 points high.
+    /// Returns the picture as a PNG on white, with a resolution of `dpi` dots per inch, at which a
+    /// font size of 12 px is 9 points.
     ///
     /// Text is drawn with the bundled font, so the same figure gives the same file on every
     /// machine.
@@ -88,9 +88,9 @@ impl Figure {
 
     /// Returns the picture's data as CSV at full precision.
     ///
-    /// A plot gives one pair of `x` and `y` columns per series. Panels give their plots one below
-    /// the other, separated by an empty line. A strip gives one row per instant and body, an
-    /// envelope one row per sample, and a diagram one row per arrow.
+    /// A plot gives one pair of `x` and `y` columns per series. Panels give the columns of each
+    /// plot, one plot below the other, separated by an empty line. A strip gives one row per
+    /// instant and body, an envelope one row per sample, and a diagram one row per arrow.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
@@ -105,7 +105,8 @@ impl Figure {
         self.draw_in(id, Room::Page)
     }
 
-    /// Draws the picture for a width; a strip is the same for all widths, because its panels wrap.
+    /// Draws the picture for an available width; a strip is the same for all widths, because its
+    /// panels wrap.
     pub(crate) fn draw_in(&self, id: &str, room: Room) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),
@@ -177,7 +178,7 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
 /// Returns the files of a document in reading order.
 ///
 /// Every figure is written as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
-/// printed picture, and then every table as `table-<n>.csv`.
+/// printed picture, and every table as `table-<n>.csv`.
 pub fn attachments(document: &Document) -> Vec<Attachment> {
     let mut files = Vec::new();
     for (id, figure) in figures(document) {
@@ -194,7 +195,7 @@ pub fn attachments(document: &Document) -> Vec<Attachment> {
     files
 }
 
-/// Visits blocks in reading order, including folded ones.
+/// Visits blocks in reading order, including collapsed blocks.
 pub(crate) fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
     for block in blocks {
         visit(block);
@@ -210,7 +211,7 @@ impl Attachment {
     }
 }
 
-/// Assigns unique names, which are the same for one document in every format.
+/// Assigns unique names; the names of a document are the same in every format.
 #[derive(Default)]
 pub(crate) struct Names {
     taken: HashSet<String>,

@@ -21,10 +21,10 @@ const MOST: [f64; 2] = [900.0, 560.0];
 const HEADING: f64 = 26.0;
 
 impl Film {
-    /// Creates a film with pictures `1/rate` (s) apart, from the first frame to the last.
+    /// Creates a film whose pictures are `1/rate` (s) apart, from the first frame to the last.
     ///
-    /// Each picture shows the frame nearest to its time. If the rate exceeds that of the frames, or
-    /// is not positive, every frame is shown once.
+    /// Each picture shows the frame nearest to its time. If the rate exceeds the rate of the
+    /// frames, or is not positive, every frame is shown once.
     pub fn of_run(scene: Arc<Scene>, rate: f64) -> Self {
         let frames = sampled(&scene, rate);
         let view = View::of(&scene, &frames, MOST, true);
@@ -76,7 +76,7 @@ impl Film {
 }
 
 impl Scene {
-    /// Returns the part of the scene between two times (s): the frames in between, and all events.
+    /// Returns the scene reduced to the frames between two times (s), with all events.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let frames = &self.frames;
@@ -104,7 +104,7 @@ pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
     sampled_times(&scene.frames.times[..scene.frames.len()], rate)
 }
 
-/// Like [`sampled`], for times (s).
+/// Works like [`sampled`], on a list of times (s).
 pub(crate) fn sampled_times(times: &[f64], rate: f64) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut due = f64::NEG_INFINITY;

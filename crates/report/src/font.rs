@@ -1,7 +1,7 @@
 //! The bundled font: glyphs, their widths and their outlines.
 //!
-//! Pixel pictures and PDF files look alike on every machine, because their text is drawn with this
-//! font only. SVG refers to the fonts of the reader's system.
+//! Pixel pictures and PDF files look the same on every machine, because their text is drawn with
+//! this font only. SVG refers to the fonts of the reader's system.
 
 use std::sync::LazyLock;
 
@@ -29,7 +29,7 @@ impl Font {
         if strong { &STRONG } else { &REGULAR }
     }
 
-    /// Returns the glyphs of a text in order, each with its character and its width as a share of
+    /// Returns the glyphs of `text` in order, each with its character and its width as a share of
     /// the font size.
     ///
     /// Control characters have no glyph; a character that the font lacks is shown as a box.
@@ -51,7 +51,7 @@ impl Font {
         size * self.glyphs(text).map(|(_, _, width)| width).sum::<f64>()
     }
 
-    /// Returns the units per em of the outlines.
+    /// Returns the number of font units per em.
     pub(crate) fn units(&self) -> f64 {
         f64::from(self.face.units_per_em())
     }

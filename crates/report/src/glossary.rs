@@ -5,11 +5,11 @@ use crate::{Word, escape};
 /// Heading of the list.
 pub(crate) const TITLE: &str = "Words";
 
-/// The terms of a page, with a record of which occur in it.
+/// The terms of a page, with a record of the terms that occur on the page.
 pub(crate) struct Glossary {
     words: Vec<Word>,
-    /// For each term: whether it was marked since the last heading, and whether it was marked
-    /// anywhere.
+    /// For each term: `true` if the term was marked since the last heading, and `true` if it was
+    /// marked anywhere.
     marked: Vec<[bool; 2]>,
 }
 
@@ -18,16 +18,17 @@ impl Glossary {
         Self { words: words.to_vec(), marked: vec![[false; 2]; words.len()] }
     }
 
-    /// Begins a section, in which terms are marked again.
+    /// Begins a section, in which the first occurrence of each term is marked again.
     pub(crate) fn again(&mut self) {
         for [here, _] in &mut self.marked {
             *here = false;
         }
     }
 
-    /// Returns text as markup, with the terms marked that have not yet occurred in this section.
+    /// Returns text as markup, in which the first occurrence of each term in this section is
+    /// marked.
     ///
-    /// A mark works with pointer, touch and keyboard, and shows the meaning without scripts.
+    /// A marked term shows its meaning on pointer, touch and keyboard input, also without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;
@@ -76,12 +77,12 @@ impl Glossary {
     }
 }
 
-/// Returns the terms that occur in a text.
+/// Returns the terms that occur in `text`.
 pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Finds the first occurrence of a word in a text, as a whole word or in its plural.
+/// Finds the first occurrence of `word` or its plural, as a whole word, in `text`.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
     let letter = |c: char| c.is_alphanumeric() || c == '-';

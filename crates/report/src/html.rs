@@ -53,7 +53,7 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     assemble(&document.title, &writer.out, writer.payload, trial)
 }
 
-/// Blocks for an existing page: their markup, and the data of their players and plots.
+/// Blocks to be added to an existing page: their markup, and the data of their players and plots.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fragment {
     /// The markup.
@@ -70,7 +70,7 @@ pub fn fragment(blocks: &[Block]) -> Fragment {
     Fragment { markup: writer.out, data: writer.payload.into_json() }
 }
 
-/// Returns the headings of level 2 that are not folded away, with their anchors.
+/// Returns the headings of level 2 that are not in a collapsed section, with their anchors.
 fn sections(blocks: &[Block]) -> Vec<(String, String)> {
     let mut names = Names::default();
     let mut list = Vec::new();
@@ -99,7 +99,7 @@ pub(crate) struct Writer<'a> {
     figures: usize,
     folded: usize,
     glossary: Glossary,
-    /// `true` if players have pictures for print and for pages without scripts.
+    /// `true` if players include pictures for print and for pages without scripts.
     pub(crate) prints: bool,
 }
 
@@ -360,7 +360,7 @@ pub fn badge(tone: Tone) -> String {
     format!("<p class=\"tone\">{}<span>{}</span></p>\n", sign(tone), escape::html(tone.word()))
 }
 
-/// Returns the sign of a tone; each tone has its own shape, so that no meaning rests on color
+/// Returns the sign of a tone; each tone has its own shape, so that no meaning depends on color
 /// alone.
 pub(crate) fn sign(tone: Tone) -> &'static str {
     match tone {

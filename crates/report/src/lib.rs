@@ -1,11 +1,12 @@
 //! Documents, figures and a player for moving rigid bodies: HTML, Markdown, PDF, SVG, PNG, GIF, CSV and VTK.
 //!
-//! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance.
-//! [`html`] turns it into one page that needs no network, [`markdown`] into text with figures
-//! beside it, [`document_pdf`] into numbered pages. Every format reads the same numbers.
+//! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance. [`html`]
+//! turns a document into one page that needs no network, [`markdown`] into text with separate
+//! figures, and [`document_pdf`] into numbered pages. Every format reads the same numbers.
 //!
 //! A [`Figure`] is drawn once, as data, which is then written as SVG, pixels or PDF with one style
-//! sheet. A [`Film`] is many such drawings, an [`Animation`] one file of them.
+//! sheet. A [`Film`] is a sequence of such drawings, and an [`Animation`] is a file of a whole
+//! film.
 //!
 //! ```
 //! use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, html};
@@ -31,9 +32,9 @@
 //! # Conventions
 //!
 //! Scenes use meters, radians and seconds, with x to the right, z up and angles counterclockwise.
-//! Plots, tables and histories take numbers in the unit that their label states.
-//! A number that is not finite is a gap in a line and a dash in a table. No input panics: lists of
-//! unequal length are read to the end of the shorter one, and empty figures draw empty axes.
+//! Plots, tables and histories take numbers in the unit that their label states. A number that is
+//! not finite is a gap in a line and a dash in a table. No input panics: lists of unequal length
+//! are read to the end of the shorter list, and empty figures are drawn as empty axes.
 
 mod animation;
 pub mod column;

@@ -6,7 +6,7 @@ use crate::{
     escape, figure::Names, glossary, number,
 };
 
-/// Markdown text and the files it refers to.
+/// Markdown text, and the files to which the text refers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MarkdownBundle {
     /// The text.
@@ -153,7 +153,7 @@ impl Writer {
         self.events(events);
     }
 
-    /// Writes events with the mark of their pane, which is empty if there is only one pane.
+    /// Writes events, each with the mark of its pane, which is empty if there is only one pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {

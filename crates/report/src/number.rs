@@ -1,12 +1,12 @@
 //! Numbers as text: significant digits for readers, full precision for programs.
 
-/// Text shown in place of a number that is missing, NaN or infinite.
+/// Text that is shown in place of a number that is missing, NaN or infinite.
 pub(crate) const MISSING: &str = "–";
 
 /// Formats `value` with `digits` significant digits (at least one, at most 15).
 ///
-/// Numbers from 10⁻⁴ to below 10⁶ are written out, others as a mantissa and a power of ten. The
-/// minus sign is U+2212. A number that is not finite gives "–".
+/// Numbers from 10⁻⁴ to below 10⁶ are written without an exponent, others as a mantissa and a power
+/// of ten. The minus sign is U+2212. A number that is not finite gives "–".
 ///
 /// ```
 /// use barrelstack_report::significant;
@@ -67,7 +67,8 @@ pub fn measured(value: f64, decimals: usize) -> String {
     if fine.chars().count() < coarse.chars().count() { fine } else { coarse }
 }
 
-/// Formats `value` with a fixed number of decimals and a true minus sign; "–" if it is not finite.
+/// Formats `value` with a fixed number of decimals and a true minus sign; returns "–" if `value` is
+/// not finite.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.into();
@@ -81,7 +82,7 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// Formats a number for a CSV cell, as the shortest text that reads back to the same bits; empty if
-/// it is not finite.
+/// the number is not finite.
 pub(crate) fn csv_number(value: f64) -> String {
     if value.is_finite() { shortest(value) } else { String::new() }
 }

@@ -19,11 +19,11 @@ pub const POSE_QUANTUM: f64 = 1.0 / 16384.0;
 /// Quantum of times (s): 2⁻²⁰, about 1 µs.
 pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
 
-/// Largest multiple of the quantum that is stored; a larger one counts as missing. Second
+/// Largest multiple of the quantum that is stored; a larger value counts as missing. Second
 /// differences of such numbers are exact in double precision.
 const LIMIT: f64 = (1_u64 << 48) as f64;
 
-/// Columns up to this length are written as plain numbers with all digits.
+/// Maximum length of a column that is written as plain numbers with all digits.
 const PLAIN: usize = 512;
 
 fn quantize(value: f64, quantum: f64) -> Option<i64> {
@@ -57,8 +57,7 @@ fn pack_channel(values: impl Iterator<Item = Option<i64>>, order: u8, out: &mut 
     }
 }
 
-/// Packs channels one after the other, with the order of differences (1 or 2) that gives fewer
-/// bytes.
+/// Packs channels one after the other, as first or second differences, whichever gives fewer bytes.
 fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
     let with = |order: u8| {
         let mut bytes = Vec::new();
@@ -109,7 +108,7 @@ pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     }
 }
 
-/// Encodes bytes in base64, to embed a file in a text.
+/// Encodes bytes in base64, to embed a file in text.
 pub fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
 }
@@ -124,7 +123,7 @@ pub(crate) fn gzip_letters(bytes: &[u8]) -> String {
 /// Encodes bytes in base 85: the number of bytes, a space, and five letters for every four bytes,
 /// most significant first.
 ///
-/// The text is a sixteenth shorter than base64. The alphabet starts at `!` and omits `<`, so the
+/// The text is a sixteenth shorter than in base64. The alphabet starts at `!` and omits `<`, so the
 /// text cannot end a script element.
 pub(crate) fn letters(packed: &[u8]) -> String {
     let mut text = format!("{} ", packed.len());

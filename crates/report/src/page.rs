@@ -46,11 +46,11 @@ const DEPTH: [&str; 3] = [
     include_str!("../assets/deep.js"),
 ];
 
-/// Scripts of a report that are not part of the player.
+/// Further scripts of a report, which are not part of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
-/// The content security policy forbids every address except embedded data, and the icon is an empty
-/// data address, so a browser makes no further request.
+/// Content security policy of a page. It forbids every address except embedded data; the icon is an
+/// empty data address, so a browser makes no further request.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
 
@@ -206,8 +206,8 @@ pub(crate) fn assemble(
     out
 }
 
-/// Returns the file up to its body, with its policy, and with style sheets before and after the
-/// common one.
+/// Returns the file up to its body, with a content security policy, and with style sheets before
+/// and after the common style sheet.
 fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     let title = escape::html(title);
     let palette = palette_css();
@@ -221,11 +221,11 @@ fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     )
 }
 
-/// A page with an embedded program, with the style and the player of all pages.
+/// A page with an embedded program, which has the same style and player as all other pages.
 ///
 /// The policy of the page allows the embedded program to run, also in workers, and forbids every
-/// request. Large data are at the end, after the scripts, so that the page is usable before the
-/// file is fully loaded.
+/// request. Large data come last, after the scripts, so that the page is usable before the file is
+/// fully loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
     /// Title of the file.
@@ -234,13 +234,13 @@ pub struct Shell<'a> {
     pub style: &'a str,
     /// Body of the page, as markup.
     pub body: &'a str,
-    /// Data available to the scripts at the start, each under the id of an element.
+    /// Data that are available to the scripts at the start, each under the id of an element.
     pub at_hand: &'a [(&'a str, &'a [u8])],
     /// Script of the workers, in the element `worker`.
     pub worker: &'a str,
-    /// Scripts of the page, which can access those of the player.
+    /// Scripts of the page, which can access the scripts of the player.
     pub scripts: &'a [&'a str],
-    /// Data compressed with gzip that are loaded last, each under the id of an element.
+    /// Data that are compressed with gzip and loaded last, each under the id of an element.
     pub held: &'a [(&'a str, &'a [u8])],
 }
 
@@ -266,7 +266,7 @@ impl Shell<'_> {
     }
 }
 
-/// Wraps scripts in an element with their own scope.
+/// Wraps scripts in an element in which they have their own scope.
 fn strict(scripts: &str) -> String {
     format!("<script>\n(() => {{\n\"use strict\";\n{scripts}}})();\n</script>\n")
 }
@@ -277,15 +277,16 @@ fn hold(out: &mut String, kind: &str, id: &str, text: &str) {
     let _ = writeln!(out, "<script type=\"{kind}\" id=\"{id}\">{text}</script>");
 }
 
-/// Removes indents and comment lines from a script, which makes it a fifth shorter. The script must
-/// not contain multi-line strings.
+/// Removes indents and comment lines from a script, which makes the script a fifth shorter. The
+/// script must not contain multi-line strings.
 fn lean(script: &str) -> String {
     let lines = script.lines().map(str::trim);
     let kept = lines.filter(|line| !line.is_empty() && !line.starts_with("//"));
     kept.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Returns the palette as CSS custom properties: light, or dark on screen if the reader prefers it.
+/// Returns the palette as CSS custom properties: light colors, or dark colors on screen if the
+/// reader prefers them.
 fn palette_css() -> String {
     let list = |pick: fn(&(&str, &str, &str)) -> String| -> String {
         PALETTE.iter().map(pick).collect::<Vec<_>>().join(";")

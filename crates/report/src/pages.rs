@@ -1,4 +1,5 @@
-//! A document in pages: text, tables and figures one below the other, with numbered footers.
+//! A document divided into pages, with text, tables and figures one below the other, and numbered
+//! footers.
 
 use pdf_writer::types::StructRole;
 
@@ -40,9 +41,9 @@ impl Paper {
 /// Writes the document as a PDF, with the same text and numbers as [`html`](crate::html).
 ///
 /// Figures are vector graphics and text is selectable. The PDF has an outline of sections, the
-/// title and page number in every footer, and tags for screen readers. A player that opens the
-/// document is shown during its falls, on the first page. Content that the HTML page folds away is
-/// in an appendix.
+/// title and page number in every footer, and tags for screen readers. A player at the start of the
+/// document is represented on the first page by a picture taken during the falls. Content that is
+/// collapsed on the HTML page is in an appendix.
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
@@ -81,12 +82,12 @@ struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Top of the next block on the last page (points), from the top of the page.
+    /// Distance (points) of the next block from the top of the last page.
     y: f64,
     names: Names,
     tables: usize,
     figures: usize,
-    /// Folded content, for the appendix.
+    /// Collapsed content, for the appendix.
     folded: Vec<(&'a str, &'a [Block])>,
     tags: Tags,
     /// Index of the current structure element.
@@ -120,8 +121,8 @@ impl<'a> Flow<'a> {
         self.size[1] - MARGIN[2]
     }
 
-    /// Writes a structure element; all items drawn meanwhile belong to it, except those in nested
-    /// elements.
+    /// Writes a structure element; all items that `write` draws belong to this element, except
+    /// those in nested elements.
     fn tagged(&mut self, role: StructRole, words: Option<&str>, write: impl FnOnce(&mut Self)) {
         self.settle(Some(self.current));
         let before = self.current;
@@ -131,7 +132,7 @@ impl<'a> Flow<'a> {
         self.current = before;
     }
 
-    /// Tags all items drawn since the last call with `element`.
+    /// Assigns `element` to all items drawn since the last call.
     fn settle(&mut self, element: Option<usize>) {
         if let Some(page) = self.pages.last_mut() {
             page.tags.resize(page.drawing.items.len(), element);
@@ -146,7 +147,7 @@ impl<'a> Flow<'a> {
         self.y = MARGIN[1];
     }
 
-    /// Starts a new page unless this page has `height` left or is empty.
+    /// Starts a new page unless the current page is empty or has at least `height` left.
     fn need(&mut self, height: f64) {
         if self.y + height > self.floor() && self.y > MARGIN[1] {
             self.turn();
@@ -158,7 +159,7 @@ impl<'a> Flow<'a> {
         self.pages.last_mut().expect("a page")
     }
 
-    /// Writes a paragraph, `indent` (points) from the left margin.
+    /// Writes a paragraph at a distance of `indent` (points) from the left margin.
     fn text(&mut self, class: &'static str, indent: f64, text: &str) {
         let style = Style::of(Tag::Text, class);
         let leading = LEADING * style.font_size;
@@ -199,7 +200,7 @@ impl<'a> Flow<'a> {
         self.y += GAP - 1.5;
     }
 
-    /// Writes a heading, kept together with the first `follows` points of the following content.
+    /// Writes a heading on the same page as the first `follows` (points) of the following content.
     fn heading(&mut self, class: &'static str, text: &str, follows: f64) {
         let above = if self.y > MARGIN[1] { 6.0 } else { 0.0 };
         let height = LEADING * Style::of(Tag::Text, class).font_size;
@@ -270,7 +271,7 @@ impl<'a> Flow<'a> {
         self.paragraph("page-text", SCOPE);
     }
 
-    /// Writes the folded content, including content folded within it.
+    /// Writes the collapsed content, including nested collapsed content.
     fn appendix(&mut self) {
         if self.folded.is_empty() {
             return;
@@ -331,8 +332,8 @@ impl<'a> Flow<'a> {
         least.min(0.8 * (self.floor() - MARGIN[1]))
     }
 
-    /// Returns the drawing of a figure, its height on the page and its scale, which is as large as
-    /// the page allows but never enlarges.
+    /// Returns the drawing of a figure, its height on the page, and its scale, which is as large as
+    /// the page allows but at most 1.
     fn picture(&self, figure: &Figure, id: &str) -> (Drawing, f64, f64) {
         let drawing = figure.draw(id);
         let most = self.floor() - MARGIN[1] - 60.0;
@@ -360,8 +361,8 @@ impl<'a> Flow<'a> {
         self.y += GAP;
     }
 
-    /// Returns the picture of a player; if the player opens the document and anything falls, the
-    /// picture shows an instant during its falls.
+    /// Returns the picture of a player; if the player comes first in the document and anything
+    /// falls, the picture shows an instant during the falls.
     fn still(&self, player: &Player) -> Figure {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
         // At the second fall the first one is visible too.
@@ -400,7 +401,7 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));
     }
 
-    /// Writes the rows of a table, repeating the head on every page.
+    /// Writes the rows of a table, repeating the heading row on every page.
     fn rows(&mut self, sheet: &Sheet) {
         self.tagged(StructRole::Table, None, |flow| flow.tagged_rows(sheet));
         self.y += GAP + 2.0;
@@ -429,7 +430,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Writes a row of cells with a role; without a role the row is decoration.
+    /// Writes a row of cells with a structure role; a row without a role is tagged as decoration.
     fn row(
         &mut self,
         sheet: &Sheet,

@@ -9,16 +9,16 @@ use crate::{
     style::{Ink, Style, Tag, dashes},
 };
 
-/// A drawing target, such as pixels or the content of a page. Lengths are in px from the upper left
-/// corner, with y down.
+/// A drawing target, such as pixels or the content of a page. Coordinates are in px from the upper
+/// left corner, with y downward.
 pub(crate) trait Painter {
     /// Draws polylines; the lengths of the style are already scaled.
     fn lines(&mut self, runs: &[Vec<[f64; 2]>], closed: bool, style: &Style);
     /// Draws a circle.
     fn circle(&mut self, center: [f64; 2], radius: f64, style: &Style);
-    /// Draws a text whose baseline starts at a point.
+    /// Draws a line of text at its position.
     fn word(&mut self, word: &Word<'_>);
-    /// Clips the following items to this rectangle, in addition to the clip rectangles in force.
+    /// Clips the following items to this rectangle, in addition to the clip rectangles already set.
     fn clip(&mut self, lower: [f64; 2], size: [f64; 2]);
     /// Removes the last clip rectangle.
     fn unclip(&mut self);
@@ -42,12 +42,12 @@ pub(crate) fn paint(items: &[Item], scale: f64, painter: &mut dyn Painter) {
     walk.items(items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
 }
 
-/// Transform from the coordinates of an item to those of the picture.
+/// Transform from the coordinates of an item to the coordinates of the picture.
 #[derive(Clone, Copy)]
 struct Place {
     origin: [f64; 2],
     scale: f64,
-    /// Cosine and sine of the rotation, clockwise on the page.
+    /// Cosine and sine of the rotation angle, which is clockwise on the page.
     turn: [f64; 2],
     /// `true` if the item's second coordinate points up.
     up: bool,

@@ -22,7 +22,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Draws the plots in their rows; on a phone, all plots one below the other.
+    /// Draws the plots in their rows; on a phone, all plots are one below the other.
     pub(crate) fn draw(&self, id: &str, caption: &str, room: Room) -> Drawing {
         let drawn: Vec<Vec<Drawing>> = self
             .rows

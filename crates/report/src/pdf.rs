@@ -27,8 +27,8 @@ pub(crate) struct Page {
     pub(crate) tags: Vec<Option<usize>>,
 }
 
-/// Writes pages as a PDF with a title and the structure `tags`; `scale` is the number of points per
-/// unit of the drawings.
+/// Writes pages as a PDF with a title and the structure `tags`; one unit of the drawings is `scale`
+/// points.
 pub(crate) fn pdf(title: &str, pages: &[Page], mut tags: Tags, scale: f64) -> Vec<u8> {
     let mut file = File { pdf: Pdf::new(), last: 0, ink: Used::default() };
     let (catalog, tree, info) = (file.next(), file.next(), file.next());
@@ -67,16 +67,16 @@ struct File {
     ink: Used,
 }
 
-/// Fonts and opacities that the pages use.
+/// Fonts and opacities that occur on the pages.
 #[derive(Default)]
 struct Used {
-    /// Glyphs in use by font weight: `true` is bold.
+    /// Used glyphs of each font weight; the key is `true` for bold.
     fonts: BTreeMap<bool, Glyphs>,
-    /// Opacities in use, in percent.
+    /// Used opacities, in percent.
     opacities: BTreeSet<u8>,
 }
 
-/// Glyphs of a font by glyph number, with their characters.
+/// Used glyphs of a font, by glyph number, with their characters.
 #[derive(Default)]
 struct Glyphs {
     numbers: GlyphRemapper,
@@ -89,8 +89,8 @@ impl File {
         Ref::new(self.last)
     }
 
-    /// Writes a page and returns the structure elements painted on it, by their marked-content
-    /// identifiers.
+    /// Writes a page, and returns the structure elements on the page in the order of their
+    /// marked-content identifiers.
     fn page(
         &mut self,
         (at, page, id): (usize, &Page, Ref),
@@ -159,7 +159,7 @@ impl File {
         }
     }
 
-    /// Embeds a font, reduced to the glyphs in use.
+    /// Embeds a font, reduced to the used glyphs.
     fn font(&mut self, strong: bool, glyphs: &Glyphs) -> Ref {
         let font = Font::of(strong);
         let [id, descendant, descriptor, program, unicode] = std::array::from_fn(|_| self.next());
@@ -219,7 +219,7 @@ impl File {
         id
     }
 
-    /// Writes the outline of the sections; `None` without sections.
+    /// Writes the outline of the sections; returns `None` if there are no sections.
     fn sections(&mut self, pages: &[Page], ids: &[Ref], scale: f64) -> Option<Ref> {
         let found: Vec<(&str, Ref, f64)> = pages
             .iter()
@@ -291,7 +291,7 @@ impl Writer<'_> {
         self.content.set_parameters(Name(opacity_name(percent).as_bytes()));
     }
 
-    /// Fills and strokes the path drawn by `trace`, each with its own opacity.
+    /// Fills and strokes the path drawn by `trace`; fill and stroke have separate opacities.
     fn draw(&mut self, style: &Style, trace: &dyn Fn(&mut Self)) {
         if let Some(ink) = style.fill {
             self.opacity(ink.opacity);

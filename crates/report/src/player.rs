@@ -1,4 +1,4 @@
-//! Players: animated scenes with controls, alone or several in step.
+//! Players: animated scenes with controls, singly or several in synchrony.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::{Block, Figure, FigureKind, History, Panel, Scene, Strip, Tone, Trace
 /// An animated scene with controls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Player {
-    /// Short name, made safe for anchors and file names.
+    /// Short name, from which names of anchors and files are derived.
     pub id: String,
     /// Caption: what the scene shows and how to read it.
     pub caption: String,
@@ -19,7 +19,8 @@ pub struct Player {
 
 impl Player {
     /// Returns the printed picture of the player in a document with these blocks: a strip of six
-    /// frames, or the first frame with names if the document contains a strip of this scene anyway.
+    /// frames or, if the document already contains a strip of this scene, the first frame with the
+    /// names of the bodies.
     pub fn paper_figure(&self, blocks: &[Block]) -> Figure {
         let scene = Arc::clone(&self.scene);
         let strip =
@@ -28,10 +29,10 @@ impl Player {
     }
 }
 
-/// Several scenes side by side, in step and at one scale.
+/// Several synchronized scenes side by side, at one scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Players {
-    /// Short name, made safe for anchors and file names.
+    /// Short name, from which names of anchors and files are derived.
     pub id: String,
     /// Caption: what the scenes show and how to read them.
     pub caption: String,
@@ -39,8 +40,8 @@ pub struct Players {
     pub panes: Vec<Pane>,
     /// Histories shown in the strip below the stages, in place of the histories of the scenes.
     pub ground: Vec<History>,
-    /// Label of a switch that draws the bodies of the first scene over all others; `None` without a
-    /// switch.
+    /// Label of a switch that draws the bodies of the first scene over all other scenes; `None` if
+    /// there is no such switch.
     pub overlay: Option<String>,
 }
 
@@ -49,7 +50,7 @@ pub struct Players {
 pub struct Pane {
     /// A short mark, such as a letter, by which lists refer to the pane.
     pub mark: String,
-    /// Name of the pane, short enough for a heading above a third of the page.
+    /// Name of the pane, short enough for a heading that is a third of the page wide.
     pub name: String,
     /// Verdict of the pane in one sentence.
     pub verdict: String,

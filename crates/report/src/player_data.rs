@@ -15,8 +15,9 @@ use crate::{
 
 /// Returns the data of a single player.
 ///
-/// Poses are multiples of 2⁻¹⁴ (m and rad), times of 2⁻²⁰ s, and points of action of 2⁻¹⁰ m. Forces
-/// are multiples of a power of two that is at most 2⁻¹² of the largest component.
+/// Poses are rounded to multiples of 2⁻¹⁴ (m and rad), times to multiples of 2⁻²⁰ s, and points of
+/// action to multiples of 2⁻¹⁰ m. Forces are rounded to multiples of a power of two that is at most
+/// 2⁻¹² of the largest component.
 pub(crate) fn of_player(player: &Player, id: &str) -> Value {
     let scene = &player.scene;
     let alone = pane("", scene, &player.traces, &whole_window(scene));
@@ -39,8 +40,8 @@ fn together<'a>(
     })
 }
 
-/// Returns the index of the pane in which a player opens: the first to fall, or else the first with
-/// a moment.
+/// Returns the index of the pane that a player shows first: the first pane in which something falls
+/// or, if nothing falls, the first pane with a moment.
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
     let known = moments
@@ -55,7 +56,7 @@ fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
 /// Lead time (s) before strong ground motion at which the player starts.
 const LEAD_IN: f64 = 1.0;
 
-/// Share of the peak of a history above which the ground motion counts as strong.
+/// Fraction of the peak of a history above which the ground motion counts as strong.
 const STRONG: f64 = 0.1;
 
 /// Returns the time (s) at which a player starts: shortly before the earliest strong ground motion.
@@ -68,8 +69,8 @@ fn begins(ground: &[History]) -> Option<f64> {
     strong.reduce(f64::min).map(|time| time - LEAD_IN)
 }
 
-/// Returns the data of several panes at one scale; all windows have the size of the largest, and
-/// their bottoms are aligned.
+/// Returns the data of several panes at one scale; all windows have the size of the largest window
+/// and are aligned at the bottom.
 pub(crate) fn of_players(players: &Players, id: &str) -> Value {
     let windows: Vec<Extent> = players.panes.iter().map(|p| whole_window(&p.scene)).collect();
     let most = |size: fn(&Extent) -> f64| windows.iter().map(size).fold(0.0, f64::max);
@@ -189,7 +190,7 @@ fn history(history: &History) -> Value {
 /// Quantum of ghosts (m, rad): four millimeters, which is too little to be visible.
 const GHOST_QUANTUM: f64 = 1.0 / 256.0;
 
-/// Largest distance (m) between the drawn line of a ghost and its path.
+/// Maximum distance (m) of the drawn line of a ghost from the true path.
 const GHOST_TOLERANCE: f64 = 0.01;
 
 /// Packs paths as two channels separated by gaps, and final poses as three channels and a list of
@@ -215,11 +216,12 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     })
 }
 
-/// Quantile of the positive values at which the color scale ends, because impacts far exceed all
-/// other values.
+/// Quantile of the positive values at which the color scale ends; the values of impacts far exceed
+/// all others.
 const TINT_ENDS: f64 = 0.99;
 
-/// Packs a tint, capped at the end of its color scale, in steps of at most 1/64 of that scale.
+/// Packs a tint in steps of at most 1/64 of its color scale; values beyond the end of the scale are
+/// capped.
 fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     let value = |frame: usize, body: usize| {
         tint.values.get(frame).and_then(|list| list.get(body)).map_or(f64::NAN, |v| v.max(0.0))
@@ -242,8 +244,7 @@ fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
-/// Packs forces as four channels with a slot for each position in the longest list; missing forces
-/// are gaps.
+/// Packs forces as four channels for each position in the longest list; missing forces are gaps.
 fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
     let frames = &frames[..frames.len().min(count)];
     let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

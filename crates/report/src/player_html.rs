@@ -6,7 +6,7 @@ use crate::{
     number, player_data,
 };
 
-/// Number of events that are shown without unfolding the list.
+/// Number of events that are shown while the list is collapsed.
 const OPEN_EVENTS: usize = 4;
 
 /// Markup of the controls, with a placeholder for the stages.
@@ -71,7 +71,7 @@ impl Writer<'_> {
         self.put("</figure>\n");
     }
 
-    /// Writes events with the mark of their pane, which is empty if there is only one pane.
+    /// Writes events, each with the mark of its pane, which is empty if there is only one pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {

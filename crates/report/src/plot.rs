@@ -1,10 +1,10 @@
-//! A plot: series over a pair of axes, with marks, levels and bands.
+//! A plot: series on a pair of axes, with marks, levels and bands.
 
 use serde::Serialize;
 
 use crate::{escape, number, style::DASHES};
 
-/// A plot of series over a pair of axes.
+/// A plot of series on a pair of axes.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Plot {
     /// The horizontal axis.
@@ -19,12 +19,11 @@ pub struct Plot {
     pub levels: Vec<Mark>,
     /// Shaded intervals of x.
     pub bands: Vec<Band>,
-    /// `true` if the page draws the plot interactively, with readout and zoom. This requires that x
-    /// never decreases in any series; otherwise, as for a hysteresis loop, the plot is drawn as
-    /// SVG.
+    /// `true` if the page draws the plot interactively, with readout and zoom. If x decreases
+    /// anywhere in a series, as in a hysteresis loop, the plot is nevertheless drawn as SVG.
     pub interactive: bool,
-    /// `true` if x is the time of the run (s), so that cursor and zoom are shared with the player
-    /// and with all other such plots. Applies to interactive plots only.
+    /// `true` if x is the time of the run (s), so that the cursor and the zoom are shared with the
+    /// player and with all other plots over the time of the run. Applies to interactive plots only.
     pub timeline: bool,
 }
 
@@ -37,16 +36,16 @@ pub struct Axis {
     pub unit: String,
     /// Scale of the axis.
     pub scale: Scale,
-    /// Range shown; the range of the data if `None`, or if the range is empty, reversed or not
-    /// finite.
+    /// Range to show. If it is `None`, empty, reversed or not finite, the range of the data is
+    /// shown.
     pub range: Option<[f64; 2]>,
-    /// Category names of a vertical axis, from top to bottom, which replace the ticks. The first
-    /// name stands for the value 1, the next for 2.
+    /// Names of categories on a vertical axis, from top to bottom, which replace the ticks; empty
+    /// for an axis of numbers. Category names are numbered from 1.
     pub names: Vec<String>,
 }
 
 impl Axis {
-    /// Creates a linear axis with the range of its data.
+    /// Creates a linear axis that shows the range of the data.
     pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { label: label.into(), unit: unit.into(), ..Self::default() }
     }
@@ -69,7 +68,7 @@ impl Axis {
         -(place as f64) - 1.0
     }
 
-    /// Formats an ordinate for CSV; on an axis with names, as the nearest name.
+    /// Formats an ordinate for CSV; on an axis with names, returns the nearest name.
     fn csv_ordinate(&self, value: f64) -> String {
         let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
         match rows.map(|place| escape::csv(&self.names[place])).next() {
@@ -111,8 +110,8 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates; a value that is not finite makes a gap.
     pub y: Vec<f64>,
-    /// Lower and upper bound of each ordinate, drawn as a filled band about a line, or as a bar
-    /// through each of [`SeriesStyle::points`]. Empty if unknown.
+    /// Lower and upper bound of each ordinate, drawn as a filled band about the line or, with
+    /// [`SeriesStyle::points`], as a bar through each point. Empty if unknown.
     pub range: Vec<[f64; 2]>,
     /// Drawing style.
     pub style: SeriesStyle,
@@ -133,18 +132,18 @@ impl Series {
 #[expect(clippy::struct_excessive_bools, reason = "the options are independent")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
-    /// Index of color and dash pattern, from 0; the position in the plot if `None`. Colors repeat
-    /// after six, each time with a different dash pattern.
+    /// Index of the color and the dash pattern, from 0; if `None`, the index of the series in the
+    /// plot. Colors repeat after six, each time with a different dash pattern.
     pub index: Option<usize>,
     /// `true` to shade the area between the line and zero (or the bottom of the plot).
     pub area: bool,
     /// `true` to draw a dot at every point, for measured or sparse data.
     pub dots: bool,
-    /// `true` to draw dots without a line, for single measurements or raw fractions.
+    /// `true` to draw dots but no line, for single measurements or raw fractions.
     pub points: bool,
-    /// `true` to draw a line as thick as a bar, for intervals on an axis with names.
+    /// `true` to draw the line as a thick bar, for intervals on an axis with names.
     pub bar: bool,
-    /// `true` for a thin gray line, for context such as single motions behind their mean.
+    /// `true` to draw a thin gray line, for context such as single motions beside their mean.
     pub muted: bool,
 }
 
@@ -175,8 +174,8 @@ impl Plot {
         Self { x, y, series, marks, interactive: true, ..Self::default() }
     }
 
-    /// `true` if the page can draw the plot interactively: this was requested, x never decreases,
-    /// and there are no names or ranges.
+    /// `true` if the page can draw the plot interactively: interactivity was requested, x never
+    /// decreases, and there are no names or ranges.
     pub(crate) fn is_live(&self) -> bool {
         self.interactive
             && self.y.names.is_empty()
@@ -197,7 +196,7 @@ impl Plot {
         self.index(at) % 6
     }
 
-    /// Returns the dash pattern of a series, which differs when a color repeats.
+    /// Returns the dash pattern of a series; series of the same color have different dash patterns.
     pub(crate) fn dash(&self, at: usize) -> &'static str {
         let round = self.index(at) / 6;
         let style = &self.series[at].style;

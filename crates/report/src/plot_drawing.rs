@@ -10,21 +10,22 @@ use crate::{
 /// Width (px) on a page and on a phone.
 const WIDTH: [f64; 2] = [680.0, 358.0];
 const PLOT_HEIGHT: f64 = 230.0;
-/// Height (px) of a row of an axis with names, and the largest share of the width for the names.
+/// Height (px) of a row of an axis with names.
 const ROW: f64 = 36.0;
+/// Maximum share of the width that the names take.
 const NAMES: f64 = 0.4;
 /// Height (px) of a line of text.
 const LINE: f64 = 15.0;
 const FONT: f64 = 12.0;
-/// Height (px) of a row of notes above the plot; the rows of marks are lowest, with the bands above
-/// them.
+/// Height (px) of a row of labels above the plot; the labels of marks are in the lowest rows, and
+/// those of bands above them.
 const NOTE: f64 = 16.0;
-/// Width (px) of the line sample of a series, beside its name.
+/// Width (px) of the line sample beside the name of a series.
 const SAMPLE: f64 = 26.0;
 /// Maximum number of rows of mark labels; labels that do not fit are omitted.
 const MARK_ROWS: usize = 3;
 
-/// A range of data, and the range of pixels to which it is mapped.
+/// A range of data, and the range of pixels to which the data are mapped.
 struct Map {
     range: [f64; 2],
     pixels: [f64; 2],
@@ -56,7 +57,7 @@ struct PlacedMark<'a> {
     row: Option<usize>,
 }
 
-/// A series in the legend: position and lines of its text.
+/// A series in the legend: the position and the lines of its text.
 struct Entry {
     series: usize,
     corner: [f64; 2],
@@ -303,7 +304,7 @@ impl Plot {
         Some(Item::Path { class, dash: "", runs: bands.collect(), closed: true })
     }
 
-    /// Returns the points of a series as runs between gaps, in pixels.
+    /// Returns the points (px) of a series, divided into lines at gaps.
     fn runs(&self, at: usize, x: &Map, y: &Map) -> Runs {
         let series = &self.series[at];
         let shown = |k: &usize| self.x.shows(series.x[*k]) && self.y.shows(series.y[*k]);
@@ -374,10 +375,10 @@ fn draw_names(drawing: &mut Drawing, names: &[Vec<String>], x: &Map, y: &Map) {
 }
 
 impl Axis {
-    /// Returns the range to show: the given range if it is usable, otherwise that of the data.
+    /// Returns the range to show: the given range if it is usable, otherwise the range of the data.
     ///
-    /// Constant data get a range around their value. Without data the range is 0 to 1, or 1 to 10
-    /// on a logarithmic axis.
+    /// For constant data, the range extends to both sides of the value. If there are no data, the
+    /// range is 0 to 1, or 1 to 10 on a logarithmic axis.
     pub(crate) fn data_range<'a>(
         &self,
         columns: impl Iterator<Item = &'a [f64]>,
@@ -416,7 +417,7 @@ impl Axis {
         }
     }
 
-    /// Widens a linear range of data so that no line coincides with the frame.
+    /// Widens a linear range of data so that no line coincides with the frame of the plot.
     fn with_air(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         if self.scale == Scale::Log || self.range == Some([low, high]) {
             return [low, high];

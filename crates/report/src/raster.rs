@@ -79,7 +79,8 @@ struct Pixels {
     canvas: Pixmap,
     /// Area that may be painted; `None` for the whole picture.
     mask: Option<Mask>,
-    /// Lower and upper corners of the clip rectangles in force, each within the previous one.
+    /// Lower and upper corners of the current clip rectangles, each of which lies within the
+    /// previous one.
     clips: Vec<[f64; 4]>,
     glyphs: HashMap<(bool, u16), Option<Path>>,
 }
@@ -104,7 +105,7 @@ impl Pixels {
         }
     }
 
-    /// Rebuilds the mask from the clip rectangles.
+    /// Computes the mask from the current clip rectangles.
     fn remask(&mut self) {
         let (width, height) = (self.canvas.width(), self.canvas.height());
         self.mask = self.clips.last().and_then(|&[left, top, right, bottom]| {

@@ -46,11 +46,11 @@ impl Polyline {
     }
 }
 
-/// The role of a body, which determines its color and line style; files for ParaView number the
-/// roles in this order, from 0.
+/// The role of a body, which determines the color and the line style of the body; files for
+/// ParaView number the roles in this order, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The ground; drawn without a name, and ignored when the view follows the stack.
+    /// The ground, which is drawn without a name, and ignored when the view follows the stack.
     Ground,
     /// A barrel, drawn as wood.
     Barrel,
@@ -74,14 +74,14 @@ impl Role {
     }
 }
 
-/// A body and its drawing, in the frame of the body.
+/// A body, and its outlines and lines in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneBody {
     /// Name shown at the origin of the body.
     pub name: String,
     /// Role.
     pub role: Role,
-    /// Outlines; closed ones are filled.
+    /// Outlines; closed outlines are filled.
     pub outlines: Vec<Polyline>,
     /// Lines that make rotation visible; the first line (the bung) is strong, the others are thin.
     pub marks: Vec<Polyline>,
@@ -93,7 +93,8 @@ impl SceneBody {
         Self { name: name.into(), role, outlines, marks: Vec::new() }
     }
 
-    /// Creates a barrel viewed from its head: a circle with a strong bung mark at the top and stave marks.
+    /// Creates a barrel viewed along its axis: a circle with a strong bung mark at the top and
+    /// stave marks.
     pub fn barrel(name: impl Into<String>, radius: f64) -> Self {
         let spoke = |angle: f64, from: f64| {
             let (sin, cos) = angle.sin_cos();
@@ -128,16 +129,16 @@ pub struct ContactForce {
 
 /// Poses over time.
 ///
-/// Mismatched lengths are allowed: frames without a time are not shown, and a body without a finite
-/// pose is not drawn in that frame.
+/// The lists may differ in length: frames without a time are not shown, and a body without a finite
+/// pose in a frame is not drawn in this frame.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Frames {
     /// Times of the frames (s), not decreasing.
     pub times: Vec<f64>,
     /// For each frame, the pose of each body in the order of [`Scene::bodies`].
     pub poses: Vec<Vec<Pose2>>,
-    /// For each frame, contact forces; empty without forces. They pack best if a contact has the
-    /// same position in the list of every frame.
+    /// For each frame, contact forces; empty if there are no forces. Forces pack best if a contact
+    /// has the same position in the list of every frame.
     pub forces: Vec<Vec<ContactForce>>,
 }
 
@@ -152,7 +153,7 @@ impl Frames {
         self.len() == 0
     }
 
-    /// Returns the frame nearest to `time` (s); of two equally near frames, the earlier one.
+    /// Returns the frame nearest to `time` (s); of two equally near frames, the earlier frame.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let count = self.len();
         let times = self.times.get(..count)?;
@@ -184,7 +185,7 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    /// Returns the word shown to the reader.
+    /// Returns the word that names the kind of event for the reader.
     pub fn word(self) -> &'static str {
         match self {
             Self::Uplift => "uplift",
@@ -205,7 +206,7 @@ impl EventKind {
 pub struct Event {
     /// Time (s).
     pub time: f64,
-    /// Index in [`Scene::bodies`] of the body concerned.
+    /// Index in [`Scene::bodies`] of the body to which it applies.
     pub body: Option<usize>,
     /// Kind.
     pub kind: EventKind,
@@ -233,7 +234,7 @@ pub struct Tie {
     pub bodies: [usize; 2],
     /// End points of the line, each in the frame of its body (m).
     pub points: [Point; 2],
-    /// Time (s) at which the line tears; it is not drawn after that.
+    /// Time (s) at which the line tears; a torn line is not drawn.
     pub torn_at: Option<f64>,
 }
 
@@ -242,16 +243,16 @@ pub struct Tie {
 pub struct Moment {
     /// Time (s).
     pub time: f64,
-    /// Index in [`Scene::bodies`] of the body concerned.
+    /// Index in [`Scene::bodies`] of the body to which it applies.
     pub body: usize,
     /// Description, such as "here rack R3 leaves its seat".
     pub text: String,
-    /// `true` if something falls at that instant; of several scenes, the player opens with one that
-    /// falls.
+    /// `true` if something falls at that instant; of several scenes, the player first shows one in
+    /// which something falls.
     pub falls: bool,
 }
 
-/// A quantity of every body over the frames, by which bodies are colored on request.
+/// A quantity of every body in every frame, by which bodies are colored on request.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Tint {
     /// Name of the quantity.
@@ -271,7 +272,7 @@ pub struct Ghosts {
     pub count: usize,
     /// Paths (m) relative to the body with the role [`Role::Ground`].
     pub paths: Vec<Vec<Point>>,
-    /// Indices of bodies in [`Scene::bodies`], with their final poses relative to the same body.
+    /// Indices of bodies in [`Scene::bodies`], with their final poses relative to the ground.
     pub ends: Vec<(usize, Pose2)>,
 }
 
@@ -280,7 +281,7 @@ pub struct Ghosts {
 pub struct Scene {
     /// The bodies, drawn in this order.
     pub bodies: Vec<SceneBody>,
-    /// Lines between bodies, drawn over them.
+    /// Lines between bodies, drawn over the bodies.
     pub ties: Vec<Tie>,
     /// Poses of the bodies over time.
     pub frames: Frames,
@@ -299,7 +300,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the ends of a tie at a frame; `None` if the tie is torn or one of its bodies is not
+    /// Returns the ends of a tie in a frame; `None` if the tie is torn or one of its bodies is not
     /// drawn.
     pub(crate) fn ends(&self, tie: &Tie, frame: usize) -> Option<[Point; 2]> {
         let time = *self.frames.times.get(frame)?;
@@ -308,7 +309,7 @@ impl Scene {
         if whole { Some([end(0)?, end(1)?]) } else { None }
     }
 
-    /// Returns the name of a body; a generic name such as "body 3" if it has no entry.
+    /// Returns the name of a body, or a generic name such as "body 3" if there is no such body.
     pub fn name(&self, body: usize) -> String {
         self.bodies.get(body).map_or_else(|| format!("body {}", body + 1), |b| b.name.clone())
     }
@@ -377,7 +378,7 @@ pub(crate) fn place(pose: Pose2, point: Point) -> Point {
     [pose[0] + cos * point[0] - sin * point[1], pose[1] + sin * point[0] + cos * point[1]]
 }
 
-/// Returns the extent of a body at a frame; empty if the body is not drawn there.
+/// Returns the extent of a body in a frame; empty if the body is not drawn in this frame.
 fn body_extent(scene: &Scene, frame: usize, body: usize) -> Extent {
     let mut extent = Extent::EMPTY;
     if let (Some(drawn), Some(pose)) = (scene.bodies.get(body), scene.frames.pose(frame, body)) {
@@ -392,15 +393,15 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
     (0..scene.bodies.len()).filter(|&at| scene.bodies[at].role != Role::Ground)
 }
 
-/// Largest growth of a window to the left and the right, and upward, as shares of the larger side
-/// of the first frame. A body that topples lies within the height of the stack, and may roll on
-/// from there.
+/// Maximum growth of a window to the left and to the right, and maximum growth upward, as shares of
+/// the larger side of the first frame. A body that topples comes to lie within the height of the
+/// stack, but may roll farther.
 const REACH: [f64; 2] = [1.75, 0.15];
 
-/// Returns the window that shows the given frames: the extent of the first frame, and bodies that
-/// stay or land near it.
+/// Returns the window for the given frames, which contains the extent of the first frame and all
+/// bodies that stay or land near it.
 ///
-/// A body that moves far away leaves the picture, so that the others are not drawn small.
+/// A body that moves far away leaves the picture; otherwise all other bodies would be drawn small.
 pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
     let mut all = Extent::EMPTY;
     for body in moving(scene) {
@@ -438,7 +439,7 @@ pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
 }
 
 /// Returns hatch strokes below a line of the ground, between `from` and `to` (m) along x, in the
-/// frame of the line; `spacing` (m) is both their distance and their size.
+/// frame of the line; `spacing` (m) is both the distance between the strokes and their size.
 pub(crate) fn hatch(line: &Polyline, spacing: f64, [from, to]: [f64; 2]) -> Vec<[Point; 2]> {
     let mut strokes = Vec::new();
     let finite = [spacing, from, to].iter().all(|v| v.is_finite());

@@ -8,11 +8,12 @@ use crate::{
 
 /// Distance between columns (points).
 const GUTTER: f64 = 10.0;
-/// Distance between baselines, and the total padding above and below the lines of a row (points).
+/// Distance (points) between baselines.
 const LEADING: f64 = 11.0;
+/// Total padding (points) above and below the lines of a row.
 const AIR: f64 = 4.5;
 
-/// The cells of a table, laid out to a width.
+/// The cells of a table, laid out for a given width.
 pub(crate) struct Sheet {
     head: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -21,7 +22,8 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Lays out rows, each as long as `numeric`, in at most `width` points; `head` may be empty.
+    /// Lays out rows in at most `width` (points). Each row has as many cells as `numeric`; `head`
+    /// may be empty.
     pub(crate) fn new(
         head: Vec<String>,
         rows: Vec<Vec<String>>,
@@ -48,7 +50,7 @@ impl Sheet {
         self.rows.len()
     }
 
-    /// Returns the lines of every cell of the heading row; `None` without a heading.
+    /// Returns the lines of every cell of the heading row; `None` if there is no heading.
     pub(crate) fn head(&self) -> Option<Vec<Vec<String>>> {
         (!self.head.is_empty()).then(|| self.broken(true, &self.head))
     }
@@ -65,8 +67,8 @@ impl Sheet {
         cells.map(|(cell, width)| wrap(Font::of(bold), size, cell, width + 1e-6)).collect()
     }
 
-    /// Returns the position of the lines of a column from the left edge (points), and their
-    /// alignment.
+    /// Returns the distance (points) of the text of a column from the left edge, and the alignment
+    /// of the text.
     pub(crate) fn place(&self, column: usize) -> (f64, Anchor) {
         let left = self.widths[..column].iter().map(|width| width + GUTTER).sum::<f64>();
         if self.numeric[column] {
@@ -77,7 +79,7 @@ impl Sheet {
     }
 }
 
-/// Returns the baseline of a line of a row, from the top of the row (points).
+/// Returns the distance (points) of the baseline of a line from the top of its row.
 pub(crate) fn baseline(line: usize) -> f64 {
     0.5 * AIR + 8.5 + LEADING * line as f64
 }
@@ -97,9 +99,9 @@ fn measure(bold: bool, text: &str) -> f64 {
 
 /// Distributes `room` over columns.
 ///
-/// Columns get their preferred widths if these fit. Otherwise they get their minimum widths and a
-/// share of the rest, in proportion to what is missing. If even the minimum widths do not fit, all
-/// shrink in proportion.
+/// Columns have their preferred widths if these fit. Otherwise, each column has its minimum width
+/// plus a part of the remaining width, in proportion to the difference between its preferred and
+/// its minimum width. If even the minimum widths do not fit, all are reduced in proportion.
 fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     let sum = |widths: &[f64]| widths.iter().sum::<f64>();
     if sum(wish) <= room {
@@ -114,7 +116,7 @@ fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     wish.iter().zip(least).map(|(wish, least)| least + (wish - least) * spare).collect()
 }
 
-/// Breaks a text into lines that are no wider than `width`; a single word that is wider is split.
+/// Breaks text into lines that are no wider than `width`; a single word that is wider is split.
 pub(crate) fn wrap(font: &Font, size: f64, text: &str, width: f64) -> Vec<String> {
     let fits = |line: &str| font.width(line, size) <= width;
     let mut lines: Vec<String> = Vec::new();

@@ -1,6 +1,6 @@
 //! Simplification of polylines by omitting points that make no visible difference.
 
-/// Drops points of `run` such that the line moves by at most about `tolerance` (px).
+/// Removes points of `run`; the line moves by at most about `tolerance` (px).
 ///
 /// Long runs that advance along x are first thinned to the first, lowest, highest and last point of
 /// every half pixel, which looks the same. The Ramer–Douglas–Peucker algorithm then removes points

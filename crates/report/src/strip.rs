@@ -27,14 +27,17 @@ pub struct Panel {
     pub note: String,
 }
 
-/// Largest width and height (px) of a panel and of a single picture; width (px) of a row, and the
-/// gap between panels.
+/// Maximum width and height (px) of a panel.
 const PANEL: [f64; 2] = [165.0, 235.0];
+/// Maximum width and height (px) of a single picture.
 const STILL: [f64; 2] = [480.0, 380.0];
+/// Width (px) of a row of panels.
 const ROW: f64 = 760.0;
+/// Gap (px) between panels.
 const GAP: f64 = 12.0;
-/// Space (px) below the lowest body for the hatch of the ground, and for the caption.
+/// Space (px) below the lowest body for the hatch of the ground.
 const FOOT: f64 = 13.0;
+/// Space (px) below the hatch for the caption.
 const CAPTION: f64 = 38.0;
 /// Distance (px) between the hatch strokes of the ground.
 const HATCH: f64 = 10.0;
@@ -52,7 +55,8 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// Fits frames of a scene into at most `most` (px), horizontally and vertically.
+    /// Chooses the window and the scale so that frames of a scene fit into the width and height
+    /// `most` (px).
     pub(crate) fn of(scene: &Scene, shown: &[usize], most: [f64; 2], names: bool) -> Self {
         let extent = window(scene, shown);
         let (wide, high) = (extent.width().max(1e-6), extent.height().max(1e-6));
@@ -81,9 +85,9 @@ impl View {
 impl Strip {
     /// Creates a strip of `count` panels that summarize the run.
     ///
-    /// The panels are the first and the last frame and the most important events: falls before
-    /// losses of seat, these before other events, and earlier events before later ones. If there
-    /// are too few events, the middles of the longest gaps are added.
+    /// The panels are the first and the last frame and the most important events: falls are
+    /// preferred to losses of seat, losses of seat to all other events, and earlier events to later
+    /// events. If there are too few events, instants in the middle of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
@@ -129,7 +133,7 @@ impl Strip {
     }
 
     /// Draws the panels at equal size. Bodies are defined in the first drawing, with ids that start
-    /// with `id`, and reused by all.
+    /// with `id`, and referred to by all drawings.
     pub(crate) fn drawings(&self, id: &str) -> Vec<Drawing> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
@@ -217,7 +221,7 @@ fn name(id: &str, body: usize) -> String {
     format!("{id}-b{body}")
 }
 
-/// Returns the hatch below the part of the ground that is visible in any frame.
+/// Returns the hatch below the part of the ground that is visible in at least one frame.
 fn ground_hatch(scene: &Scene, body: usize, view: &View, shown: &[usize]) -> Item {
     let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
     let spare = view.width / view.scale;

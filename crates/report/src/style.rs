@@ -5,9 +5,10 @@ use std::sync::LazyLock;
 
 use simplecss::{AttributeOperator, Element, PseudoClass, StyleSheet};
 
-/// Colors by name: first on white (and on paper), then on the dark page.
+/// Colors by name: first the color on white (and on paper), then the color on a dark page.
 ///
-/// `s0` to `s5` are the colors of series: the Okabe–Ito set, with the text color in place of black.
+/// `s0` to `s5` are the colors of series: those of Okabe and Ito, with the text color in place of
+/// black.
 pub(crate) const PALETTE: &[(&str, &str, &str)] = &[
     ("paper", "#ffffff", "#14171b"),
     ("panel", "#f6f7f8", "#1b1f24"),
@@ -39,7 +40,7 @@ pub(crate) const DASHES: [&str; 6] = ["", "8 4", "2 3", "9 3 2 3", "14 5", "5 3"
 /// The style sheet of figures inside a page.
 pub(crate) const STYLE: &str = include_str!("../assets/figure.css");
 
-/// Additional rules for documents in print.
+/// Additional style rules for printed documents.
 const PAPER: &str = include_str!("../assets/paper.css");
 
 /// Returns the style of a standalone figure: the style sheet with the colors of white paper.
@@ -68,7 +69,7 @@ pub(crate) struct Ink {
     pub(crate) opacity: f64,
 }
 
-/// Style of a shape or a text. Lengths in px.
+/// Style of a shape or of text. Lengths are in px.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Style {
     pub(crate) fill: Option<Ink>,
@@ -88,8 +89,8 @@ pub(crate) enum Tag {
 }
 
 impl Style {
-    /// Computes the style of an element with these classes; SVG defaults apply without a matching
-    /// rule.
+    /// Computes the style of an element with these classes; if no rule matches, the defaults of SVG
+    /// apply.
     pub(crate) fn of(tag: Tag, classes: &str) -> Self {
         let mut style = Self {
             fill: Some(Ink { rgb: [0; 3], opacity: 1.0 }),
@@ -136,7 +137,7 @@ pub(crate) fn dashes(value: &str) -> Vec<f64> {
     value.split_whitespace().map(length).collect()
 }
 
-/// Parses a number, in px if it is a length.
+/// Parses a number; lengths are in px.
 fn length(value: &str) -> f64 {
     value.trim_end_matches("px").parse().unwrap_or(0.0)
 }

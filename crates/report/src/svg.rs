@@ -181,7 +181,8 @@ impl Writer {
     }
 }
 
-/// Formats a coordinate to a hundredth of a pixel without trailing zeros; zero if it is not finite.
+/// Formats a coordinate to a hundredth of a pixel without trailing zeros; a value that is not
+/// finite becomes zero.
 fn coordinate(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();
@@ -191,8 +192,8 @@ fn coordinate(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// Returns path data for runs of points: absolute starting points, then relative steps rounded to
-/// 0.05 px.
+/// Returns path data for polylines, each as an absolute starting point followed by relative steps,
+/// which are rounded to 0.05 px.
 ///
 /// Each step starts from the rounded end of the previous step, so rounding errors do not add up.
 fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {

@@ -9,7 +9,8 @@ pub struct Table {
     pub caption: String,
     /// The columns, left to right.
     pub columns: Vec<Column>,
-    /// The rows. Missing cells are filled with [`Cell::Missing`], and surplus cells are not shown.
+    /// The rows. A row that is too short is filled with [`Cell::Missing`], and surplus cells are
+    /// not shown.
     pub rows: Vec<Vec<Cell>>,
 }
 
@@ -59,7 +60,8 @@ impl Rating {
 pub enum Cell {
     /// Plain text.
     Text(String),
-    /// Text with a rating; the text must state the rating too, because the color only repeats it.
+    /// Text with a rating; the text must state the rating too, because the color only repeats the
+    /// rating.
     Rated(Rating, String),
     /// A number, and its number of significant digits; CSV keeps all digits.
     Number(f64, usize),
@@ -76,17 +78,19 @@ impl Cell {
         Self::Text(text.into())
     }
 
-    /// Creates a cell of text, or a missing cell.
+    /// Creates a cell of text; `None` gives a missing cell.
     pub fn maybe(text: Option<impl Into<String>>) -> Self {
         text.map_or(Self::Missing, Self::text)
     }
 
-    /// Creates a number with the given number of significant digits, or a missing cell.
+    /// Creates a cell with a number, shown with the given number of significant digits; `None`
+    /// gives a missing cell.
     pub fn number(value: Option<f64>, digits: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Number(value, digits))
     }
 
-    /// Creates a measured number with at most the given number of decimals, or a missing cell.
+    /// Creates a cell with a measured number, shown with at most the given number of decimals;
+    /// `None` gives a missing cell.
     pub fn measured(value: Option<f64>, decimals: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Measured(value, decimals))
     }
@@ -150,7 +154,7 @@ impl Table {
         cells.take(self.columns.len()).map(Cell::shown)
     }
 
-    /// Returns for each column whether it is numeric, that is, contains a number and no text.
+    /// Returns, for each column, `true` if the column contains numbers and no text.
     pub(crate) fn numeric(&self) -> Vec<bool> {
         let numeric = |column: usize| {
             let cells = || self.rows.iter().filter_map(|row| row.get(column));

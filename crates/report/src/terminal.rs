@@ -42,7 +42,7 @@ pub fn terminal_picture(scene: &Scene, frame: usize, characters: Characters) -> 
     dots.write(characters)
 }
 
-/// A raster of dots over a window of the scene.
+/// A raster of dots that covers a window of the scene.
 struct Dots {
     extent: Extent,
     /// Dots per meter in both directions.
@@ -129,7 +129,7 @@ fn clipped(extent: &Extent, from: Point, to: Point) -> Option<[Point; 2]> {
     (part[0] <= part[1]).then(|| part.map(at))
 }
 
-/// Returns the character of a cell of eight dots; a space if it is empty.
+/// Returns the character of a cell of eight dots; a space if no dot is set.
 fn braille(dot: impl Fn(usize, usize) -> bool) -> char {
     // Dot numbers of the Unicode standard.
     const BITS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
@@ -142,7 +142,7 @@ fn braille(dot: impl Fn(usize, usize) -> bool) -> char {
     if code == 0 { ' ' } else { char::from_u32(0x2800 + code).unwrap_or(' ') }
 }
 
-/// Returns the ASCII character that resembles a cell most.
+/// Returns the ASCII character that most resembles a cell.
 fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
     let count = |rows: [usize; 2]| {
         let dots = rows.iter().flat_map(|y| [dot(0, *y), dot(1, *y)]);
@@ -160,7 +160,7 @@ fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
 /// Draws a history as `columns` characters, each showing the largest value of its interval as a
 /// share of `highest`.
 ///
-/// Values that are not finite count as zero; without values the result is empty.
+/// Values that are not finite count as zero; if there are no values, the result is empty.
 pub fn sparkline(values: &[f64], highest: f64, columns: usize, characters: Characters) -> String {
     let marks: [char; 8] = match characters {
         Characters::Unicode => ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'],

@@ -7,11 +7,11 @@ use crate::number;
 pub struct Ticks {
     /// Positions of the ticks.
     pub values: Vec<f64>,
-    /// Labels of the ticks; an empty text is a tick without a label.
+    /// Labels of the ticks; the label of an unlabeled tick is empty.
     pub labels: Vec<String>,
 }
 
-/// Returns linear ticks inside `[low, high]`, at most about `target` of them.
+/// Returns about `target` linear ticks at most, inside `[low, high]`.
 ///
 /// The step is the smallest of 1, 2, 5 × 10ⁿ that gives no more than `target` intervals.
 /// An empty, reversed or infinite range gives no ticks.
@@ -76,8 +76,8 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
 
 /// Returns logarithmic ticks inside `[low, high]`, both above zero.
 ///
-/// Ticks are at 1, 2, 5 × 10ⁿ. All are labeled up to three decades, and only powers of ten beyond
-/// that. Invalid ranges give no ticks.
+/// Ticks are at 1, 2, 5 × 10ⁿ. In a range of up to three decades, all ticks are labeled; in a wider
+/// range, only powers of ten are labeled. Invalid ranges give no ticks.
 pub fn log_ticks(low: f64, high: f64) -> Ticks {
     let mut ticks = Ticks { values: Vec::new(), labels: Vec::new() };
     if !(low > 0.0 && high > low && high.is_finite()) {

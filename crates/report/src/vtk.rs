@@ -13,17 +13,17 @@ use crate::{
     scene::{Point, Pose2, place, window},
 };
 
-/// Returns the files of a scene for ParaView, to be written into a folder of their own.
+/// Returns the files of a scene for ParaView, to be written into a separate folder.
 ///
 /// `stack.pvd` is the file to open. There are a `bodies-*.vtp` and a `forces-*.vtp` for each time,
 /// and `bodies.csv` lists the names of the bodies by number.
 ///
-/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film).
-/// The plane of the scene is y = 0, z up, lengths in m.
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film). The plane of the scene is y = 0, z
+/// is up, and lengths are in m.
 ///
 /// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
-///   (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
-///   carry `displacement` (m) from the first frame. A body without a finite pose is left out.
+/// (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
+/// carry `displacement` (m) from the first frame. Bodies without a finite pose are left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
@@ -59,7 +59,8 @@ fn opened_index() -> String {
         .to_owned()
 }
 
-/// Adds the file of a time (s) to the index; a time with several parts has a file for each.
+/// Adds the file of a time (s) to the index; if a time has several parts, each part has its own
+/// file.
 fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
     // Writing to a String cannot fail, here and below.
     let _ = writeln!(
@@ -180,8 +181,8 @@ fn forces(scene: &Scene, frame: usize) -> String {
     poly_data("", &piece)
 }
 
-/// Returns the start of a piece up to its vector data, given the numbers of points, vertices, lines
-/// and polygons.
+/// Returns the start of a piece, up to its vector data, for the given numbers of points, vertices,
+/// lines and polygons.
 fn piece(points: usize, [vertices, lines, polygons]: [usize; 3], vectors: &str) -> String {
     format!(
         "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"{vertices}\" NumberOfLines=\"{lines}\" \

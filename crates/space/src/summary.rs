@@ -101,7 +101,7 @@ described! {
         pub from_level: Option<u32>,
         /// Highest of the levels that collapse.
         pub to_level: Option<u32>,
-        /// Time at which the first barrel counted as fallen.
+        /// Time at which the first barrel counts as fallen.
         pub first_fall: Option<f64> as "s",
         /// Number of barrels that had fallen at the end; null where the run is invalid or was interrupted.
         pub barrels_fallen: Option<usize>,
@@ -128,7 +128,7 @@ described! {
         pub left_seat_at: Option<f64> as "s",
         /// Direction in which the body left its seat.
         pub left_seat_to: Option<&'static str> ["right", "left", "away", "near"],
-        /// Time at which the body counted as fallen.
+        /// Time at which the body counts as fallen.
         pub fell_at: Option<f64> as "s",
         /// Largest drop below the position at rest.
         pub drop: f64 as "m",

@@ -1,4 +1,5 @@
-//! Results of variants as transferred between engines: the data that a verdict needs, bit-exact.
+//! Results of variants as engines exchange them, reduced to the data that a verdict needs, and
+//! bit-exact.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -10,11 +11,11 @@ use serde::{Deserialize, Serialize};
 pub struct Case {
     /// Outcome of the variant.
     outcome: Ended,
-    /// Time (s) at which the first barrel has fallen.
+    /// Time (s) at which the first barrel counts as fallen.
     first_fall: Option<f64>,
     /// Number of barrels.
     barrels: usize,
-    /// Time (s) at which each barrel has fallen, by name.
+    /// Time (s) at which each barrel counts as fallen, by name.
     falls: Vec<(String, Option<f64>)>,
     /// Largest displacement of the top relative to the ground, as a share of the height of the
     /// stack.
@@ -23,13 +24,13 @@ pub struct Case {
     stave_utilization: Option<f64>,
     /// The first warning.
     warning: Option<String>,
-    /// Remaining time (s) of the motion at the end.
+    /// Time (s) for which the motion continues after the end of the run.
     cut: Option<f64>,
     /// End time (s).
     end_time: Option<f64>,
 }
 
-/// An outcome, or the reason why there is none.
+/// An outcome, or the reason why the variant has no outcome.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 enum Ended {

@@ -7,12 +7,12 @@ use barrelstack::scenario::MotionSource;
 use barrelstack::variants::planes;
 use serde::Serialize;
 
-/// The devices on a stack, and those that could be added.
+/// The devices on a stack, and devices that could be added.
 #[derive(Serialize)]
 pub(crate) struct Devices {
     /// Names of the devices on the stack, with their tables in `[stack]`.
     present: Vec<Known>,
-    /// Applicable settings of the devices that the stack does not have.
+    /// Settings of devices that the stack does not have but that could be added.
     candidates: Vec<Candidate>,
 }
 
@@ -33,8 +33,8 @@ struct Candidate {
 }
 
 impl Devices {
-    /// Lists the devices of a scenario; each candidate setting is checked at rest, without the
-    /// motion.
+    /// Lists the devices of a scenario; each candidate setting is checked on the stack at rest,
+    /// without the motion.
     pub(crate) fn of(scenario: &Scenario) -> Self {
         let mut still = scenario.clone();
         still.motion.source = MotionSource::None;

@@ -1,7 +1,7 @@
 //! The engine of a page: handles a request and returns a document.
 //!
-//! A request is four bytes (the length of the following object, little-endian), a JSON object, and the bytes of its
-//! records, one after the other:
+//! A request consists of four bytes (the length of the following object, little-endian), a JSON
+//! object, and the bytes of the records, one after the other:
 //!
 //! ```text
 //! { "ask": "summary", "scenario": "schema = 1 …", "name": "mine.toml", "set": ["stack.levels=5"],
@@ -9,25 +9,28 @@
 //! ```
 //!
 //! The answer equals the output of the command for the same scenario, byte for byte except for
-//! computation times. Nothing is opened, requested from the system, or sent.
-//! The interface to a page is [four functions and one import](https://webassembly.github.io/spec/core/), written by
-//! hand, so that no glue code is generated:
+//! computation times. The engine opens no files, makes no system calls, and sends nothing. The
+//! interface to a page is [four functions and one
+//! import](https://webassembly.github.io/spec/core/), written by hand, so that no glue code is
+//! generated:
 //!
 //! | export | purpose |
 //! |---|---|
 //! | `room(length) -> address` | allocates a request, which the page then writes there |
-//! | `run() -> status` | handles the request: 0 done, 1 refused, with the reason in the answer |
+//! | `run() -> status` | handles the request; 0 if done, 1 if refused (the answer then states the reason) |
 //! | `answer() -> address` | address of the answer, until the next call of `room` |
-//! | `answer_length() -> length` | its length in bytes |
+//! | `answer_length() -> length` | length of the answer in bytes |
 //!
 //! | import | purpose |
 //! |---|---|
 //! | `page.progress(done, of) -> stop` | progress callback; any result but 0 stops the work |
 //!
-//! A panic is a trap, after which `answer` returns its text.
+//! A panic ends in a trap, after which `answer` returns the message of the panic.
 //!
-//! The variants of a stack may be shared among several engines: each runs some of them
-//! ([`RequestKind::Variants`]), and one combines all results so far ([`RequestKind::Verdict`]), bit-identical to a single engine that runs them all.
+//! The variants of a stack may be shared among several engines: each engine runs some of them
+//! ([`RequestKind::Variants`]), and one engine combines all results obtained so far
+//! ([`RequestKind::Verdict`]). The combined results are bit-identical to those of a single engine
+//! that runs all variants.
 
 mod cases;
 mod devices;
@@ -69,24 +72,25 @@ pub enum RequestKind {
     /// the scenario, as JSON.
     Devices,
     /// The given record files, grouped into motions, and the files that contain no motion, as JSON;
-    /// then the bytes of motions combined from several files. Needs no scenario.
+    /// then the bytes of motions that are combined from several files. The request needs no
+    /// scenario.
     Records,
-    /// A variant in motion, as JSON; the first of the numbers selects the variant, and 0 is the
+    /// The motion of a variant, as JSON; the first of the numbers selects the variant, and 0 is the
     /// stack as stated.
     Show,
     /// The results of the numbered variants in each plane, as JSON; then the trails of their
     /// barrels as bytes, for a report.
     Variants,
-    /// The verdict on given results, as JSON: on variants by number, of which the first is 0, with
-    /// their results in each plane.
+    /// The verdict on given results, as JSON. The request contains the numbers of the variants, of
+    /// which the first is 0, and their results in each plane.
     Verdict,
     /// The summary of a run and its variants, as JSON.
     Summary,
     /// The report of a run and its variants, as a page.
     Report,
     /// All files that the command writes for a run and its variants, including the report, in the
-    /// form of a request whose head lists their names and lengths. If the results of all variants
-    /// are given, none is run again.
+    /// form of a request whose head lists the names and lengths of the files. If the results of all
+    /// variants are given, no variant is run again.
     Files,
 }
 
@@ -112,7 +116,7 @@ pub struct Request {
     /// Numbers of variants.
     #[serde(default)]
     pub numbers: Vec<u32>,
-    /// Results of these variants, in each plane.
+    /// Results of the variants `numbers`, in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
     /// Length in bytes of the trails of the barrels, which follow the records.
@@ -124,7 +128,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// Creates a request for a scenario by its text.
+    /// Creates a request for a scenario given as text.
     pub fn of(kind: RequestKind, scenario: &str) -> Self {
         Self { kind, scenario: scenario.to_owned(), ..Self::default() }
     }
@@ -136,7 +140,7 @@ impl Request {
     }
 }
 
-/// Encodes the length of a head, the head, and the rest.
+/// Encodes the length of a head, followed by the head and by further bytes.
 fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
     let length = u32::try_from(head.len()).unwrap_or(u32::MAX);
     [&length.to_le_bytes(), head, &rest.concat()].concat()
@@ -159,7 +163,7 @@ fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
 /// ```
 ///
 /// # Errors
-/// A message if the request cannot be read, the scenario is invalid, or it cannot be run.
+/// A message if the request cannot be read, or if the scenario is invalid or cannot be run.
 pub fn answered(
     request: &[u8],
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
@@ -230,8 +234,8 @@ pub fn answered(
     }
 }
 
-/// Runs some variants in each plane; returns their results, and the trails of their barrels as
-/// bytes.
+/// Runs some of the variants in each plane; returns their results, and the trails of their barrels
+/// as bytes.
 fn some(
     planes: &[Plane],
     numbers: &[u32],
@@ -253,13 +257,13 @@ fn some(
     Ok(enveloped(&json(&cases)?, &[&trails::written(trails)]))
 }
 
-/// A variant in motion.
+/// The motion of a variant.
 #[derive(Serialize)]
 struct Shown<'a> {
     variant: u32,
     /// The result in sentences.
     sentences: Vec<String>,
-    /// Outcomes of the planes, the governing one first.
+    /// Outcomes of the planes, the governing plane first.
     outcomes: Vec<&'a barrelstack::summary::OutcomeSummary>,
     warnings: &'a [String],
     stage: Fragment,
@@ -287,7 +291,7 @@ fn words_of(error: impl Display) -> String {
     error.to_string()
 }
 
-/// Formats an error of a run, with the position in the scenario that it concerns.
+/// Formats an error of a run, with the position of the error in the scenario.
 fn placed(error: &RunFailure, scenario: &Scenario) -> String {
     match scenario.place_of(&error.fields()) {
         Some(place) => format!("{place}: {error}"),
@@ -298,7 +302,7 @@ fn placed(error: &RunFailure, scenario: &Scenario) -> String {
 /// A decoded request with its attached data.
 struct Opened<'a> {
     request: Request,
-    /// Record bytes by path.
+    /// The bytes of each record, by path.
     records: BTreeMap<String, &'a [u8]>,
     trails: &'a [u8],
 }
@@ -318,7 +322,7 @@ fn read(bytes: &[u8]) -> Result<Opened<'_>, String> {
     }
     let (trails, rest) = rest.split_at_checked(request.trails).ok_or_else(|| cut("its trails"))?;
     if !rest.is_empty() {
-        return Err(format!("the request has {} bytes more than it says", rest.len()));
+        return Err(format!("the request has {} bytes more than its head states", rest.len()));
     }
     Ok(Opened { request, records, trails })
 }

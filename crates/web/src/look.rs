@@ -1,4 +1,4 @@
-//! A scenario as resolved before a run, and the catalog.
+//! A resolved scenario before a run, and the catalog.
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
@@ -34,7 +34,7 @@ impl Catalog {
     }
 }
 
-/// A scenario as resolved before a run.
+/// A resolved scenario before a run.
 #[derive(Serialize)]
 pub(crate) struct Looked {
     title: String,
@@ -48,16 +48,16 @@ pub(crate) struct Looked {
     checked: Vec<Checked>,
     /// Names of the devices on the stack.
     devices: Vec<&'static str>,
-    /// Number of steps of one variant in all planes, times the number of moving bodies; used to
-    /// estimate the duration.
+    /// Number of steps of one variant in all planes multiplied by the number of moving bodies; used
+    /// to estimate the computation time.
     work: f64,
     /// End (s) of the opening, which shows the stack in motion while the whole run is computed;
-    /// `None` without ground motion.
+    /// `None` if there is no ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }
 
-/// Adds the fields that the present tables leave out.
+/// Adds the fields that the tables in the scenario leave out.
 fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'static Section) {
     for field in section.fields {
         let path =
@@ -81,9 +81,9 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
     }
 }
 
-/// Share of the peak above which ground motion counts as strong, as in a player, and duration (s)
-/// of the opening from then on.
+/// Fraction of the peak acceleration above which ground motion counts as strong, as in a player.
 const STRONG: f64 = 0.1;
+/// Duration (s) of the opening from the start of the strong ground motion.
 const IN_PROGRESS: f64 = 3.0;
 
 /// Returns the time (s) at which the opening of a motion ends.

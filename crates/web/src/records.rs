@@ -1,4 +1,5 @@
-//! Record files given together: grouped into motions, and files that contain no motion.
+//! Groups record files that are given together into motions, and lists files that contain no
+//! motion.
 
 use std::collections::BTreeMap;
 
@@ -27,17 +28,17 @@ pub(crate) struct Files {
     refused: Vec<Refused>,
 }
 
-/// A motion from one file or several.
+/// A motion from one or several files.
 #[derive(Serialize)]
 pub(crate) struct Motion {
     /// File name for the motion.
     name: String,
-    /// Source files of the motion.
+    /// Files from which the motion was read.
     files: Vec<String>,
     /// Description of each channel.
     channels: Vec<String>,
-    /// Number of bytes that follow, for one file with all channels; 0 if the motion is a single
-    /// file as given.
+    /// Number of bytes, in the data that follow, of a file with all channels; 0 if the motion is
+    /// one of the given files.
     length: usize,
 }
 
@@ -92,7 +93,7 @@ fn station(bytes: &[u8]) -> Option<Vec<Instrument>> {
 
 /// Groups records into motions.
 ///
-/// Records form one motion if they are compatible and have together at most as many components as
+/// Records form one motion if they are compatible and together have at most as many components as
 /// one record. Otherwise they are grouped by file name, as in a folder, and files that do not fit
 /// together stay separate.
 fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
@@ -118,8 +119,8 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 }
 
 impl Motion {
-    /// Combines the files of one record. If `described`, the data of station files are included, so
-    /// that even a single file is rewritten.
+    /// Combines the files of one record. If `described` is set, data of station files are included,
+    /// so that even a single file is rewritten.
     fn of(records: &[Record], described: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {

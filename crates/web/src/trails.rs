@@ -1,14 +1,14 @@
-//! Trails of the barrels of variants, as transferred between engines for a report.
+//! Trails of the barrels of variants, encoded so that engines can exchange them for a report.
 
 use std::collections::BTreeMap;
 
 use barrelstack::ensemble::Trail;
 
-/// Trails by index of the plane and number of the variant.
+/// Trails, by the index of the plane and the number of the variant.
 pub(crate) type Trails = BTreeMap<(u32, u32), Trail>;
 
-/// Encodes trails: numbers and lengths in four bytes, positions in single precision, all
-/// little-endian.
+/// Encodes trails in little-endian form: numbers and lengths in four bytes, positions in single
+/// precision.
 pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trail)>) -> Vec<u8> {
     let mut out = Vec::new();
     let number = |number: usize, out: &mut Vec<u8>| {

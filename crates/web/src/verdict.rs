@@ -13,7 +13,7 @@ use crate::{Case, Request, trails};
 pub(crate) struct Verdict {
     /// Verdict in one sentence.
     headline: String,
-    /// Markup of the sign and the word, and the class of the color.
+    /// Markup of the sign and the word of the verdict.
     badge: String,
     tone: &'static str,
     /// Verdict in each plane.
@@ -59,7 +59,7 @@ fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, Str
     let whole = cases.iter().all(|plane| plane.len() == numbers.len());
     if cases.len() != planes.len() || !whole || numbers.first() != Some(&0) {
         return Err(format!(
-            "a verdict needs a result for each of its numbers, the first of which is 0, in each of {} planes",
+            "a verdict needs, in each of {} planes, a result for each of its numbers, the first of which is 0",
             planes.len()
         ));
     }
@@ -76,7 +76,7 @@ pub(crate) fn results(
     let mut trails = trails::read(trails).ok_or("the request ends within its trails")?;
     if request.numbers != all {
         return Err(format!(
-            "a report needs the results of all {} variants, but has those of {}",
+            "a report needs the results of all {} variants, but the request has the results of only {}",
             all.len().saturating_sub(1),
             request.numbers.len().saturating_sub(1)
         ));

@@ -64,7 +64,10 @@ fn shares_in_any_order_have_the_spread_of_all() {
     assert!(cut.contains("ends within its trails"), "{cut}");
     let fewer = Request { numbers: vec![0, 1], trails: 0, cases: Vec::new(), ..files };
     let fewer = bytes_of(&fewer, &[]).unwrap_err();
-    assert!(fewer.contains("the results of all 6 variants, but has those of 1"), "{fewer}");
+    assert!(
+        fewer.contains("the results of all 6 variants, but the request has the results of only 1"),
+        "{fewer}"
+    );
     let verdict = answer_to(&verdict).unwrap();
     let summary = answer_to(&request(RequestKind::Summary, &[])).unwrap();
     let planes = [&summary, &summary["other_plane"]];

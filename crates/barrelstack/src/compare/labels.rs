@@ -5,7 +5,7 @@ use crate::report::shown;
 use crate::scenario::Scenario;
 use crate::scenario::title::{counted, shakes};
 
-/// Maximum number of differences in a name; with more, a run keeps its given name.
+/// Maximum number of differences in a name; runs with more differences keep their given names.
 const MOST: usize = 2;
 
 /// Kinds of differences that a name can state.
@@ -76,7 +76,7 @@ fn topic(path: &str) -> Topic {
     }
 }
 
-/// Describes the straps by the properties that differ from those of the other runs.
+/// Describes the straps of a run by those of their properties that differ between the runs.
 fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {

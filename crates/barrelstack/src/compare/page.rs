@@ -27,7 +27,7 @@ pub fn document(sides: &[Side]) -> Document {
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));
     let common = vec![Block::Table(tables::common(sides, &differing))];
-    section("Inputs in common", vec![Block::details("Every input that is the same", common)]);
+    section("Inputs in common", vec![Block::details("Inputs that are equal in all runs", common)]);
     Document {
         title: heading(sides),
         verdict: verdict(sides, &differing),
@@ -67,13 +67,14 @@ fn fate(side: &Side) -> String {
     }
 }
 
-/// Returns the outcomes of a single run, with their planes where both are analyzed.
+/// Returns the outcome of a single run in each plane that was analyzed, the shown plane first.
 fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
     let shown = std::iter::once((side.run.assembly.view, &side.run.outcome));
     shown.chain(side.other.iter().map(|other| (Some(other.view), &other.outcome)))
 }
 
-/// Returns the planes in which a single run collapses, where both are analyzed: " along the barrels".
+/// Returns the planes in which a single run collapses, such as " (along the barrels)"; empty unless
+/// both planes were analyzed.
 fn falls_where(side: &Side) -> String {
     let falls = singles(side).filter(|(_, outcome)| outcome.is_collapse());
     let views: Vec<&str> = falls.filter_map(|(view, _)| Some(view?.words())).collect();
@@ -83,7 +84,7 @@ fn falls_where(side: &Side) -> String {
     format!(" ({})", listed(views))
 }
 
-/// Returns the names of the runs, followed by their title if all runs share it.
+/// Returns the names of the runs, followed by the title if all runs have the same title.
 fn heading(sides: &[Side]) -> String {
     let names = format!("Comparison of {}", listed(sides.iter().map(|side| side.name.clone())));
     let first = sides.first().map(|side| &side.run.stated.title);
@@ -116,8 +117,8 @@ fn stands(side: &Side) -> bool {
 /// Cause stated in the headline if the first run has straps and the second has none.
 const WITHOUT: &str = "Leaving straps off";
 
-/// Describes the effect on the number of collapses, in paired variants; `None` if a run has no
-/// variants.
+/// Describes the change of the number of collapses from the first run to the others, in paired
+/// variants; `None` if a run has no variants.
 fn effect(sides: &[Side]) -> Option<String> {
     let (first, others) = sides.split_first()?;
     let pairs: Vec<Vec<Paired>> = others.iter().map(|other| Paired::of(first, other)).collect();
@@ -186,14 +187,15 @@ fn effect(sides: &[Side]) -> Option<String> {
     Some(format!("{cause}{colon}{}.", clauses.join(";")))
 }
 
-/// Returns the plane of a pair, where both are analyzed: " across the barrels".
+/// Returns the plane of a pair, such as " across the barrels"; empty unless both planes were
+/// analyzed.
 fn place(side: &Side, pair: &Paired) -> String {
     let view = View::ALL.into_iter().find(|view| Some(view.name()) == pair.view);
     let both = view.filter(|_| side.other.is_some());
     both.map_or_else(String::new, |view| format!(" {}", view.words()))
 }
 
-/// Describes the differences behind the headline, with their intervals.
+/// Describes the differences between the shares of collapses, with their intervals.
 fn differences_in(sides: &[Side]) -> Vec<String> {
     let Some((first, others)) = sides.split_first() else { return Vec::new() };
     let of = |(at, other): (usize, &Side)| {
@@ -214,11 +216,11 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             let motions = if one_motion([first, other]) {
                 " under the same motions"
             } else {
-                " with the same numbers"
+                " under different motions"
             };
             let lost = match pair.without_verdict {
                 0 => String::new(),
-                some => format!(" In {some} more variants one of the two runs has no verdict."),
+                some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
             let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
             format!(
@@ -236,7 +238,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     others.iter().enumerate().flat_map(of).collect()
 }
 
-/// Describes the result of the comparison in one sentence.
+/// Describes the result of the comparison in one sentence or two.
 fn headline(sides: &[Side]) -> String {
     if let Some(effect) = effect(sides) {
         return by_themselves(sides) + &effect;
@@ -270,7 +272,7 @@ fn headline(sides: &[Side]) -> String {
             }
         }
         ([up], [down]) if one_height && !straps(up) && straps(down) => {
-            format!("Straps bring the stack down: it stands with {}.", up.name)
+            format!("Straps bring the stack down: the stack stands with {}.", up.name)
         }
         ([], _) => format!("{} fall: {}.", capital(&all), names(&down)),
         (_, []) => format!("{} stand: {}.", capital(&all), names(&up)),
@@ -278,7 +280,8 @@ fn headline(sides: &[Side]) -> String {
     }
 }
 
-/// States that runs ended before their motion did, where a stack stood until then; empty otherwise.
+/// States that runs end before their motion does; empty unless a stack stands at the end of such a
+/// run.
 fn cut_short(sides: &[Side]) -> String {
     let cut = |side: &Side| match share(side) {
         Some(spread) => spread.standing_until.is_some(),
@@ -305,7 +308,8 @@ fn by_themselves(sides: &[Side]) -> String {
     capital(&format!("{} fall under their own weight, before they are shaken. ", listed(all)))
 }
 
-/// Describes the result of a run, with the interval of its share, and the drift of a stack that stands.
+/// Describes the result of a run: the share of collapses with its interval and, if the stack
+/// stands, the drift.
 fn describe(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
     let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
@@ -322,7 +326,7 @@ fn describe(at: usize, side: &Side) -> String {
     let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
     match drift {
         Some(drift) => format!(
-            "{result}; in the run that is shown its top sways by up to {} % of its height.",
+            "{result}; in the run that is shown, the top of the stack sways by up to {} % of its height.",
             significant(100.0 * drift, 2)
         ),
         None => format!("{result}."),
@@ -340,7 +344,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let mut fine = Vec::new();
     fine.push(match differing {
         [one] => format!(
-            "They differ in one input: {}, {}.",
+            "The runs differ in one input: {}, {}.",
             one.path,
             listed(one.values.iter().map(|value| {
                 value
@@ -348,12 +352,12 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
                     .map_or_else(|| "absent".into(), |value| report::shown(&one.path, value))
             }))
         ),
-        many => format!("They differ in {} inputs, listed below.", many.len()),
+        many => format!("The runs differ in {} inputs, listed below.", many.len()),
     });
     let view = sides[0].run.assembly.view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
         sentences.push(format!(
-            "The runs are shown {}; the table of outcomes has both planes.",
+            "The runs are shown {}; the table of outcomes covers both planes.",
             view.words()
         ));
     }
@@ -362,17 +366,16 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             let shown = sides[0].summary.variant;
             let one = sides.iter().all(|side| side.summary.variant == shown);
             match shown {
-                0 if one => "Each is shown as stated.".to_owned(),
+                0 if one => "Each run is shown as stated.".to_owned(),
                 _ if one => format!(
-                    "Each is shown in variant {shown}, the most typical of all of them together{}.",
+                    "Each run is shown in variant {shown}, the most typical variant of all runs taken together{}.",
                     if one_motion(sides) { ", under the same component of the motion" } else { "" }
                 ),
-                _ => "Each is shown in the most typical of its own variants.".to_owned(),
+                _ => "Each run is shown in its own most typical variant.".to_owned(),
             }
         }
     } else {
-        "Each is one run: small changes of friction or gaps can change what falls when, so judge a \
-         difference by many runs."
+        "Each result is that of one run: small changes of friction or gaps can change what falls when, so judge a difference by many runs."
             .into()
     });
     Verdict { headline: headline(sides) + &cut_short(sides), sentences, fine, ..Verdict::default() }
@@ -394,7 +397,7 @@ fn players(sides: &[Side]) -> Players {
     Players {
         id: "players".into(),
         caption: format!(
-            "The runs as computed, on one clock and to one scale. A run that has ended holds its last \
+            "The computed motion of the runs, on one clock and to one scale. A run that has ended holds its last \
              frame. With “A in the others” switched on, dashed outlines show A at the same time.{}",
             panes.iter().map(|pane| report::legend(&pane.scene)).max().unwrap_or_default()
         ),
@@ -404,8 +407,8 @@ fn players(sides: &[Side]) -> Players {
     }
 }
 
-/// `true` if all runs have the same motion; the length scale must agree too, because it stretches
-/// time.
+/// `true` if all runs have the same motion; the length scales must also be equal, because time is
+/// scaled with them.
 fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     let motion = |side: &'a Side| (&side.run.scenario.motion, side.run.scenario.run.similitude);
     let mut motions = sides.into_iter().map(motion);
@@ -413,8 +416,8 @@ fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
     motions.all(|motion| Some(motion) == first)
 }
 
-/// Returns the ground motions drawn below the stages: that of the longest run if all runs share it,
-/// otherwise one per run.
+/// Returns the ground motions to draw below the stages. If all runs have the same motion, the
+/// motion of the longest run is drawn; otherwise the motion of each run is drawn.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
         let longest = sides.iter().max_by(|a, b| a.run.end_time.total_cmp(&b.run.end_time));
@@ -485,7 +488,7 @@ fn histories(sides: &[Side]) -> Vec<Block> {
     blocks
 }
 
-/// Pairs a recorded quantity of a run with its times.
+/// Returns the recording times of a run together with the values of a recorded quantity.
 fn recorded(side: &Side, values: Vec<f64>) -> [Vec<f64>; 2] {
     [side.run.recording.times.clone(), values]
 }
@@ -498,7 +501,7 @@ fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
     Some(channel.values.iter().map(|v| 100.0 * v).collect())
 }
 
-/// Plots histories over time, each given with its run.
+/// Plots histories over time, each of which is given together with its run.
 fn history(
     sides: &[Side],
     id: &str,
@@ -530,7 +533,8 @@ fn history(
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns the provenance of the results: entries that all runs share once, all others per run.
+/// Returns the provenance of the results; entries that all runs share appear once, all others once
+/// per run.
 fn provenance(sides: &[Side]) -> Vec<(String, String)> {
     let all: Vec<_> =
         sides.iter().map(|side| report::provenance(&side.run, &side.summary)).collect();

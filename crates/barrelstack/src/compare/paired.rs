@@ -27,7 +27,7 @@ described! {
         pub neither: u32,
         /// Number of further variants that have no verdict in one of the two runs.
         pub without_verdict: u32,
-        /// Share that collapses in the first run, less the share that collapses in the second.
+        /// Share that collapses in the first run minus the share that collapses in the second.
         pub reduction: f64 as "1",
         /// 95 % interval of the reduction (Newcombe 1998, for paired samples).
         pub interval: [f64; 2] as "1",
@@ -75,12 +75,12 @@ impl Paired {
         })
     }
 
-    /// Returns the number of variants with a verdict in both runs.
+    /// Returns the number of paired variants, which have a verdict in both runs.
     pub fn pairs(&self) -> u32 {
         self.both + self.only_first + self.only_second + self.neither
     }
 
-    /// Returns the number of these variants that collapse, in the first run and in the second.
+    /// Returns the numbers of paired variants that collapse in the first run and in the second.
     pub fn collapsed(&self) -> [u32; 2] {
         [self.both + self.only_first, self.both + self.only_second]
     }
@@ -91,10 +91,11 @@ impl Paired {
     }
 }
 
-/// Returns the difference of two shares of the same cases, and its interval; `None` without cases.
+/// Returns the difference between two shares of the same cases, and the interval of the difference;
+/// `None` if there are no cases.
 ///
-/// `[a, b, c, d]` counts the cases that collapse in both runs, in the first only, in the second
-/// only, and in neither. The interval combines Wilson's half-intervals, corrected for their
+/// `[a, b, c, d]` counts the cases that collapse in both runs, only in the first, only in the
+/// second, and in neither. The interval combines Wilson's half-intervals, corrected for their
 /// correlation (method 10 of Newcombe 1998, with his correction for continuity).
 fn newcombe([a, b, c, d]: [u32; 4]) -> Option<(f64, [f64; 2])> {
     let n = a + b + c + d;

@@ -63,7 +63,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         row("variants that collapse, with the 95 % interval of their share", &|side| {
             collapse(side.summary.ensemble.as_ref())
         });
-        row("first loss of a seat, and barrels fallen, in these", &|side| {
+        row("first loss of a seat, and barrels fallen, in the variants that collapse", &|side| {
             let spread = side.summary.ensemble.as_ref().filter(|spread| spread.collapsed > 0);
             Cell::maybe(spread.map(course))
         });
@@ -99,7 +99,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
 /// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "Demands until the first loss of seat of each stack, except the slip, which is that at the end of the run. The report of a single run also states the demands over the whole run.",
+        "Demands on each stack until its first loss of seat; the slip is that at the end of the run. The report of a single run also states the demands over the whole run.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],

@@ -9,11 +9,14 @@ use crate::ensemble;
 
 /// Column names with their meanings.
 ///
-/// A name that begins with `_` stands for all column names that end in it; these begin with the
-/// name of a body, of two bodies or of the ground.
+/// A listed name that begins with `_` is a suffix: it stands for all column names that end in it.
+/// Such column names begin with the name of a body, of two bodies or of the ground.
 const MEANINGS: [(&str, &str); 39] = [
     ("time", "time since the motion began"),
-    ("plane", "plane of the run: transverse, across the barrels, or longitudinal, along them"),
+    (
+        "plane",
+        "plane of the run: transverse (across the barrels) or longitudinal (along the barrels)",
+    ),
     ("first_body", "body that left its seat first"),
     ("ground_acceleration_x", "acceleration of the ground to the right"),
     ("ground_acceleration_z", "acceleration of the ground upward"),
@@ -35,7 +38,7 @@ const MEANINGS: [(&str, &str); 39] = [
     ("z", "position of the boundary point at rest, above the center of mass"),
     (
         "coordinate",
-        "position along the boundary: an angle on a round one, a length on a straight one",
+        "position along the boundary: an angle on a round boundary, a length on a straight boundary",
     ),
     ("length_of_boundary", "length of boundary on which the stress acts at rest"),
     ("stress_at_rest", "normal stress at rest"),
@@ -54,24 +57,24 @@ const MEANINGS: [(&str, &str); 39] = [
     ("_horizontal_force", "force to the right on the upper body"),
     (
         "_x",
-        "position of the center of mass to the right, in an inertial frame: that of the ground before the motion",
+        "position of the center of mass to the right, in the inertial frame of the ground before the motion",
     ),
     (
         "_y",
-        "position of the center of mass away from the viewer, in an inertial frame: that of the ground before the motion",
+        "position of the center of mass away from the viewer, in the inertial frame of the ground before the motion",
     ),
     (
         "_z",
-        "position of the center of mass upward, in an inertial frame: that of the ground before the motion",
+        "position of the center of mass upward, in the inertial frame of the ground before the motion",
     ),
     ("_angle", "rotation, counterclockwise"),
     (
         "_qw",
-        "real part of the quaternion from the frame of the body to an inertial frame, that of the ground before the motion",
+        "real part of the quaternion from the frame of the body to the inertial frame of the ground before the motion",
     ),
-    ("_qx", "first imaginary part of that quaternion"),
-    ("_qy", "second imaginary part of that quaternion"),
-    ("_qz", "third imaginary part of that quaternion"),
+    ("_qx", "first imaginary part of the quaternion"),
+    ("_qy", "second imaginary part of the quaternion"),
+    ("_qz", "third imaginary part of the quaternion"),
 ];
 
 /// Returns the file `columns.csv` of a folder: file, name, unit and meaning of each column of its

@@ -111,7 +111,7 @@ impl Rendering {
                 "expected two times (s), the first not negative and the second later, found {from} and {to}"
             )),
             Some([from, _]) if from > run.end_time => Err(format!(
-                "the run ends at {:.2} s, so there is nothing to film from {from} s on",
+                "the run ends at {:.2} s, so there is nothing to render after {from} s",
                 run.end_time
             )),
             _ => Ok(()),
@@ -119,7 +119,8 @@ impl Rendering {
     }
 }
 
-/// Extensions of the files that a rendering writes into its folders, and may remove from them.
+/// Extensions of the files that a rendering writes into its folders; only files with these
+/// extensions are removed from the folders.
 const KINDS: [&str; 7] = ["svg", "png", "pdf", "gif", "csv", "vtp", "pvd"];
 
 /// Maximum frame rate (1/s) that viewers of animations support.
@@ -149,8 +150,8 @@ impl RenderFolder {
     /// Checks a folder before the computation starts; creates and removes nothing yet.
     ///
     /// # Errors
-    /// When the place of a part holds files of an earlier rendering and `overwrite` is not set, or
-    /// when a path that should be a folder is a file.
+    /// When the folder or file of a part exists from an earlier rendering and `overwrite` is not
+    /// set, or when a path that should be a folder is a file.
     pub fn prepare(path: &Path, parts: &[Part], overwrite: bool) -> Result<Self, ExportError> {
         let folders = parts.iter().filter(|part| **part != Part::Report);
         let folders = folders.map(|part| path.join(part.place()));
@@ -179,8 +180,8 @@ impl RenderFolder {
 
     /// Writes all parts.
     ///
-    /// Files of an earlier rendering are removed first from the places of these parts, so that a
-    /// shorter run leaves no frames of a longer one.
+    /// Files of an earlier rendering are first removed from the folders of these parts, so that no
+    /// frames of a longer run remain beside those of a shorter run.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -215,7 +216,7 @@ impl RenderFolder {
 
     /// Writes the ParaView series that `make` produces file by file.
     ///
-    /// Long series of bodies in space thus need not fit into memory as a whole.
+    /// A long series thus need not fit into memory as a whole.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -258,7 +259,7 @@ impl RenderFolder {
         }
     }
 
-    /// Creates the place of a part, and removes the files of an earlier rendering from it.
+    /// Creates the folder of a part, and removes the files of an earlier rendering from it.
     fn cleared(&self, part: Part) -> Result<PathBuf, ExportError> {
         let place = self.path.join(part.place());
         let folder = if part == Part::Report { "" } else { part.place() };
@@ -277,7 +278,7 @@ impl RenderFolder {
         Ok(place)
     }
 
-    /// Returns the files of an earlier rendering in the place of a part, sorted.
+    /// Returns the files of an earlier rendering in the folder of a part, sorted.
     fn earlier(&self, part: Part) -> Result<Vec<PathBuf>, ExportError> {
         let place = self.path.join(part.place());
         let alone = match part {
@@ -349,8 +350,8 @@ fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize
         + put(&folder.join("stack.png"), &animation.apng())?)
 }
 
-/// Writes numbered pictures and the table of their times. All cores render, each with one picture
-/// in memory.
+/// Writes numbered pictures and the table of their times. All cores render, each of them one
+/// picture at a time.
 fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportError> {
     let digits = film.len().to_string().len().max(4);
     let pixels = how.formats.contains(&Format::Png);

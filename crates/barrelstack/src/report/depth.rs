@@ -1,5 +1,5 @@
-//! Three-dimensional scene of a planar stack: the plane models a section, and the scenario gives
-//! the other dimensions.
+//! Three-dimensional scene of a planar stack, whose dimensions perpendicular to the plane come from
+//! the scenario.
 
 use barrelstack_dynamics::{Vec2, math};
 use barrelstack_report::{
@@ -9,14 +9,14 @@ use barrelstack_report::{
 use crate::assemble::{Assembly, BAR_RADIUS, Outline, Part, PartKind, cup};
 use crate::scenario::{Barrel, Cradle, Rack, RackKind, Scenario, Scene, StackSpec, View};
 
-/// Half the thickness (m) of device plates, which planar drawings show as lines: an assumption.
+/// Half the assumed thickness (m) of device plates, which planar drawings show as lines.
 const PLATE: f64 = 0.012;
 
 /// Number of segments of a barrel profile or of a cradle arc.
 const PARTS: u32 = 12;
 
-/// Returns the bodies of a planar stack in three dimensions, with its events; `None` for a free
-/// scene, whose depth is unknown.
+/// Returns the bodies of a planar stack in three dimensions, with the events of the run; `None` for
+/// a free scene, whose depth is unknown.
 pub(super) fn depth(
     scenario: &Scenario,
     assembly: &Assembly,
@@ -46,7 +46,7 @@ struct Section<'a> {
 }
 
 impl Section<'_> {
-    /// Returns a body, and its copies in the parallel sections.
+    /// Returns a body together with its copies in the parallel sections.
     fn body(&self, assembly: &Assembly, index: usize, part: &Part) -> DepthBody {
         let (role, volumes, rows) = match part.kind {
             PartKind::Barrel => (Role::Barrel, vec![self.barrel()], self.rows()),
@@ -69,8 +69,8 @@ impl Section<'_> {
         }
     }
 
-    /// Returns the distances (m) from the plane: of the rails in the transverse plane, of the
-    /// barrels in the longitudinal one.
+    /// Returns the distances (m) of parallel parts from the plane: those of the rails in the
+    /// transverse plane, those of the barrels in the longitudinal plane.
     fn away(&self) -> Vec<f64> {
         let rack = &self.spec.rack;
         match self.spec.view {
@@ -170,7 +170,8 @@ impl Section<'_> {
         }
     }
 
-    /// Returns the lines of a planar outline as bars, one for each rail or barrel.
+    /// Converts the lines of planar outlines to bars; each line gives one bar for each rail or
+    /// barrel.
     fn plates(&self, outlines: Option<&[Outline]>) -> Vec<Volume> {
         let mut bars = Vec::new();
         for outline in outlines.unwrap_or(&[]) {
@@ -188,7 +189,7 @@ impl Section<'_> {
         bars
     }
 
-    /// Returns the bands of a tie, one for each rail or barrel.
+    /// Returns the bands that draw a tie, one for each rail or barrel.
     fn bands(&self, tie: &Tie) -> Vec<DepthTie> {
         let band = |away: f64| DepthTie {
             bodies: tie.bodies,
@@ -204,7 +205,7 @@ fn spread(count: u32, pitch: f64) -> Vec<f64> {
     (0..count).map(|at| (f64::from(at) - 0.5 * f64::from(count - 1)) * pitch).collect()
 }
 
-/// Returns the positions (m) of the rails of a rack, along its barrels.
+/// Returns the positions (m) of the rails of a rack along the axis of the barrels.
 fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
     let rail = |place: f64| [-1.0, 1.0].map(|side| place + side * rack.rail_half_spacing);
     spread(rack.barrels_deep, pitch).into_iter().flat_map(rail).collect()
@@ -212,10 +213,10 @@ fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
 
 /// Returns the solids of a rack at full scale, relative to the middle of its underside.
 ///
-/// The shape of the transverse plane is repeated at every rail, with the width that the
-/// longitudinal plane shows. Two tubes that join the beams at their ends are an assumption, as in
-/// the spatial model. `rise` returns the height (m) of the rail at a position, and `chocks` are an
-/// angle (rad) and a gap (m).
+/// The outline in the transverse plane is repeated at every rail and given the width of the rail.
+/// Two tubes are assumed to join the beams at their ends, as in the spatial model. `rise` returns
+/// the height (m) of the rail at a position along the barrels. `chocks` states the angle (rad) and
+/// the gap (m) of chocks.
 fn frame(
     spec: &StackSpec,
     (level, pitch): (u32, f64),

@@ -23,7 +23,8 @@ pub fn scene(run: &Run) -> Arc<Scene> {
     scene_among(run, None)
 }
 
-/// Returns the scene of a run, with ghosts of its variants.
+/// Returns the scene of a run, in which the paths and the final poses of the variants are drawn as
+/// ghosts.
 pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> {
     let frames = &run.recording.frames;
     let ties = ties(&run.assembly, |element| run.elements.get(element)?.broken_at);
@@ -46,7 +47,7 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
     })
 }
 
-/// Returns a contact force as it acts on the one of the two bodies that it pushes upward.
+/// Orients a contact force so that it is the force on the body that it pushes upward.
 fn pushed(&[x, z, fx, fz]: &[f64; 4]) -> ContactForce {
     let sign = if fz < 0.0 { -1.0 } else { 1.0 };
     ContactForce { x, z, fx: sign * fx, fz: sign * fz }
@@ -70,7 +71,7 @@ pub(super) fn still(assembly: &Assembly) -> Scene {
 /// Maximum number of variants whose paths are drawn; more paths would merge into a black area.
 const DRAWN: usize = 128;
 
-/// Returns the paths of the top barrels of all variants, and the final poses of their barrels.
+/// Returns, for all variants, the paths of the top barrels and the final poses of the barrels.
 fn ghosts(variants: &Variants) -> Option<Ghosts> {
     let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
     let wide = |place: &[f32; 2]| place.map(f64::from);
@@ -106,8 +107,7 @@ pub fn legend(scene: &Scene) -> String {
     }
     if let Some(ghosts) = &scene.ghosts {
         let paths = format!(
-            " With “{}” switched on, thin lines show the paths of the top barrels in each variant until its run ends, and the darker a \
-             place, the more often a barrel ends there.",
+            " With “{}” switched on, thin lines show the paths of the top barrels in each variant until the end of its run; the darker a spot, the more barrels end there.",
             ghosts.label
         );
         legend += &paths;
@@ -115,7 +115,8 @@ pub fn legend(scene: &Scene) -> String {
     legend
 }
 
-/// Largest displacement (m) below which the page opens at the start of the run.
+/// Displacement (m) below which a body counts as motionless. If no body moves farther, the page
+/// opens at the start of the run.
 const STILL: f64 = 1e-3;
 
 /// Returns the instant at which a page opens: the first loss of seat or, if all seats are kept, the
@@ -138,7 +139,8 @@ fn moment(run: &Run) -> Option<Moment> {
     }
 }
 
-/// Returns the time and the body of the largest sideways or upward displacement from rest.
+/// Returns the time at which the largest sideways or upward displacement from rest occurs, and the
+/// body that is displaced.
 fn furthest(run: &Run) -> Option<Moment> {
     let mut furthest: Option<(f64, f64, usize, &str)> = None;
     for (body, part) in run.assembly.parts.iter().enumerate() {
@@ -160,7 +162,8 @@ fn furthest(run: &Run) -> Option<Moment> {
     Some(Moment { time, body, text, falls: false })
 }
 
-/// Returns the largest contact stress of every barrel over time, as a color scale.
+/// Returns the color scale of the contact stress, and the largest contact stress of every barrel
+/// over time.
 fn tint(run: &Run) -> Tint {
     let parts = &run.assembly.parts;
     let of = |(part, stress): (&Part, &f64)| {
@@ -276,7 +279,7 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-/// Returns the horizontal acceleration and velocity of the ground; empty without a motion.
+/// Returns the horizontal acceleration and velocity of the ground; empty if there is no motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
     let span = (motion.horizontal.natural_step(), run.end_time);
@@ -291,17 +294,17 @@ pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end:
     ground_history(label, "g", (component.natural_step(), end), &value)
 }
 
-/// Thins a quantity of the ground motion for a picture, until `end` (s).
+/// Returns the samples of a quantity of the ground motion, until `end` (s), that a picture shows.
 ///
-/// Of the samples of the motion, `step` (s) apart, one per fiftieth of a second is kept: the one with
-/// the largest magnitude, at its own time, so that the picture shows the true peaks.
+/// The samples of the motion are `step` (s) apart. In every fiftieth of a second, the sample with
+/// the largest magnitude is kept at its own time, so that the picture shows the true peaks.
 pub fn ground_history(
     label: &str,
     unit: &str,
     (step, end): (f64, f64),
     value: &dyn Fn(f64) -> f64,
 ) -> History {
-    /// Samples per second of the picture.
+    /// Number of samples per second that the picture shows.
     const RATE: f64 = 50.0;
     let (mut times, mut values): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let step = step.max(1e-4);

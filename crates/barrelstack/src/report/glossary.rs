@@ -2,19 +2,19 @@
 
 use barrelstack_report::Word;
 
-/// Terms with their explanations; a page explains each where it occurs. GLOSSARY.md has the same
-/// list.
+/// Terms with their explanations; a page explains each term where it occurs. GLOSSARY.md has the
+/// same list.
 pub const WORDS: &[Word] = &[
     word(
         "variant",
         "the same stack with small differences: millimeters out of place, a little heavier or lighter, more or less slippery",
     ),
-    word("95 % interval", "the range in which the true share lies in 19 of 20 such samples"),
+    word("95 % interval", "a range that contains the true share in 19 of 20 such samples"),
     word("across the barrels", "in the plane that shows the heads of the barrels, as circles"),
     word("along the barrels", "in the plane that shows the barrels from the side"),
     word("cradle", "the two bars of a rack between which a barrel lies"),
     word("seat", "the place that holds a barrel in its rack, or a rack on the barrels below"),
-    word("ejection", "the top level leaves the stack, or a barrel its rack"),
+    word("ejection", "the top level leaves the stack, or a barrel leaves its rack"),
     word("rocking", "upper levels rock on the barrels below and topple together"),
     word("rack-sliding", "a rack slides along the barrels below until it leaves them"),
     word("overturning", "the whole stack turns over about its foot"),
@@ -24,20 +24,20 @@ pub const WORDS: &[Word] = &[
     word("pretension", "the force to which a strap is tightened when it is installed"),
     word(
         "stress amplification",
-        "the largest contact stress until the first loss of seat, divided by the largest at rest",
+        "the largest contact stress until the first loss of seat, divided by the largest contact stress at rest",
     ),
     word("PGA", "peak ground acceleration: the largest acceleration of the ground"),
     word("PGV", "peak ground velocity: the largest speed of the ground"),
-    word("contact constants", "stiffness and damping of bodies where they touch"),
+    word("contact constants", "stiffness and damping of the contact between two bodies"),
     word(
         "energy balance",
         "comparison of the energy supplied with the energy stored and dissipated; the difference is the error of the computation",
     ),
     word(
         "residual",
-        "what is left at the end: of the energy balance, the error of the computation; of a displacement, the final position of the body",
+        "what remains at the end: for the energy balance, the error of the computation; for a displacement, the displacement at the end of the run",
     ),
-    word("similitude", "a model at another scale that behaves like the full-size one"),
+    word("similitude", "scaling of a stack to a model that behaves like the full-size stack"),
 ];
 
 const fn word(word: &'static str, meaning: &'static str) -> Word {

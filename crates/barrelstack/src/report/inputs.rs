@@ -5,7 +5,7 @@ use barrelstack_report::{Block, Cell, Table, significant};
 use crate::run::Run;
 use crate::scenario::{Scenario, Setting, Source, catalog};
 
-/// Formats a given input as it was written, followed by its value in SI units if these differ.
+/// Formats a given input as it was written, followed by its value in SI units if the two differ.
 fn given(scenario: &Scenario, one: &Setting) -> String {
     let value = shown(&one.path, &one.value);
     // Other texts, such as paths and names, have no second form.
@@ -69,7 +69,7 @@ pub(crate) fn readable(value: &str) -> String {
 /// Significant digits of a printed input; the scenario file beside the report has all digits.
 const DIGITS: usize = 6;
 
-/// Tabulates the inputs that the user gave and, folded away, all inputs.
+/// Tabulates the inputs that the user gave and, in a collapsed section, all inputs.
 pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
     let mut settings = run.stated.settings();

@@ -14,7 +14,7 @@ use crate::summary::Summary;
 use crate::variants::words::percent;
 use crate::variants::{Range, Shown, Spread};
 
-/// Returns players for both planes on one clock, the plane across the barrels first.
+/// Returns synchronized players for both planes, the plane across the barrels first.
 pub(super) fn players(
     (run, summary, scene): (&Run, &Summary, &Arc<Scene>),
     other: &Shown,
@@ -41,8 +41,7 @@ pub(super) fn players(
     Players {
         id: "players".into(),
         caption: format!(
-            "The stack across its barrels and along them as computed, on one clock and to one scale. \
-             Arrows are contact forces, each on the body that it pushes up.{}",
+            "The computed motion of the stack, across and along its barrels, on one clock and to one scale. Arrows show contact forces, each on the body that it pushes up.{}",
             drawing::legend(scene)
         ),
         panes: both.into(),
@@ -112,7 +111,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         let [low, high] = spread.interval.map(percent);
         spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
     });
-    row("range over unmeasured constants", &|spread| {
+    row("range of the share over unmeasured constants", &|spread| {
         let [low, high] = spread.range?.map(percent);
         Some(format!("{low} to {high}"))
     });
@@ -156,7 +155,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     blocks
 }
 
-/// Formats a range; a single number if both ends print alike.
+/// Formats a range, or a single number if both ends are equal when rounded.
 fn span(from: f64, to: f64, decimals: usize) -> String {
     let [from, to] = [from, to].map(|value| format!("{value:.decimals$}"));
     if from == to { from } else { format!("{from} to {to}") }

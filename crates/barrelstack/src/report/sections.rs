@@ -42,8 +42,8 @@ pub(super) fn all(
     blocks
 }
 
-/// Builds the folded part for engineers: the results of each plane, and the inputs that both planes
-/// share.
+/// Builds the collapsed section for engineers: the results of each plane, and the inputs that both
+/// planes share.
 fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>) -> Vec<Block> {
     const PARTS: &str = "odies, demands, stresses, forces, motion, energies";
     let Some(other) = other else {
@@ -81,7 +81,7 @@ pub(super) fn stage(
     }
 }
 
-/// Builds the sections for engineers of one plane.
+/// Builds the sections for engineers for one plane.
 fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) -> Vec<Block> {
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "Outcome of every body", vec![Block::Table(fates(summary))]);
@@ -116,8 +116,7 @@ fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
         caption: format!(
-            "The run as computed, to scale. Arrows are contact forces, each on the body that it pushes \
-             up.{}",
+            "The computed motion of the run, to scale. Arrows show contact forces, each on the body that it pushes up.{}",
             drawing::legend(scene)
         ),
         scene: Arc::clone(scene),
@@ -170,10 +169,10 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// Returns the range of values that shows a stack while it stands and as it collapses.
+/// Returns the range of values to plot, which shows a stack while it stands and as it collapses.
 ///
-/// Falling bodies leave the plot, as in the histories of the paper. `None` without a collapse: then
-/// all values are shown.
+/// Falling bodies leave the plot, as in the histories of the paper. Returns `None` if there is no
+/// collapse; all values are then shown.
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     let until = run.fates.collapse_time()? + 0.5;
     let mut range = [0.0_f64; 2];
@@ -267,9 +266,7 @@ fn stresses(run: &Run) -> Vec<Block> {
             0,
             Block::Paragraph(
                 "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from where \
-                 it acts. A node is assumed to bear on half of the distance to each of its neighbors, a contact \
-                 without nodes on 1 cm at full scale (an assumption); the stress is the force divided by that length. Gray: \
-                 at rest. Behind it: the largest stress until the first loss of seat."
+                 it acts. A node is assumed to bear on half of the distance to each of its neighbors, and a contact without nodes on 1 cm at full scale; the stress is the force divided by that length. Gray area: stress at rest. Area behind it: largest stress until the first loss of seat."
                     .into(),
             ),
         );
@@ -377,8 +374,8 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// Plots the energies that change during a run, and the sum of those stored and dissipated, which
-/// must equal the work of the ground.
+/// Plots the energies that change during a run, and the sum of the stored and dissipated energies,
+/// which must equal the work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let recording = &run.recording;
     let Some(balance) = &summary.energy else { return Vec::new() };
@@ -413,17 +410,14 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     series.push(line("sum of all of these", &all, color(10)));
     vec![
         Block::Paragraph(format!(
-            "The energy supplied by the ground and by loss of height equals the energy stored and \
-             dissipated, except for a fraction of {} of {} kJ.",
+            "The energy supplied by the ground and by gravity equals the energy stored and dissipated, except for a residual of {} times the {} kJ supplied.",
             significant(balance.residual_ratio, 2),
             significant(1e-3 * balance.input, 3)
         )),
         history(
             run,
             "energy",
-            "Energy gained since the start. The balance holds where the sum of all of these follows the edge of the \
-             shaded work of the ground: a falling body turns its height into motion, and the motion is lost to friction \
-             and damping.",
+            "Change of energy since the start. The balance holds where the sum of all of these follows the edge of the shaded area, which is the work of the ground. A falling body converts potential energy to kinetic energy, which friction and damping dissipate.",
             Axis::new("energy", "kJ"),
             series,
         ),

@@ -11,17 +11,17 @@ use crate::run::Run;
 /// Damping ratio of the response spectrum.
 const DAMPING: f64 = 0.05;
 
-/// Number of intervals in the curve of the rigid block.
+/// Number of intervals of the plotted curve of the rigid block.
 const CURVE: u32 = 60;
 
-/// Rocking of a stack, and the rigid block equivalent to the stack.
+/// Measured rocking of a stack, and the rigid block equivalent to the stack.
 struct Rocking {
     drift: Drift,
     block: RigidBlock,
 }
 
 impl Rocking {
-    /// Returns the rocking of a run; `None` for a free scene or without drift.
+    /// Returns the rocking of a run; `None` for a free scene, or if the top did not drift.
     fn of(run: &Run) -> Option<Self> {
         let block = RigidBlock::of(&run.assembly, run.scenario.run.gravity)?;
         let mut drift = drift(run).filter(|drift| drift.largest > 0.0)?;
@@ -30,8 +30,8 @@ impl Rocking {
         Some(Self { drift, block })
     }
 
-    /// Returns the period (s) of the rigid block at the tilt that a top displacement of `amplitude`
-    /// (m) gives the stack.
+    /// Returns the rocking period (s) of the rigid block at the tilt that corresponds to a
+    /// displacement of the top by `amplitude` (m).
     fn rigid(&self, amplitude: f64) -> f64 {
         self.block.period(amplitude / self.drift.height)
     }
@@ -70,19 +70,19 @@ fn words(rocking: &Rocking) -> String {
     let rigid = if period.is_finite() {
         format!("would rock with a period of {} s at that amplitude", significant(period, 2))
     } else {
-        "would not come back from there".to_owned()
+        "would not return from that amplitude".to_owned()
     };
     let measured = match (&drift.swings[..], rocking.widest()) {
         (_, None) => "it made no full swing".to_owned(),
         ([one], _) => format!(
-            "it made one full swing, of {} and with a period of {} s",
+            "it made one full swing, with an amplitude of {} and a period of {} s",
             centimeters(one.amplitude),
             significant(one.period, 2)
         ),
         (many, Some(widest)) => {
             let (low, high) = rocking.range();
             format!(
-                "it made {} full swings with periods of {} to {} s, the widest of {} in {} s",
+                "it made {} full swings with periods of {} to {} s; the widest has an amplitude of {} and a period of {} s",
                 many.len(),
                 significant(low, 2),
                 significant(high, 2),
@@ -95,8 +95,7 @@ fn words(rocking: &Rocking) -> String {
         "A stack has no fixed natural period: the farther it rocks, the longer its period, so the shaking \
          to which it responds changes as it sways. While it stood, its top drifted by up to {reached} \
          relative to its foot, and {measured}. A rigid block of the same mass and width at its foot {rigid} (Housner \
-         1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts \
-         gives at every level and is slower.",
+         1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts yields at every level and rocks more slowly.",
         significant(block.frequency, 3),
         significant(block.slenderness, 3),
     )
@@ -173,8 +172,6 @@ fn periods(rocking: &Rocking) -> Figure {
         interactive: true,
         ..Plot::default()
     };
-    let caption = "Rocking period against amplitude at the top: of a rigid block of the same mass and foot, and of the \
-                   swings of the drift while the stack stood. The period of a swing is twice the time between \
-                   zero crossings.";
+    let caption = "Rocking period against amplitude at the top, for a rigid block of the same mass and foot width and for the swings of the stack while it stood. The period of a swing is twice the time between two zero crossings of the drift.";
     Figure::new("periods", caption, plot)
 }

@@ -13,7 +13,7 @@ fn kilonewtons(value: f64) -> Cell {
 /// Tabulates the demands on a stack until the first loss of seat, and over the whole run.
 pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     Table::of(
-        "Demands until the first loss of seat, and over the whole run, falls included.",
+        "Demands on the stack until the first loss of seat, and over the whole run, falls included.",
         DEMANDS.iter().filter_map(|demand| {
             Some((demand, demand.shown(until_loss)?, demand.shown(whole_run)))
         }),
@@ -57,7 +57,7 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
     )
 }
 
-/// Tabulates the forces in the elements of a device; empty without elements.
+/// Tabulates the forces in the elements of a device; empty if the device has no elements.
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(

@@ -1,12 +1,15 @@
-//! The page section on constants that nobody has measured: what each does to the share of collapses.
+//! Page section on the constants that nobody has measured, and on their effects on the share of
+//! collapses.
 
 use barrelstack_report::{Axis, Block, Cell, Figure, Plot, Series, Table, significant};
 
 use crate::variants::words::percent;
 use crate::variants::{Spread, Unknown};
 
-/// Returns a table of the unknown constants, and a figure of the share over the one that matters most; nothing where no
-/// range is known. Each spread has the words of its plane, such as "along the barrels", or none in space.
+/// Returns a table of the unknown constants for each plane, and a figure of the share of collapses
+/// as a function of the most influential constant. Planes without a known range are omitted. Each
+/// spread is given with the words for its plane, such as "along the barrels", which are empty in
+/// space.
 pub fn unknowns(planes: &[(&str, &Spread)]) -> Vec<Block> {
     let known: Vec<&(&str, &Spread)> =
         planes.iter().filter(|(_, spread)| spread.range.is_some()).collect();
@@ -33,10 +36,7 @@ fn table(place: &str, spread: &Spread) -> Table {
     let stated = spread.share_as_stated.map(percent).unwrap_or_default();
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse over the constants that nobody has measured, {stated} with all of them \
-             as stated. Each constant is given at its 5 % and its 95 % fractile, with the share there averaged over \
-             the others and the 95 % interval of the change. The last column is the average width of the range once \
-             the constant is measured.",
+            "{shaken}{} to {} of stacks collapse, depending on the constants that nobody has measured; {stated} collapse with all of these constants as stated. Each constant is given at its 5 % and its 95 % fractile, with the share of collapses averaged over the other constants, and the 95 % interval of the change. The last column is the average width of the range once the constant is measured.",
             range[0], range[1]
         ),
         &spread.decides,
@@ -77,8 +77,7 @@ fn figure(one: &Unknown, planes: &[&(&str, &Spread)]) -> Figure {
     Figure::new(
         "decides",
         format!(
-            "Share of stacks that collapse over the {}, averaged over all other unknown constants, with its 95 % \
-             interval.",
+            "Share of stacks that collapse, as a function of the {}, averaged over all other unknown constants, with its 95 % interval.",
             one.name
         ),
         Plot {

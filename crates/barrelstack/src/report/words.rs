@@ -12,8 +12,8 @@ use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
 
-/// Returns the verdict: over all variants if they were run, otherwise of the single run with its
-/// plane.
+/// Returns the verdict: that of all variants if they were run, otherwise that of the single run,
+/// with its plane.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if spreads.is_empty() {
@@ -53,7 +53,7 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
         Outcome::Invalid { .. } => {
-            "The computation failed, so the run says nothing about the stack.".into()
+            "The computation failed, so the run permits no conclusion about the stack.".into()
         }
         Outcome::Collapse { mode: CollapseMode::Gravity, .. } => {
             let plane = plane.map_or_else(String::new, |plane| format!("{}, ", plane.words()));
@@ -78,14 +78,14 @@ fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
     }
 }
 
-/// Returns the largest utilization of staves until the first loss of seat; `None` if that is at
-/// most 100 %.
+/// Returns the largest utilization of staves until the first loss of seat; `None` if it is at most
+/// 100 %.
 fn crushed(summary: &Summary) -> Option<String> {
     let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
     Some(format!("{:.0} %", 100.0 * load))
 }
 
-/// Describes an interruption: the progress so far, and that there is no verdict.
+/// States that the work was stopped, with the progress so far, and that there is no verdict.
 pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
     match variants {
         Some(Unfinished { done, of }) => format!(
@@ -95,7 +95,7 @@ pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
     }
 }
 
-/// Names levels: "level 3", "levels 2 and 3", "levels 2 to 4".
+/// Returns the name of a range of levels, such as "level 3", "levels 2 and 3" or "levels 2 to 4".
 fn levels(from: u32, to: u32) -> String {
     match to.saturating_sub(from) {
         0 => format!("level {from}"),
@@ -213,8 +213,8 @@ pub(super) fn command(summary: &Summary) -> String {
     command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
 }
 
-/// Returns words that identify the run of a sentence, such as "Along the barrels, in the run that
-/// is shown, ".
+/// Returns introductory words that name the run to which a sentence refers, such as "Along the
+/// barrels, in the run that is shown, ".
 fn shown(run: &Run, summary: &Summary) -> String {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     match (view, summary.ensemble.is_some()) {
@@ -253,14 +253,14 @@ pub(super) fn details(
             let drift = summary.demands.top_drift_ratio.unwrap_or(0.0);
             let slip = summary.demands.base_slip_residual.unwrap_or(0.0).abs();
             let foot = if slip < 5e-4 {
-                "its foot ends where it stood".to_owned()
+                "the foot ends where it stood".to_owned()
             } else {
-                format!("its foot ends {:.1} cm from where it stood", 100.0 * slip)
+                format!("the foot ends {:.1} cm from where it stood", 100.0 * slip)
             };
             let top = if drift < 1e-3 {
-                "Its top hardly moves".to_owned()
+                "The top hardly moves".to_owned()
             } else {
-                format!("Its top moves by up to {:.1} % of the height of the stack", 100.0 * drift)
+                format!("The top moves by up to {:.1} % of the height of the stack", 100.0 * drift)
             };
             sentences.push(behind(&shown(run, summary), &format!("{top}, and {foot}.")));
         }
@@ -322,7 +322,7 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     }
     let similitude = run.scenario.run.similitude;
     if similitude != 1.0 {
-        let scale = format!("length scale {similitude}; all results are at that scale");
+        let scale = format!("length scale {similitude}, which applies to all results");
         pair("similitude", scale);
     }
     pairs

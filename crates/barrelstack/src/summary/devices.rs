@@ -10,8 +10,8 @@ use crate::device::{DEVICES, FREE, Words};
 use crate::run::Run;
 use crate::watch::ElementFate;
 
-/// All devices with their force elements, including the elements of a free scene; an absent device
-/// has no elements.
+/// All devices with their force elements, including the elements of a free scene. A device that the
+/// stack does not have is listed without elements.
 #[derive(Clone, Debug)]
 pub struct Devices(pub Vec<Device>);
 
@@ -32,13 +32,13 @@ pub struct ElementSummary {
     pub name: String,
     /// Force (N) with the largest magnitude until the first loss of seat.
     pub peak: f64,
-    /// Time (s) of that force.
+    /// Time (s) of the force `peak`.
     pub peak_at: f64,
     /// Force (N) with the largest magnitude over the whole run.
     pub peak_whole_run: f64,
-    /// Time (s) of that force.
+    /// Time (s) of the force `peak_whole_run`.
     pub peak_whole_run_at: f64,
-    /// Time (s) at which the element failed; `None` if it did not.
+    /// Time (s) at which the element failed; `None` if the element did not fail.
     pub broken_at: Option<f64>,
 }
 
@@ -109,15 +109,17 @@ impl Described for Devices {
         let number = |unit: &str, meaning: &str| json!({ "type": "number", "unit": unit, "description": meaning });
         let mut properties = Map::new();
         for Words { one, many, force, broken, .. } in all_words() {
-            let mut at =
-                number("s", &format!("Time at which it was {broken}; null if it was not."));
+            let mut at = number(
+                "s",
+                &format!("Time at which the element was {broken}; null if it was not."),
+            );
             at["type"] = json!(["number", "null"]);
             let element = json!({
-                "name": { "type": "string", "description": "The bodies that it joins, and its place." },
+                "name": { "type": "string", "description": "The bodies that the element joins, and its position." },
                 (format!("peak_{force}")): number("N", &format!("The {force} with the largest magnitude until the first loss of seat.")),
-                (format!("peak_{force}_at")): number("s", "Time of that force."),
+                (format!("peak_{force}_at")): number("s", "Time of the largest value until the first loss of seat."),
                 (format!("peak_{force}_whole_run")): number("N", &format!("The {force} with the largest magnitude over the whole run.")),
-                (format!("peak_{force}_whole_run_at")): number("s", "Time of that force."),
+                (format!("peak_{force}_whole_run_at")): number("s", "Time of the largest value over the whole run."),
                 (format!("{broken}_at")): at,
             });
             objects.insert(key(one), closed(&format!("Forces in one {one}."), &element));

@@ -62,8 +62,8 @@ impl Remedy {
         format!("{}.{}{stopped}", capital(&sentence), self.confidence())
     }
 
-    /// States the upper confidence bound of the sufficient changes, adjusted for the number of
-    /// candidates.
+    /// States the upper confidence bounds of the shares that fall with the sufficient changes,
+    /// adjusted for the number of candidates.
     fn confidence(&self) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
@@ -99,9 +99,7 @@ impl Remedy {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
-            "Changes that were tried, with the same variants; a change suffices if at least {:.0} % of all \
-             stand{stand}. A change is rejected at the end of a block of variants once too many have failed, so its share \
-             is not known. The intervals hold together with 95 % confidence for all {} changes that may be tried{tried}. \
+            "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share of a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
              Straps are assumed not to slip on what they tie.",
             100.0 * self.required_share,
             self.candidates
@@ -142,7 +140,8 @@ pub(super) fn name(tried: &Tried) -> String {
     }
 }
 
-/// Describes the failures, such as "1 of 64 variants" or "at least 4 of the first 8 variants".
+/// Describes the number of failures, such as "1 of 64 variants" or "at least 4 of the first 8
+/// variants".
 fn falls(tried: &Tried) -> String {
     let Tried { variants, failed, share, suffices, .. } = tried;
     match share {
@@ -152,7 +151,7 @@ fn falls(tried: &Tried) -> String {
     }
 }
 
-/// Describes the share that stands, such as "63 of 64 variants".
+/// Describes the share of variants that stands, such as "63 of 64 variants".
 fn share(tried: &Tried) -> String {
     let Tried { variants, failed, .. } = tried;
     if *failed == 0 {

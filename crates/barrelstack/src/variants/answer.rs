@@ -25,11 +25,11 @@ pub enum Advance {
         /// Number of all variants.
         of: usize,
     },
-    /// Verdict of the first variants by number, reported while the others are still to be run.
+    /// Verdict of the variants with the lowest numbers, reported before the others are run.
     First {
-        /// Number of these variants, in each plane.
+        /// Number of variants in the first verdict, in each plane.
         variants: u32,
-        /// Verdict of these variants in one sentence.
+        /// First verdict in one sentence.
         headline: String,
     },
     /// Combined progress of the runs that are to be shown.
@@ -43,7 +43,7 @@ pub enum RunChoice {
     Typical,
     /// The variant of this number; 0 is the nominal case.
     Number(u32),
-    /// The variant of this number, without running any other variants.
+    /// The variant of this number; no other variants are run.
     Alone(u32),
 }
 
@@ -72,13 +72,13 @@ impl Answer {
 }
 
 impl Answer {
-    /// Returns the planes, the governing one first.
+    /// Returns the results of all planes, the governing plane first.
     fn shown(&self) -> impl Iterator<Item = &Shown> {
         std::iter::once(&self.decides).chain(&self.other)
     }
 
-    /// Returns the answer with another variant shown, which is run first; the observer receives the
-    /// progress and may cancel.
+    /// Runs another variant, and returns the answer with that variant shown; the observer receives
+    /// the progress and may cancel.
     ///
     /// # Errors
     /// When that variant cannot be run.
@@ -139,7 +139,7 @@ pub struct Shown {
     /// Results of all variants; `None` if there are none, or if they were interrupted.
     pub variants: Option<Variants>,
     /// If the variants were interrupted, the results of the nominal case and of the variants, by
-    /// number; unfinished ones have the outcome `Interrupted`.
+    /// number; unfinished cases have the outcome `Interrupted`.
     pub stopped: Option<Vec<CaseResult>>,
 }
 
@@ -241,11 +241,11 @@ fn answered(
 /// Number of variants after which a first verdict is reported.
 const FIRST: u32 = 8;
 
-/// Runs variants, first those of the first verdict, which is then reported, and then all others.
+/// Runs the variants of the first verdict, reports that verdict, and then runs all other variants.
 ///
-/// The first verdict uses the variants with the lowest numbers rather than those that finish first;
-/// these would be a biased sample, because runs that collapse end early. Variants that are not
-/// finished when canceled have the outcome `Interrupted`.
+/// The first verdict uses the variants with the lowest numbers. The variants that finish first
+/// would be a biased sample, because runs that collapse end early. Variants that are not finished
+/// when canceled have the outcome `Interrupted`.
 fn in_order(
     planes: &[Plane],
     numbers: &[u32],
@@ -278,8 +278,8 @@ fn in_order(
     Ok(results)
 }
 
-/// Returns the number of the run to show: the nominal case if it cannot be run, so that the reason
-/// is reported.
+/// Returns the number of the run to show. If the nominal case cannot be run, the nominal case is
+/// selected, so that the reason is reported.
 fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     let stated = variants.and_then(|variants| variants.results.first());
     match (choice, variants) {
@@ -306,8 +306,8 @@ fn run_selected(
 
 /// Runs scenarios on all cores and maps each result by `finish`, which receives its index.
 ///
-/// The observer receives the combined progress; a run that has not begun counts with the expected
-/// end `end_time` (s).
+/// The observer receives the combined progress; a run that has not begun is expected to end at
+/// `end_time` (s).
 pub(crate) fn run_together<T: Send>(
     scenarios: &[Scenario],
     end_time: f64,
@@ -330,8 +330,8 @@ pub(crate) fn run_together<T: Send>(
     pool::map(&tasks, run, &|_| ()).into_iter().collect()
 }
 
-/// Returns the severity of a plane: the share of variants that collapse (1 for a single run that
-/// collapses), then the share of barrels that fall.
+/// Returns the severity of a plane as two numbers to compare in order: the share of variants that
+/// collapse (1 for a single run that collapses), and the share of barrels that fall.
 fn weight(shown: &Shown) -> (f64, f64) {
     let outcome = &shown.summary.outcome;
     let barrels = outcome.barrels.max(1) as f64;

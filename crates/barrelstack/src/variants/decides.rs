@@ -1,4 +1,5 @@
-//! The range of the share of collapses over the constants that nobody has measured, and which of them decides.
+//! Range of the share of collapses over the constants that nobody has measured, and the constant
+//! that decides the result.
 
 use barrelstack_fragility::{Influence, Trial, conditional, normal_quantile};
 use barrelstack_motion::Random;
@@ -12,10 +13,11 @@ use crate::scenario::{
     Basis, Damping, Friction, Imperfection, Imperfections, Interface, NormalLaw, StackInterfaces,
 };
 
-/// Smallest difference of the share between the 5 % and the 95 % fractile of a constant that decides.
+/// Smallest difference between the shares of collapses at the 5 % and the 95 % fractile of a
+/// decisive constant.
 const DECISIVE: f64 = 0.2;
 
-/// Fractiles at which the share is given as a function of a constant.
+/// Fractiles of a constant at which the share of collapses is given.
 const FRACTILES: [f64; 9] = [0.05, 0.1625, 0.275, 0.3875, 0.5, 0.6125, 0.725, 0.8375, 0.95];
 
 described! {
@@ -24,20 +26,23 @@ described! {
     pub struct Unknown {
         /// Name of the constant.
         pub name: &'static str,
-        /// The field of the scenario that is its median.
+        /// Field of the scenario that states the median of the constant.
         pub field: &'static str,
-        /// Its unit; "1" for a pure number.
+        /// Unit of the constant; "1" for a pure number.
         pub unit: &'static str,
-        /// Standard deviation of its logarithm, of a restitution that of its damping ratio.
+        /// Standard deviation of the logarithm of the constant; for a restitution, of the logarithm
+        /// of its damping ratio.
         pub dispersion: f64 as "1",
-        /// The share as a function of the constant, from its 5 % to its 95 % fractile, averaged over all other
-        /// constants.
+        /// Share of collapses as a function of the constant, from its 5 % to its 95 % fractile,
+        /// averaged over all other constants.
         pub shares: Vec<ShareAt>,
-        /// 95 % interval of the difference between the last and the first of these shares.
+        /// 95 % interval of the difference between the last and the first value of `shares`.
         pub difference: [f64; 2] as "1",
-        /// Fraction of the variance of the share that is left if all other constants are known: the total index.
+        /// Total-effect index: fraction of the variance of the share that remains if all other
+        /// constants are known.
         pub total: f64 as "1",
-        /// Width of the range of the share that is left on average if this constant is measured exactly.
+        /// Average width of the range of the share that remains if this constant is measured
+        /// exactly.
         pub width_if_measured: f64 as "1",
     }
 
@@ -46,9 +51,9 @@ described! {
     pub struct ShareAt {
         /// Value of the constant.
         pub value: f64 as "`unit`",
-        /// The share.
+        /// Share of variants that collapse.
         pub share: f64 as "1",
-        /// Its 95 % interval.
+        /// 95 % interval of the share.
         pub interval: [f64; 2] as "1",
     }
 }
@@ -59,8 +64,8 @@ impl Unknown {
         Some([self.shares.first()?, self.shares.last()?])
     }
 
-    /// Returns `true` if the share differs by a fifth and more between its 5 % and its 95 % fractile, and differs for
-    /// certain.
+    /// Returns `true` if the shares at the 5 % and at the 95 % fractile differ by at least a fifth,
+    /// and the 95 % interval of the difference excludes zero.
     pub fn is_decisive(&self) -> bool {
         let [low, high] = self.difference;
         let far = |[first, last]: [&ShareAt; 2]| (last.share - first.share).abs() >= DECISIVE;
@@ -77,7 +82,7 @@ impl Unknown {
         }
     }
 
-    /// Returns the test that measures it; `None` if no simple one does.
+    /// Returns a simple test that measures the constant; `None` if there is none.
     pub fn test(&self) -> Option<&'static str> {
         match self.field {
             FRICTION_BARREL_RACK => Some(
@@ -102,22 +107,22 @@ const STIFFNESS: &str = "interface.barrel-rack.stiffness";
 const RESTITUTION: &str = "interface.barrel-rack.restitution";
 const DAMPING: &str = "interface.barrel-rack.damping";
 
-/// A constant as variants draw it.
+/// A constant that the variants draw at random.
 struct Drawn {
     axis: Shared,
     name: &'static str,
     field: &'static str,
     unit: &'static str,
     dispersion: f64,
-    /// Changes the law by a factor on the constant.
+    /// Multiplies the constant in a law by a factor.
     change: fn(&mut Interface, f64),
-    /// The constant of a law.
+    /// Returns the constant from a law.
     value: fn(&Interface) -> Option<f64>,
     law: Interface,
 }
 
 impl Drawn {
-    /// Returns the constant at a deviate.
+    /// Returns the value of the constant at a standard normal deviate.
     fn at(&self, deviate: f64) -> Option<f64> {
         let mut law = self.law;
         (self.change)(&mut law, libm::exp(self.dispersion * deviate));
@@ -125,8 +130,9 @@ impl Drawn {
     }
 }
 
-/// Returns the constants that may decide before a seat is lost: friction, stiffness and damping of seats. Those of
-/// impacts, and of bodies that have fallen, vary as places and masses do.
+/// Returns the constants that may decide whether a seat is lost: friction, stiffness and damping of
+/// seats. The constants of impacts, and of bodies that have fallen, count as random imperfections,
+/// like positions and masses.
 fn drawn(laws: &StackInterfaces, spread: &Imperfections, posts: bool) -> Vec<Drawn> {
     let seat = laws.barrel_rack;
     let friction = |axis, name, field, dispersion, law| Drawn {
@@ -231,16 +237,17 @@ fn unit(law: &Interface) -> &'static str {
     }
 }
 
-/// The range of the share over the unknown constants, the share with all of them as stated, and the constants, the most
-/// influential first.
+/// Range of the share over the unknown constants, share with all constants as stated, and the
+/// constants, the most influential first.
 pub(super) struct Fitted {
     pub(super) range: [f64; 2],
     pub(super) as_stated: f64,
     pub(super) decides: Vec<Unknown>,
 }
 
-/// Fits the share to the results of the nominal case and of its variants, in the order of their numbers; `None` if
-/// variants differ in places and masses alone, if one has no verdict, or with too few of them.
+/// Fits the share of collapses to the results of the nominal case and of its variants, which are in
+/// the order of their numbers. Returns `None` if the variants differ only in positions and masses,
+/// if a variant has no verdict, or if there are too few variants.
 pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let imperfections = plane.scenario.imperfections()?;
     let stack = plane.scenario.stack()?;
@@ -290,8 +297,9 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
 }
 
 impl Spread {
-    /// Returns the constant with a simple test that narrows the range most, and the width that it leaves on average;
-    /// `None` if none narrows it by a tenth.
+    /// Returns, of the constants with a simple test, the one whose measurement narrows the range
+    /// most, and the average width that remains; `None` if no measurement narrows the range by more
+    /// than a tenth.
     pub fn worth_measuring(&self) -> Option<(&Unknown, f64)> {
         let [low, high] = self.range?;
         let tested = self.decides.iter().filter(|one| one.test().is_some());
@@ -300,7 +308,7 @@ impl Spread {
         (left < 0.9 * (high - low)).then_some((best, left))
     }
 
-    /// Returns the constant that decides most; `None` if none decides for certain.
+    /// Returns the most influential decisive constant; `None` if no constant is decisive.
     pub fn decisive(&self) -> Option<&Unknown> {
         self.decides.iter().find(|one| one.is_decisive())
     }

@@ -10,9 +10,9 @@ use crate::scenario::{
 /// Random quantities that the whole stack shares, in the order of their axes in the sequence of
 /// points.
 ///
-/// Two axes per body follow. In space, one more axis per body, for its position along the barrels,
-/// comes last, so the first row of the stack draws the same values as in the plane across the
-/// barrels.
+/// The axes of the shared quantities are followed by two axes per body. In space, these are
+/// followed by one more axis per body, for the position along the barrels; the first row of the
+/// stack therefore draws the same values as in the plane across the barrels.
 #[derive(Clone, Copy)]
 pub(super) enum Shared {
     FrictionGround,
@@ -78,7 +78,8 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     changed
 }
 
-/// Draws friction and contact constants, with one draw for all pairs of the same materials.
+/// Draws friction and contact constants at random; all pairs of bodies of the same materials have
+/// the same friction factor.
 fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, dispersion);
@@ -116,7 +117,7 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
     }
 }
 
-/// Draws position and mass of every rack and barrel.
+/// Draws the position and the mass of every rack and barrel at random.
 fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
     let rows = |body: StackBody| {
         let many = match (body, stack.space) {

@@ -49,8 +49,8 @@ pub use spread::{LEVEL, Range, Spread, fails};
 pub struct Plane {
     /// The nominal case.
     pub scenario: Scenario,
-    /// The motion with the other horizontal component, for the second half of the variants of a
-    /// stack in both planes.
+    /// The motion with the other horizontal component, which applies to the second half of the
+    /// variants if the stack is analyzed in both planes.
     exchanged: Option<MotionSpec>,
 }
 
@@ -111,8 +111,8 @@ impl Plane {
         variant
     }
 
-    /// Returns a variant by its number as it is run for the verdict; it may end before everything
-    /// has come to rest.
+    /// Returns a variant by its number as it is run for the verdict; such a run may end before
+    /// everything has come to rest.
     pub fn trial(&self, number: u32) -> Scenario {
         let mut trial = self.variant(number);
         if let (Until::Rest, Some(imperfections)) = (trial.run.until, trial.imperfections()) {
@@ -133,8 +133,8 @@ impl Plane {
         exchanged.unwrap_or(&self.scenario.motion)
     }
 
-    /// Returns the horizontal component of the record that a variant states; `None` for the default
-    /// component and for motions without a record.
+    /// Returns the name of the horizontal component that the motion of a variant states; `None` for
+    /// the default component and for motions without a record.
     fn component(&self, number: u32) -> Option<&str> {
         match &self.motion(number).source {
             MotionSource::Record(record) => record.component.as_deref(),
@@ -207,7 +207,8 @@ pub fn run(
     Ok(results.map(|results| together(planes, &numbers, results)))
 }
 
-/// Runs only the variants with the given numbers, like [`run`]; number 0 is the nominal case.
+/// Runs only the variants with the given numbers, but otherwise works like [`run`]; number 0 is the
+/// nominal case.
 ///
 /// Returns their results in each plane, in the order of the numbers, to be combined with results
 /// computed elsewhere ([`together`]). Returns `None` if canceled.

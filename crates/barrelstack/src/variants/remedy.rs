@@ -1,5 +1,5 @@
-//! Remedy for a stack that falls: the smallest change of height, or the loosest straps, that
-//! suffices.
+//! Remedies for a stack that falls: the smallest reduction of height, and the loosest straps, that
+//! suffice.
 //!
 //! A change suffices if enough variants of the changed stack stand in every plane. The changed
 //! stack has the same number of variants as the original stack, with the same numbers. The module
@@ -29,11 +29,11 @@ pub use self::search::{ENOUGH, Failed};
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Number of variants that a thread takes at a time, which fill one bundle of lanes.
+/// Number of variants that a thread takes at a time; this many fill one bundle of lanes.
 const BATCH: usize = 8;
 
 described! {
-    /// Changes that would have kept the stack up, as far as the search went.
+    /// Changes, of those that the search tried, that would have kept the stack up.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that must stand in every plane.
@@ -42,15 +42,15 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
-        /// Number of changes that may be tried, each in every plane; the intervals hold for all of
-        /// them together.
+        /// Number of changes that may be tried, each in every plane; the intervals hold
+        /// simultaneously for all these changes.
         pub candidates: u32,
         /// Every change that was tried; changes of height come first.
         pub tried: Vec<Tried>,
-        /// True if the search is complete; false if it was stopped.
+        /// True if the search is complete; false if the search was stopped.
         pub complete: bool,
-        /// Command that compares the sufficient changes with the stack as it is; null if no change
-        /// suffices, or if no command can express it.
+        /// Command that compares the stack as it is with the sufficient changes; null if no change
+        /// suffices, or if no command can express the changes.
         pub comparison: Option<String>,
     }
 
@@ -67,18 +67,18 @@ described! {
         pub changes: Vec<String>,
         /// True if enough variants stand.
         pub suffices: bool,
-        /// Number of variants counted: all, or only the first ones, by number, if the change was
-        /// rejected early.
+        /// Number of variants counted: all variants, or only those with the lowest numbers if the
+        /// change was rejected early.
         pub variants: u32,
-        /// Number of counted variants that collapse or have no verdict, in the plane with the most
-        /// of them.
+        /// Number of counted variants that collapse or have no verdict, in the plane with the
+        /// largest such number.
         pub failed: u32,
         /// Share of variants that fail; null if not all variants were counted, because the change
         /// was rejected or the search was stopped.
         pub share: Option<f64> as "1",
-        /// Interval of that share (Clopper and Pearson, with Bonferroni's correction); the
-        /// intervals of all changes and planes of the search hold together with 95 %. Null if the
-        /// share is null.
+        /// Interval of the share of variants that fail (Clopper and Pearson, with Bonferroni's
+        /// correction); the intervals of all changes and planes of the search hold simultaneously
+        /// with 95 % confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
     }
 }
@@ -118,8 +118,8 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, spreads.iter().map(|(_, spread)| *spread), &prepare, observer)
 }
 
-/// Searches for a remedy like [`remedy`], with runs made by `prepare`; `spreads` are the statistics
-/// of the stack as it is.
+/// Searches for a remedy like [`remedy`], with runs prepared by `prepare`; `spreads` are the
+/// statistics of the stack without changes.
 ///
 /// # Errors
 /// As [`remedy`].
@@ -223,8 +223,8 @@ fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     Some(Change { kind: "height", levels, pretension: None, changes, scenario })
 }
 
-/// Returns the change that straps all levels together; `None` if the stack has straps at least as
-/// tight, or if the straps would tear.
+/// Returns the change that straps all levels together; `None` if the stack already has straps that
+/// are at least as tight, or if the straps would tear.
 fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -278,7 +278,7 @@ impl Change {
     }
 }
 
-/// The variants of a stack in every plane, run on all cores.
+/// The variants of a stack in every plane, to be run on all cores.
 struct InPlanes {
     /// For each plane the nominal case, followed by its variants.
     cases: Vec<Vec<Prepared>>,

@@ -25,25 +25,29 @@ described! {
         pub seed: u32,
         /// Number of variants with a verdict.
         pub variants: u32,
-        /// Number of variants that collapse, either while shaken or under their own weight before.
+        /// Number of variants that collapse, either while shaken or, before that, under their own
+        /// weight.
         pub collapsed: u32,
         /// Share of variants with a verdict that collapse; null if no variant has a verdict.
         pub share: Option<f64> as "1",
-        /// Wilson's 95 % interval of that share, widened so that it holds whether the variants
-        /// without a verdict stand or collapse.
+        /// Wilson's 95 % interval of the share that collapses, widened so that it holds regardless
+        /// of whether the variants without a verdict stand or collapse.
         pub interval: [f64; 2] as "1",
-        /// Range of the share of stacks that collapse over the constants that nobody has measured: 95 % of the shares
-        /// under constants drawn from their distributions, sampling included; null with fewer than 16 variants, if
-        /// one of them has no verdict, or if they differ in places and masses alone.
+        /// Range of the share of stacks that collapse, over the constants that nobody has measured:
+        /// it contains 95 % of the shares if these constants are drawn from their distributions,
+        /// sampling error included. Null if there are fewer than 16 variants, if one of them has no
+        /// verdict, or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of stacks that collapse with all these constants as stated; null as `range`.
+        /// Share of stacks that collapse if all unmeasured constants are as stated; null if `range`
+        /// is null.
         pub share_as_stated: Option<f64> as "1",
-        /// The constants that nobody has measured, the most influential first; empty where `range` is null.
+        /// The constants that nobody has measured, the most influential first; empty if `range` is
+        /// null.
         pub decides: Vec<Unknown>,
         /// Time of the first loss of a seat, over the variants that collapse while shaken.
         pub first_loss: Option<Range> as "s",
-        /// Time of the first fall of a barrel, over the variants in which one falls while shaken
-        /// and before the run ends.
+        /// Time of the first fall of a barrel, over the variants in which a barrel falls while
+        /// shaken and before the run ends.
         pub first_fall: Option<Range> as "s",
         /// Number of barrels fallen by the end of the run, over the variants that collapse while
         /// shaken.
@@ -53,8 +57,8 @@ described! {
         pub counted_for: Option<f64> as "s",
         /// Total number of barrels.
         pub barrels: usize,
-        /// Earliest time at which a standing variant ended before its motion did; null if none was
-        /// cut short.
+        /// Earliest time at which a standing variant ended before its motion did; null if no
+        /// variant was cut short.
         pub standing_until: Option<f64> as "s",
         /// Number of variants in which the load on staves exceeds their stated capacity before any
         /// seat is lost.
@@ -66,15 +70,16 @@ described! {
         pub modes: BTreeMap<&'static str, u32>,
         /// Number of collapsing variants that fall under their own weight, before they are shaken.
         pub cannot_stand: u32,
-        /// Number of variants without a verdict, because they could not be built or their
+        /// Number of variants without a verdict, because their model could not be built or their
         /// computation failed.
         pub broken: u32,
-        /// Reason of the first variant that falls before it is shaken or has no verdict.
+        /// Reason why a variant falls before it is shaken or has no verdict, for the first such
+        /// variant.
         pub reason: Option<String>,
         /// Outcome of the nominal case.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
-        /// Number of the run that is most like all others in outcome, mode, time and fallen
-        /// barrels, over all planes; 0 is the nominal case.
+        /// Number of the most typical run: the one that is most similar to all others in outcome,
+        /// mode, time and fallen barrels, in all planes together; 0 is the nominal case.
         pub typical: u32,
         /// Number of the least severe run.
         pub gentlest: u32,
@@ -99,7 +104,7 @@ described! {
 }
 
 impl Range {
-    /// Summarizes values; `None` without values.
+    /// Summarizes values; `None` if there are none.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
@@ -110,8 +115,8 @@ impl Range {
 }
 
 impl Spread {
-    /// Summarizes the results of the nominal case of a plane, which comes first, and of its
-    /// variants; `None` for a scene without variants.
+    /// Summarizes the results in a plane, of which the first is that of the nominal case; `None`
+    /// for a scene without variants.
     pub fn of(plane: &Plane, results: &[CaseResult]) -> Option<Self> {
         let imperfections = plane.scenario.imperfections()?;
         let variants = results.get(1..).unwrap_or_default();
@@ -181,7 +186,7 @@ impl Spread {
     }
 
     /// Returns a phrase for the time during which falls are counted, such as " within 2 s of
-    /// {loss}"; empty if they are counted until rest.
+    /// {loss}"; empty if falls are counted until nothing moves.
     pub fn counted(&self, loss: &str) -> String {
         let within = |time: f64| format!(" within {} s of {loss}", (10.0 * time).round() / 10.0);
         self.counted_for.map_or_else(String::new, within)
@@ -193,7 +198,7 @@ impl Spread {
     }
 
     /// Returns the share that collapses if every variant without a verdict is counted as collapsed;
-    /// `None` if none was run.
+    /// `None` if no variant was run.
     pub fn largest_share(&self) -> Option<f64> {
         let run = self.run();
         (run > 0).then(|| f64::from(self.collapsed + self.broken) / f64::from(run))

@@ -30,8 +30,9 @@ impl Order {
     }
 }
 
-/// Compares two results by severity: collapse, number of fallen barrels, earlier collapse; for
-/// standing stacks, drift.
+/// Compares two results by severity: a collapse is more severe than standing; of two collapses, the
+/// one with more fallen barrels, then the earlier one; of two standing stacks, the one with the
+/// larger drift.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);
@@ -44,8 +45,9 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
 
 /// Returns the number of the medoid: the run with the smallest sum of distances to all others.
 ///
-/// The distances are added over all planes, because a variant is one stack in all planes. Among
-/// equals, the first is chosen; the result is 0 if no allowed run has a verdict in all planes.
+/// The distances are added over all planes, because a variant is one stack in all planes. Of
+/// several runs with the smallest sum, the first is chosen. The result is 0 if no allowed run has a
+/// verdict in all planes.
 pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);
@@ -55,8 +57,7 @@ pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool)
     least.and_then(|(at, _)| u32::try_from(at).ok()).unwrap_or(0)
 }
 
-/// Returns, for each run, the sum of its distances to all others; `None` for a run without a
-/// verdict.
+/// Returns the sum of the distances of each run to all others; `None` for a run without a verdict.
 fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
     let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
     let times = extent(shown.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));
@@ -72,9 +73,9 @@ fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
 
 /// Returns the distance between two runs.
 ///
-/// It is 4 if only one of them collapses. Otherwise a different mode adds 1, the difference of the
-/// collapse times (or of the drifts) adds its share of the extent `times` (or `drifts`), and
-/// barrels that fall in only one of the runs add their share of all barrels.
+/// It is 4 if only one of them collapses. Otherwise it is the sum of three terms: 1 if the modes
+/// differ; the difference of the collapse times (or of the drifts), divided by the extent `times`
+/// (or `drifts`); and the share of the barrels that fall in only one of the runs.
 fn distance(a: &CaseResult, b: &CaseResult, times: f64, drifts: f64) -> f64 {
     let apart = |a: f64, b: f64, all: f64| if all > 0.0 { (a - b).abs() / all } else { 0.0 };
     match (collapse(a), collapse(b)) {
@@ -103,7 +104,7 @@ fn drift(result: &CaseResult) -> Option<f64> {
     result.demands.top_drift_ratio
 }
 
-/// Returns the difference between the largest and the smallest value; zero without values.
+/// Returns the difference between the largest and the smallest value; zero if there are no values.
 fn extent(values: impl Iterator<Item = f64>) -> f64 {
     let ends = values.fold(None, |ends: Option<(f64, f64)>, value| {
         Some(ends.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))

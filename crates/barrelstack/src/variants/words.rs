@@ -6,23 +6,24 @@ use super::{Range, Spread};
 use crate::scenario::{Imperfection, Imperfections, View};
 use crate::summary::Summary;
 
-/// Share of collapsing variants at and above which the verdict is "Falls".
+/// Smallest share of collapsing variants for which the verdict is "Falls".
 const FALLS: f64 = 0.9;
 
-/// Share of collapsing variants up to which the verdict is "Stands".
+/// Largest share of collapsing variants for which the verdict is "Stands".
 const STANDS: f64 = 0.05;
 
-/// Number of variants needed for the verdict "Stands"; if none of seven falls, up to 35 % of such
-/// stacks may fall.
+/// Number of variants needed for the verdict "Stands". With seven variants of which none falls, up
+/// to 35 % of such stacks may still fall.
 const ENOUGH: u32 = 8;
 
 /// Verdict on a stack in one plane or in space, ordered from best to worst.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Judgment {
     Stands,
-    /// None falls, but fewer than [`ENOUGH`] variants have a verdict.
+    /// No variant falls, but fewer than [`ENOUGH`] variants have a verdict.
     TooFew,
-    /// None or hardly any falls until this time (s), at which the runs end before the motion does.
+    /// No variant, or hardly any, falls until this time (s), at which the runs end before the
+    /// motion does.
     Cut(f64),
     /// No variant could be judged.
     None,
@@ -31,7 +32,8 @@ enum Judgment {
 }
 
 impl Judgment {
-    /// Judges by the share that collapses; variants without a verdict count as collapsed.
+    /// Judges a stack by the share of variants that collapse; variants without a verdict count as
+    /// collapsed.
     fn of(spread: &Spread) -> Self {
         match (judged_share(spread), spread.standing_until) {
             (None, _) => Self::None,
@@ -43,7 +45,7 @@ impl Judgment {
         }
     }
 
-    /// Returns the worst verdict of all planes; `None` without planes.
+    /// Returns the worst verdict of all planes; `None` if there are no planes.
     fn worst<'a>(spreads: impl IntoIterator<Item = &'a Spread>) -> Option<Self> {
         let worse = |a, b| match (a, b) {
             (Self::Cut(one), Self::Cut(other)) => Self::Cut(one.min(other)),
@@ -70,10 +72,11 @@ impl Judgment {
     }
 }
 
-/// Statistics of variants, with their plane; `None` in space.
+/// Statistics of variants, with their plane, which is `None` in space.
 type Placed<'a> = (Option<View>, &'a Spread);
 
-/// Returns the answer for one plane or for both, given with the plane across the barrels first.
+/// Returns the answer for one plane or for both; of two planes, the plane across the barrels is
+/// given first.
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
@@ -100,7 +103,8 @@ fn answer(planes: &[Placed<'_>]) -> String {
     sentences.join(" ")
 }
 
-/// Returns the planes, that with the largest share first; of equals the first.
+/// Returns the planes in the order of their shares of collapses, the largest share first; planes
+/// with equal shares keep their order.
 fn worst_first<'a>(planes: &[Placed<'a>]) -> Vec<Placed<'a>> {
     let mut sorted = planes.to_vec();
     let severity = |spread| judged_share(spread).unwrap_or(-1.0);
@@ -112,11 +116,12 @@ fn worst<'a>(planes: &[Placed<'a>]) -> Option<Placed<'a>> {
     worst_first(planes).into_iter().next()
 }
 
-/// Width of a range of shares up to which the unknown constants are said to matter little.
+/// Widest range of shares for which the unknown constants are said to matter little.
 const NARROW: f64 = 0.1;
 
-/// Describes the range of the share over the unknown constants, and the constant that decides: "Depending on constants
-/// that nobody has measured, 31 to 100 % fall along the barrels; the stiffness of seats decides: …".
+/// Describes the range of the share over the unknown constants, and the decisive constant, such as
+/// "Depending on constants that nobody has measured, 31 to 100 % fall along the barrels; the
+/// stiffness of seats decides: …".
 fn hangs_on((view, spread): Placed<'_>) -> Option<String> {
     let [low, high] = spread.range?;
     let place = view.map_or_else(String::new, |view| format!(" {}", view.words()));
@@ -139,12 +144,13 @@ fn hangs_on((view, spread): Placed<'_>) -> Option<String> {
     Some(format!("Depending on constants that nobody has measured, {range} fall{place}; {which}."))
 }
 
-/// Describes the measurement that narrows the range of the share most; `None` if none does.
+/// Describes the measurement that narrows the range of the share most; `None` if no measurement
+/// narrows it.
 pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
     Some(format!(
-        "To narrow that range, measure the {}: {}. On average that leaves a range of {:.0} percentage points, instead of {:.0}.",
+        "To narrow that range, measure the {}: {}. On average, this leaves a range of {:.0} percentage points instead of {:.0}.",
         one.name,
         one.test()?,
         100.0 * left,
@@ -152,7 +158,7 @@ pub fn measure(spread: &Spread) -> Option<String> {
     ))
 }
 
-/// Returns the verdict and the counts that support it, those of the worst plane first.
+/// Returns the verdict and the counts that support it; the counts of the worst plane come first.
 fn verdict(planes: &[Placed<'_>]) -> Option<String> {
     let judgment = Judgment::worst(planes.iter().map(|(_, spread)| *spread))?;
     let worst_first = worst_first(planes);
@@ -186,7 +192,7 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     )))
 }
 
-/// Returns the tone of the verdict; that of the worst plane decides.
+/// Returns the tone of the verdict of the worst plane.
 pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     match Judgment::worst(planes.iter().map(|(_, spread)| *spread)) {
         None | Some(Judgment::None) => Tone::Invalid,
@@ -196,7 +202,7 @@ pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     }
 }
 
-/// Returns a phrase for all of a number of variants.
+/// Returns a phrase for all variants, such as "both variants" or "all 64 variants".
 fn all_of(variants: u32) -> String {
     match variants {
         1 => "the one variant".to_owned(),
@@ -212,7 +218,7 @@ fn judged_share(spread: &Spread) -> Option<f64> {
 }
 
 /// Describes how many variants fall, with the 95 % interval of their share, such as "53 of 64
-/// variants fall (72–90 %)"; `None` without any verdict.
+/// variants fall (72–90 %)"; `None` if no variant has a verdict.
 fn counts(spread: &Spread, noun: &str) -> Option<String> {
     let Spread { variants, collapsed, interval, .. } = spread;
     let [low, high] = interval.map(percent);
@@ -288,7 +294,7 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
     sentences
 }
 
-/// Returns `true` if the share that falls is at most that of the verdict "Stands", however few
+/// Returns `true` if the share that falls is small enough for the verdict "Stands", however few
 /// variants were run.
 pub(crate) fn stands(spread: &Spread) -> bool {
     judged_share(spread).is_some_and(|share| share <= STANDS)
@@ -343,8 +349,8 @@ fn barrels(fallen: Range, all: usize) -> String {
     }
 }
 
-/// Returns the sentences that precede the verdict: on variants that fall under their own weight,
-/// and on those without a verdict.
+/// Returns the sentences that precede the verdict, about variants that fall under their own weight
+/// and about variants without a verdict.
 fn before((view, spread): Placed<'_>) -> Vec<String> {
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     let (fallen, broken, all) = (spread.cannot_stand, spread.broken, spread.run());
@@ -363,8 +369,7 @@ fn before((view, spread): Placed<'_>) -> Vec<String> {
     if broken > 0 {
         let has = if broken == 1 { "has" } else { "have" };
         sentences.push(format!(
-            "{place}{} {has} no verdict: they could not be built or their computation failed; the verdict counts them \
-             as falling.",
+            "{place}{} {has} no verdict, because a model could not be built or a computation failed; the verdict counts such variants as falling.",
             counted(broken)
         ));
     }
@@ -493,8 +498,7 @@ mod tests {
         assert_eq!(
             said,
             "Across the barrels, 2 of 65 variants fall under their own weight, before they are shaken. Across the \
-             barrels, 4 of 65 variants have no verdict: they could not be built or their computation failed; the verdict \
-             counts them as falling. Not safe. Across the barrels 2 of 61 variants fall (1–11 %)."
+             barrels, 4 of 65 variants have no verdict, because a model could not be built or a computation failed; the verdict counts such variants as falling. Not safe. Across the barrels 2 of 61 variants fall (1–11 %)."
         );
         // The same counts in both planes.
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
@@ -617,7 +621,7 @@ mod tests {
         let decides = "the stiffness of seats decides: 96 % at 1.1 MN/m, 59 % at 8.0 MN/m.";
         assert!(said.contains(&format!("(1–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left = "On average that leaves a range of 55 percentage points, instead of 83.";
+        let left = "On average, this leaves a range of 55 percentage points instead of 83.";
         assert!(
             measured.contains("`barrelstack calibrate stiffness`. ") && measured.ends_with(left)
         );

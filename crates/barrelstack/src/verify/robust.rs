@@ -6,17 +6,17 @@ use super::Repeat;
 use crate::summary::OutcomeSummary;
 
 described! {
-    /// Properties of the run that all repeats share; all false without repeats.
+    /// Properties of the run that all repeats share; all false if there are no repeats.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Robust {
-        /// True if all agree on whether the stack stands or collapses.
+        /// True if all repeats agree with the run on whether the stack stands or collapses.
         pub kind: bool,
-        /// True if all agree on the mode of the collapse.
+        /// True if all repeats agree with the run on the mode of the collapse.
         pub mode: bool,
-        /// True if all agree on the first body that leaves its seat.
+        /// True if all repeats agree with the run on the first body that leaves its seat.
         pub first: bool,
-        /// Largest difference of the time of the first fall; null if no barrel falls in some of the
-        /// runs.
+        /// Largest difference between the time of the first fall in the run and in a repeat; null
+        /// if no barrel falls in the run or in a repeat.
         pub first_fall_within: Option<f64> as "s",
         /// Smallest and largest number of barrels that fall, over the run and its repeats.
         pub barrels_fallen: [usize; 2],
@@ -24,7 +24,7 @@ described! {
 }
 
 impl Robust {
-    /// `true` if kind, mode and first body agree in the run and all repeats.
+    /// `true` if kind, mode and first body are the same in the run and in all repeats.
     pub fn outcome(&self) -> bool {
         self.kind && self.mode && self.first
     }

@@ -45,7 +45,7 @@ pub(super) struct Observed {
     pub(super) first_barrel: Option<String>,
     /// Time at which the first body left its seat.
     pub(super) loss: Option<Time>,
-    /// Time at which the first barrel had fallen.
+    /// Time at which the first barrel counts as fallen.
     pub(super) first_fall: Option<Time>,
     /// Names of barrels, and the times at which they had fallen.
     pub(super) falls: Vec<(String, Time)>,

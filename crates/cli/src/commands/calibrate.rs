@@ -43,9 +43,9 @@ pub(crate) struct CalibrateArgs {
 /// Kinds of tests, and their arguments.
 #[derive(Debug, Subcommand)]
 enum Test {
-    /// Stiffness k from a press test (columns `penetration (mm),force (kN)`), from the sag of a
-    /// loaded rack (columns `load (kg),sag (mm)` and, for a cradle, `angle (deg)`), or from a tap
-    /// test (column `period (s)`, with --scenario).
+    /// Stiffness k from a press test (columns `penetration (mm),force (kN)`), from the sag under a
+    /// load on a rack (columns `load (kg),sag (mm)` and, for a cradle, `angle (deg)`), or from a
+    /// tap test (column `period (s)`, with --scenario).
     Stiffness(StiffnessArgs),
     /// Restitution and damping c from drop tests: columns `drop height (mm),rebound height (mm)`,
     /// or the impact times `time (s)` of one bounce sequence.
@@ -68,11 +68,12 @@ enum Test {
     /// Each row of the file is a test: `mode` (ejection, rocking, rack-sliding, overturning or
     /// stands), the times of falls (`B4.1 fell (s)` and so on, or `first fall (s)` and `first
     /// barrel`), `loss of seat (s)`, the end of the observation (`until (s)`), and `scenario` if
-    /// tests differ in it. Times count from the start of the motion. `stands` marks a body that did
-    /// not fall; an empty cell was not observed.
+    /// the tests have different scenarios. Times are counted from the start of the motion. `stands`
+    /// marks a body that did not fall; an empty cell marks what was not observed.
     ///
-    /// Many stacks are simulated, each built slightly differently, with parameters spread around
-    /// those of the scenario. Each simulation is weighted by its agreement with the observations.
+    /// Many stacks are simulated, each with slightly different geometry, and with parameters drawn
+    /// around those of the scenario. Each simulation is weighted by its agreement with the
+    /// observations.
     Collapse(CollapseArgs),
 }
 
@@ -115,13 +116,13 @@ struct ChangeArgs {
     /// Change a value of the scenario, such as stack.levels=2; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// File of the ground motion, in place of the scenario's.
+    /// File of the ground motion, in place of the motion that the scenario states.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 }
 
 impl ChangeArgs {
-    /// Returns a scenario, given by name, with the changes.
+    /// Returns the scenario of a name, with the changes.
     fn of(&self, name: &str) -> ScenarioArgs {
         let (set, record) = (self.set.clone(), self.record.clone());
         ScenarioArgs { scenario: name.to_owned(), set, record }
@@ -132,14 +133,14 @@ impl ChangeArgs {
 struct StiffnessArgs {
     /// The measurements (CSV).
     file: PathBuf,
-    /// Number of seats or contact nodes that share the force; k is that of one.
+    /// Number of seats or contact nodes that share the force; k applies to a single one of them.
     #[arg(long, visible_alias = "seats", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
     /// Stack that was tapped, in the plane in which it swayed: a scenario file (TOML), or the name
     /// of a built-in scenario.
     #[arg(long)]
     scenario: Option<String>,
-    /// Change a value of that scenario, such as stack.levels=2; may be repeated.
+    /// Change a value of the scenario of the tapped stack, such as stack.levels=2; may be repeated.
     #[arg(long, value_name = "PATH=VALUE", requires = "scenario")]
     set: Vec<String>,
     #[command(flatten)]
@@ -158,7 +159,7 @@ struct DropArgs {
     /// Stiffness k of one contact node, such as "9.8 kN/cm".
     #[arg(long, requires = "mass", value_name = "K")]
     stiffness: Option<String>,
-    /// Number of contact nodes that meet at once; k and c are those of one.
+    /// Number of contact nodes that touch at the same time; k and c apply to a single node.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
     #[command(flatten)]
@@ -183,8 +184,8 @@ struct ResponseArgs {
     scenario: String,
     /// The recorded histories (CSV).
     file: PathBuf,
-    /// Parameters to fit: k and c (of barrel-rack; those of rack-ground keep their ratio to these),
-    /// mu-br (friction barrel-rack), mu-rg (friction rack-ground).
+    /// Parameters to fit: k and c of barrel-rack (those of rack-ground change in proportion), mu-br
+    /// (friction barrel-rack), mu-rg (friction rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
     /// Ignore rows after this time, such as "1.5 s".
@@ -202,11 +203,11 @@ struct CollapseArgs {
     scenario: String,
     /// Observations (CSV).
     file: PathBuf,
-    /// Parameters to find: k and c (of barrel-rack; those of rack-ground keep their ratio to
-    /// these), mu-br (friction barrel-rack), mu-rg (friction rack-ground).
+    /// Parameters to find: k and c of barrel-rack (those of rack-ground change in proportion),
+    /// mu-br (friction barrel-rack), mu-rg (friction rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
-    /// Range of the parameters: within this factor of those of the scenario.
+    /// Range of the parameters: the values of the scenario, divided and multiplied by this factor.
     #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR")]
     within: f64,
     /// Standard deviation of observed times, such as "0.05 s".
@@ -281,14 +282,15 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the stiffness from a press, sag or tap test, as determined by the columns of the file.
+/// Returns the stiffness from a press, sag or tap test; the columns of the file determine the kind
+/// of test.
 fn pressed(args: &StiffnessArgs) -> anyhow::Result<Calibration> {
     let table = Table::load(&args.file)?;
     let interface = word(args.pair.interface);
     let Some(scenario) = &args.scenario else {
         anyhow::ensure!(
             !table.has("period"),
-            "{}: a tap test needs the stack that was tapped: add --scenario with it, such as --scenario demo-napa --set \
+            "{}: a tap test needs the stack that was tapped: add its scenario, such as --scenario demo-napa --set \
              stack.view=longitudinal",
             args.file.display()
         );

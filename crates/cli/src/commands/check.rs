@@ -1,4 +1,4 @@
-//! `barrelstack check`: validates a scenario and tests that the stack stands before the motion.
+//! `barrelstack check`: validates a scenario and tests whether the stack stands before the motion.
 
 use std::process::ExitCode;
 
@@ -54,7 +54,7 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Tabulates the static stability of the stack of a scenario at every height, on its own rack and
-/// on those of the catalog.
+/// on every rack of the catalog.
 fn table(scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Result<StabilityTable> {
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).with_context(|| {
         "--table needs a stack in a plane: use a scenario with a stack, and set stack.view to \"both\", \"transverse\" or \

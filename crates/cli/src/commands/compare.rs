@@ -29,21 +29,21 @@ pub(crate) struct CompareArgs {
     /// Scenario files (TOML) or names of built-in scenarios.
     #[arg(value_name = "SCENARIO", required = true)]
     scenarios: Vec<String>,
-    /// Further run: the first scenario with this value changed; may be repeated.
+    /// Add a run of the first scenario with this value changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
-    /// File of the ground motion of all runs, in place of those of the scenarios.
+    /// File of the ground motion of all runs, in place of the motions that the scenarios state.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Number of variants of each stack to run, in place of imperfections.variants; 0 runs only the
     /// stacks as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     variants: Option<u32>,
-    /// Name of a run, in the order of the runs, in place of a description of the differences; may
-    /// be repeated.
+    /// Name of a run, in place of a description of its differences; may be repeated, in the order
+    /// of the runs.
     #[arg(long, value_name = "WORDS")]
     label: Vec<String>,
     /// Folder for report.html, report.md and figures/; must be new or empty.
@@ -142,8 +142,8 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     Ok(super::status(broken))
 }
 
-/// Writes the report of the only run that was finished, or started, when the comparison was
-/// stopped.
+/// Writes the report of the only run that was finished, or at least started, when the comparison
+/// was stopped.
 fn alone(
     args: &CompareArgs,
     folder: &Folder,
@@ -203,7 +203,7 @@ fn path(change: &str) -> &str {
     change.split_once('=').map_or(change, |(path, _)| path).trim()
 }
 
-/// Formats a change with spaces: `stack.levels = 4`.
+/// Formats a change with spaces, such as `stack.levels = 4`.
 fn spaced(change: &str) -> String {
     change.split_once('=').map_or_else(
         || change.to_owned(),

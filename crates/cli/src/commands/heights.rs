@@ -1,4 +1,4 @@
-//! `barrelstack heights`: safe heights, on one page.
+//! `barrelstack heights`: finds safe heights of stacks, and presents them on one page.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,7 +23,7 @@ pub(crate) struct HeightsArgs {
     /// Number of levels of the highest stack.
     #[arg(long, value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
     highest: u32,
-    /// File of an additional motion, such as that of your own site; may be repeated.
+    /// File of an additional motion, such as a record from your own site; may be repeated.
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
     /// Number of synthetic motions in addition to the bundled record.

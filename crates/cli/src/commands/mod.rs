@@ -56,8 +56,8 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
 
 /// Loads a scenario file, standard input (`-`) or a built-in scenario, and applies the changes.
 ///
-/// An existing file takes precedence. A name without a dot or a separator that is not a file refers
-/// to a built-in scenario.
+/// An existing file takes precedence. If no such file exists, a name without a dot or a path
+/// separator refers to a built-in scenario.
 fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     let mut overrides = args.set.clone();
     if let Some(record) = &args.record {
@@ -98,19 +98,19 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     let next = if let Problem::UnknownName { nearest: Some(nearest), .. } = error.problem() {
         format!("did you mean `{nearest}`?")
     } else {
-        "`barrelstack scenarios` lists those".to_owned()
+        "`barrelstack scenarios` lists the built-in scenarios".to_owned()
     };
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
 
-/// Returns the exit status of a run, as listed in the help; the status of interrupted work is set
-/// at the end of the program.
+/// Returns the exit status of a run, as listed in the help. The status of interrupted work is not
+/// set here, but at the end of the program.
 fn status(broken: bool) -> ExitCode {
     if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-/// Adds the position in the scenario, or the name of the scenario, to an error of a run; a record
-/// given on the command line has no position in the scenario.
+/// Adds to an error of a run the position in the scenario, or the name of the scenario; errors of a
+/// record that is given on the command line have no position in the scenario.
 fn placed(error: RunFailure, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     if args.record.is_some()
         && let RunFailure::Ground(error) = error

@@ -27,7 +27,7 @@ pub(super) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Checks the folder, and registers the note that results are kept there.
+    /// Checks the folder, and registers the note that finished results are kept in the folder.
     pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
         writable(out)?;
         keeps(format!(
@@ -38,7 +38,7 @@ impl PageArgs {
         Ok((options, Progress::new(!self.quiet)))
     }
 
-    /// Writes the page and the document under its name, and prints the findings.
+    /// Writes the page and the JSON document, and prints the findings.
     pub(super) fn end(
         &self,
         (out, name): (&Path, &str),
@@ -63,7 +63,7 @@ impl PageArgs {
     }
 }
 
-/// Writes a page, and the JSON document under its name.
+/// Writes a page, and a JSON document under the given name.
 pub(super) fn write_both(
     out: &Path,
     name: &str,

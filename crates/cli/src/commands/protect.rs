@@ -39,8 +39,8 @@ pub(crate) struct ProtectArgs {
     /// Number of motions per round, if no folder of motions is given.
     #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
     count: u32,
-    /// Number of rounds: the first tries all protections, each further round the better half of
-    /// them.
+    /// Number of rounds: the first round tries all protections, and each further round the better
+    /// half of the protections of the previous round.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
     /// Seed of motions and friction.
@@ -95,7 +95,7 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
         );
     }
     if let Some(budget) = args.budget.filter(|budget| !(*budget >= 0.0 && budget.is_finite())) {
-        bail!("--budget {budget}: expected an amount in US$ of zero or more");
+        bail!("--budget {budget}: expected an amount in US$, not negative");
     }
     Ok(Request {
         scenario,
@@ -124,7 +124,7 @@ fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
     Ok(all)
 }
 
-/// Adds a comparison of the stack as it is and with the best protection, under the motion of the
+/// Adds a comparison of the stack without and with the best protection, under the motion of the
 /// scenario.
 fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<()> {
     let progress = Progress::new(!args.page.quiet);
@@ -158,7 +158,8 @@ fn lines(found: &Ranking) -> Vec<String> {
         ));
     }
     lines.push(
-        "* no other protection that was tried loses less at the same or a lower cost".to_owned(),
+        "* no other protection that was tried has smaller losses at the same or a lower cost"
+            .to_owned(),
     );
     lines
 }

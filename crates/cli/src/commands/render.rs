@@ -24,7 +24,7 @@ pub(crate) struct RenderArgs {
     /// paraview/.
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
-    /// Part to write; may be repeated. Runs in space have `paraview` only.
+    /// Part to write; may be repeated. For runs in space, only `paraview` is available.
     #[arg(long, value_enum, value_name = "PART")]
     only: Vec<PartName>,
     #[command(flatten)]
@@ -35,16 +35,16 @@ pub(crate) struct RenderArgs {
     /// Pictures and ParaView time steps per second of the run; animations show at most 50.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
     pub(super) rate: f64,
-    /// Start of the film (s).
+    /// Start (s) of the interval to render.
     #[arg(long, value_name = "SECONDS")]
     from: Option<f64>,
-    /// End of the film (s).
+    /// End (s) of the interval to render.
     #[arg(long, value_name = "SECONDS")]
     to: Option<f64>,
     /// Longer side of animations (pixels).
     #[arg(long, value_name = "PIXELS", default_value = "480", value_parser = clap::value_parser!(u32).range(64..=4096))]
     size: u32,
-    /// Replace what an earlier rendering wrote for these parts.
+    /// Replace the files that an earlier rendering wrote for these parts.
     #[arg(long)]
     pub(super) overwrite: bool,
     /// Show no progress.

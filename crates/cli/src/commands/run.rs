@@ -75,7 +75,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 /// Reads the page that contains the program.
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = system::read(path, PAGE_LIMIT)
-        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not a text".to_owned()))
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "the file is not text".to_owned()))
         .map_err(|reason| anyhow!("cannot read the page {}: {reason}", path.display()))?;
     if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
         bail!(
@@ -102,8 +102,7 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
     };
     match args.variant {
         Some(number) if number > count => bail!(
-            "--variant {number}: there are variants 1 to {count}, and 0 is the stack as stated; \
-             --variants {number} makes more"
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the stack as stated; --variants {number} adds variants"
         ),
         Some(number) => Ok(RunChoice::Number(number)),
         None => Ok(RunChoice::Typical),

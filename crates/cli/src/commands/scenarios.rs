@@ -15,7 +15,7 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None => list(args.json)?,
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
-        Some(_) if args.json => bail!("--json is for the list of scenarios; leave it out"),
+        Some(_) if args.json => bail!("--json applies only to the list of scenarios; leave it out"),
         Some(ScenariosAction::Show { name, resolved: false }) => {
             // If there is no such scenario, loading it gives an error with the nearest name.
             Scenario::builtin(name, &[])?;
@@ -64,7 +64,8 @@ fn list(json: bool) -> anyhow::Result<()> {
     printer::lines(scenarios.iter().map(|one| format!("{:widest$}  {}", one.name, one.title)))
 }
 
-/// Returns the rows of the reference that contain a text, below the headings of their tables.
+/// Returns the rows of the reference that contain the text `filter`, below the headings of their
+/// tables.
 fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
     let wanted = filter.to_lowercase();
     let (mut lines, mut head, mut named) = (Vec::new(), Vec::new(), false);

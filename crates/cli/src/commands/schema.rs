@@ -21,14 +21,14 @@ use crate::printer::{self, ErrorDocument};
 /// Arguments of `schema`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// Name of the document; without a name, all documents are listed.
+    /// Name of the document; if no name is given, all documents are listed.
     name: Option<String>,
     /// Print a table of key, unit and meaning in place of the JSON Schema.
     #[arg(long, requires = "name")]
     dictionary: bool,
 }
 
-/// A document: its name, the command that prints it, and its schema.
+/// A document, with the command that prints the document and with its schema.
 struct Known {
     name: &'static str,
     of: &'static str,

@@ -32,7 +32,7 @@ pub(super) fn run(
     ] {
         if given {
             bail!(
-                "{option} is available in a plane, but not yet in space: leave it out{}",
+                "{option} is available for planar models, but not in space: leave it out{}",
                 in_a_plane(scenario)
             );
         }
@@ -88,7 +88,7 @@ pub(super) fn render(
         .map_err(|error| super::placed(error, scenario, &args.scenario))?;
     let end = answer.run.end_time;
     if between[0] > end {
-        bail!("the run ends at {end:.2} s, so there is nothing to film from {} s on", between[0]);
+        bail!("the run ends at {end:.2} s, so there is nothing to render after {} s", between[0]);
     }
     let solids = solids(&answer.run, between);
     let written = folder.write_paraview(|put| paraview_of_solids(&solids, args.rate, put))?;

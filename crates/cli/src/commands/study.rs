@@ -1,4 +1,5 @@
-//! `barrelstack study`: one scenario run many times, on this machine or in chunks on others.
+//! `barrelstack study`: runs one scenario many times, on this machine or in chunks on several
+//! machines.
 
 mod answer;
 mod emit;
@@ -66,10 +67,11 @@ struct RunArgs {
     /// A study file (TOML), or the name of a built-in study.
     #[arg(value_name = "STUDY", required = true)]
     study: Option<String>,
-    /// Folder for the results: new, empty, or with results of the same study, which then continues.
+    /// Folder for the results: new, empty, or with results of the same study, which is then
+    /// continued.
     #[arg(long, value_name = "DIR", required = true)]
     out: Option<PathBuf>,
-    /// Number of threads; by default all cores. Results do not depend on it.
+    /// Number of threads; by default, one per core. Results do not depend on the number of threads.
     #[arg(long, value_name = "NUMBER")]
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
@@ -119,12 +121,12 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Run one chunk and write its shard; does nothing if the shard exists.
+    /// Run one chunk and write its shard; if the shard exists, nothing is done.
     RunChunk(ChunkArgs),
     /// Report the progress of a study.
     Status(FolderArgs),
-    /// Write table.csv, table.parquet and provenance.json from the finished shards; the exit status
-    /// is 4 if chunks are missing.
+    /// Write table.csv, table.parquet and provenance.json from the finished shards; exit with
+    /// status 4 if chunks are missing.
     Collect(FolderArgs),
     /// Write the page: fragility, losses, sensitivities and, with a hazard curve, annual rates.
     Report(report::ReportArgs),
@@ -323,7 +325,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Converts an error of a study; a canceled study becomes a stop.
+/// Converts an error of a study; a canceled study is reported as stopped work.
 fn stopped(error: StudyError) -> anyhow::Error {
     if let StudyError::Stopped = error { Stopped.into() } else { error.into() }
 }
@@ -347,7 +349,7 @@ fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), Study
 }
 
 /// Writes the table of the finished chunks, and fails if any are missing, so that later commands of
-/// a script do not mistake a part for the whole.
+/// a script do not take an incomplete table for a complete one.
 fn collect(args: &FolderArgs) -> anyhow::Result<ExitCode> {
     let (answer, made) = collected(&args.folder)?;
     if args.json {

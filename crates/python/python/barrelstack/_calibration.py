@@ -78,7 +78,7 @@ class Calibration(Page):
 
     @classmethod
     def stiffness(cls, measured: Any, *, nodes: int = 1, interface: str = "barrel-rack") -> Calibration:
-        """Fits the stiffness of a press test.
+        """Fits the stiffness to a press test.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class Calibration(Page):
         nodes: int = 1,
         interface: str = "barrel-rack",
     ) -> Calibration:
-        """Fits restitution and damping of drop tests.
+        """Fits restitution and damping to drop tests.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class Calibration(Page):
         fit
             As for :meth:`response`.
         within
-            Range of the parameters: within this factor of those of the scenario.
+            Range of the parameters: the values of the scenario, divided and multiplied by this factor.
         timing, placement
             Standard deviations, with units, of observed times and of the positions of bodies.
         simulations

@@ -283,7 +283,7 @@ class Study:
         folder
             Folder for the results: new, empty, or with results of this study, which then continues.
         workers
-            Number of threads; by default all cores. Results do not depend on it.
+            Number of threads; by default, one per core. Results do not depend on the number of threads.
         progress
             As for :meth:`Scenario.run`.
 

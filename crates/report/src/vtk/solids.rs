@@ -39,15 +39,15 @@ pub struct Solids {
 }
 
 /// Writes the files of bodies in space for ParaView, one after the other, to be placed into a
-/// folder of their own.
+/// separate folder.
 ///
 /// `stack.pvd` is the file to open. There is a `bodies-*.vtp` for each time, and `bodies.csv` lists
 /// the names of the bodies by number.
 ///
-/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, lengths in m.
-/// Surfaces are triangles.
-/// Cells carry `body` (its index), `role` (as in [`paraview`](super::paraview)) and `level`; points
-/// carry `displacement` (m) from the first frame and `velocity` (m/s).
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m.
+/// Surfaces are triangles. Cells carry `body` (the index of the body), `role` (as in
+/// [`paraview`](super::paraview)) and `level`; points carry `displacement` (m) from the first frame
+/// and `velocity` (m/s).
 ///
 /// # Errors
 /// The first error of `put`.
@@ -146,8 +146,8 @@ fn whole(out: &mut String, name: &str, values: impl Iterator<Item = usize>) {
     array(out, ("Int32", name, 1), &bytes);
 }
 
-/// Writes an array as one block compressed by zlib, preceded by its sizes before and after
-/// compression. As text, the series of a collapse would take a gigabyte.
+/// Writes an array as one block compressed by zlib, preceded by the sizes of the block before and
+/// after compression. Written as text, the series of a collapse would take a gigabyte.
 fn array(out: &mut String, (kind, name, components): (&str, &str, u32), bytes: &[u8]) {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
     // Writing to memory cannot fail.

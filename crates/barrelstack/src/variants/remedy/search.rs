@@ -1,14 +1,14 @@
-//! Sequential search for a remedy: its order and its statistics.
+//! Order and statistics of the sequential search for a remedy.
 //!
-//! It does not depend on how variants are run, so whole searches can be simulated in tests.
+//! The search does not depend on how variants are run, so whole searches can be simulated in tests.
 //!
 //! Variants are counted in whole blocks, in the order of their numbers. Counting runs as they
-//! finish would be biased towards collapses, because runs that collapse end early.
-//! A change is rejected after the first block that brings it above the admissible number of
-//! failures. Its share is then unknown, because the search stopped due to these failures.
-//! The share of a change that ran all its variants has an interval that holds simultaneously for
-//! all changes and planes of the search (Bonferroni), so choosing among them does not invalidate
-//! it.
+//! finish would be biased towards collapses, because runs that collapse end early. A change is
+//! rejected after the first block that brings it above the admissible number of failures. The share
+//! of a rejected change is unknown: the counted variants are a biased sample, because counting
+//! stopped due to their failures. The share of a change that ran all its variants has an interval
+//! that holds simultaneously for all changes and planes of the search (Bonferroni), so choosing
+//! among the changes does not invalidate the interval.
 
 use std::ops::{ControlFlow, Range};
 
@@ -19,7 +19,7 @@ use super::super::spread::LEVEL;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Number of variants in the first block of a change, which fill one bundle of lanes.
+/// Number of variants in the first block of a change; this many fill one bundle of lanes.
 const FIRST: u32 = 8;
 
 /// Number of variants in every later block.
@@ -28,8 +28,8 @@ const BLOCK: u32 = 16;
 /// Candidates of a search, and the number of variants of each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Number of changes of height; they come first, highest first, and their search ends at the
-    /// first that suffices.
+    /// Number of changes of height. They come first, the highest stack first, and are tried until
+    /// one suffices.
     pub(super) heights: usize,
     /// Number of strap pretensions, from loose to tight; they follow the changes of height.
     pub(super) straps: usize,
@@ -81,13 +81,13 @@ impl Counts {
         self.failed = self.by_plane.iter().copied().max().unwrap_or(0);
     }
 
-    /// `true` if the failures so far already exceed the number that is admissible among all
+    /// `true` if the number of failures already exceeds the number that is admissible among all
     /// variants.
     fn rejected(&self, plan: &Plan) -> bool {
         !may_fail(self.failed, plan.variants)
     }
 
-    /// `true` if all variants were counted, so that their share is that of an unselected sample.
+    /// `true` if all variants were counted, so that the share is that of an unbiased sample.
     pub(super) fn whole(&self, plan: &Plan) -> bool {
         plan.variants > 0 && self.ran == plan.variants
     }
@@ -118,8 +118,7 @@ pub type Failed = ControlFlow<(), Vec<u32>>;
 /// Function that runs a block of variants, numbered from zero, of a change given by its index.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Failed, E> + 'a;
 
-/// Tries changes until the highest stack that suffices and the loosest straps that suffice are
-/// found.
+/// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
 pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
     let mut all = Search { plan, counts: vec![None; plan.changes()], run };
     let complete = all.heights()?.is_continue() && all.straps()?.is_continue();
@@ -169,7 +168,8 @@ impl<E> Search<'_, '_, E> {
         self.first_of(0..self.plan.heights)
     }
 
-    /// Tries straps from loose to tight; bisection skips those that their first block rejects.
+    /// Tries straps from loose to tight; bisection skips straps that are rejected by their first
+    /// block.
     fn straps(&mut self) -> Result<ControlFlow<()>, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {

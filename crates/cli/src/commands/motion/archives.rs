@@ -9,7 +9,7 @@ use barrelstack_motion::Archive;
 
 use super::input;
 
-/// An opened archive with the names of its files, and the file from which it was opened.
+/// An opened archive, with the names of its files and the path of the archive.
 struct Opened {
     path: PathBuf,
     changed: Option<SystemTime>,
@@ -20,7 +20,7 @@ struct Opened {
 /// The most recently opened archive, kept because its files are read one after another.
 static LAST: Mutex<Option<Arc<Opened>>> = Mutex::new(None);
 
-/// Opens a file on the disk as an archive; `None` if it is not one.
+/// Opens a file on the disk as an archive; `None` if the file is not an archive.
 fn open(path: &Path) -> anyhow::Result<Option<Arc<Opened>>> {
     if !path.is_file() {
         return Ok(None);
@@ -47,7 +47,8 @@ pub(super) fn is_archive(path: &Path) -> bool {
     Archive::is_named(&path.to_string_lossy()) && open(path).is_ok_and(|opened| opened.is_some())
 }
 
-/// Returns the names of the files of an archive on the disk, relative to it; `None` if it is not an archive.
+/// Returns the names of the files of an archive on the disk, relative to the archive; `None` if the
+/// path is not an archive.
 ///
 /// # Errors
 /// If the archive cannot be read.
@@ -69,8 +70,8 @@ pub(super) fn bytes_inside(path: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     Ok(Some(bytes))
 }
 
-/// Returns the files of a folder in an archive, without those of subfolders; empty if the folder is
-/// not in an archive.
+/// Returns the files of a folder in an archive, excluding the files of subfolders; empty if the
+/// folder is not in an archive.
 pub(super) fn files_below(folder: &Path) -> Vec<PathBuf> {
     // The root of the archive counts as a folder too.
     let named = folder.join("file");

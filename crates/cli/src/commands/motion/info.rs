@@ -43,8 +43,7 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
         Some(out) => return table(args, out),
         None if args.input.has_folder() => {
             bail!(
-                "a folder, or an archive of several records, is measured as a table: give the \
-                 folder for the table with --out DIR"
+                "the measures of a folder, or of an archive of several records, are written as a table: give a folder for the table with --out DIR"
             )
         }
         None => {}
@@ -77,7 +76,7 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
 fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     if args.json || args.all_measures || args.input.join {
         bail!(
-            "--json, --all-measures and --join are for files; the table of a folder has its own columns"
+            "--json, --all-measures and --join apply to single files, not to folders, whose table has fixed columns"
         );
     }
     let batch = Batch::new(&args.input, out, &args.folder, "info".to_owned());
@@ -205,7 +204,8 @@ fn direction(channel: &Channel) -> String {
     }
 }
 
-/// Describes the corners of every channel in one sentence each; `process --corners auto` uses them.
+/// Describes, in one sentence per channel, the corner frequencies that `process --corners auto`
+/// uses.
 fn corners(record: &Record) -> Vec<String> {
     let criterion = NoiseCriterion::default();
     let found = record.channels.iter().zip(record.noise_corners(&criterion));
@@ -217,10 +217,11 @@ fn corners(record: &Record) -> Vec<String> {
         .collect()
 }
 
-/// Formats a channel for one column.
+/// Function that formats a channel for one column.
 type Cell<'a> = &'a dyn Fn(&Channel) -> String;
 
-/// Tabulates time and location of each channel as stated in the file; empty columns are left out.
+/// Tabulates the start time and the location of each channel, as stated in the file; empty columns
+/// are left out.
 fn recorded(record: &Record) -> Table {
     let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
     let meters = |value: Option<f64>| value.map_or_else(String::new, number);
@@ -249,7 +250,7 @@ fn recorded(record: &Record) -> Table {
     table
 }
 
-/// Tabulates the peaks stated in the header and those of the samples.
+/// Tabulates the peaks that the header states, and the peaks of the samples.
 fn stated(record: &Record) -> Table {
     let mut table = Table::new(3, ["channel", "stated peak", "unit", "header", "numbers", "agree"]);
     for channel in &record.channels {
@@ -269,7 +270,8 @@ fn stated(record: &Record) -> Table {
 }
 
 described! {
-    /// Contents of records. Lengths in m, times in s, directions in degrees clockwise from north.
+    /// Contents of records. Lengths are in m, times in s, and directions in degrees clockwise from
+    /// north.
     pub(crate) struct MotionInfo {
         /// Name and version of this layout.
         schema: &'static str ["motion-info/1"],
@@ -313,9 +315,9 @@ described! {
         station: String = found.0.site.station.clone(),
         /// Name of the sensor.
         sensor: String = found.0.site.sensor.clone(),
-        /// Latitude, north positive.
+        /// Latitude, positive to the north.
         latitude: Option<f64> as "deg" = found.0.site.latitude,
-        /// Longitude, east positive.
+        /// Longitude, positive to the east.
         longitude: Option<f64> as "deg" = found.0.site.longitude,
         /// Elevation.
         elevation: Option<f64> as "m" = found.0.site.elevation,
@@ -329,7 +331,7 @@ described! {
         duration: f64 as "s" = found.0.duration(),
         /// Velocity at the first sample.
         initial_velocity: f64 as "m/s" = found.0.initial_velocity,
-        /// Peaks stated in the file, with those of the samples.
+        /// Peaks that the file states, with the corresponding peaks of the samples.
         stated_peaks: Vec<PeakInfo> = found.0.peaks.iter().map(PeakInfo::of).collect(),
         /// Frequencies between which the signal exceeds the noise; null if unknown.
         noise_corners: Option<CornersInfo> = found.1.as_ref().map(CornersInfo::of),
@@ -347,7 +349,7 @@ described! {
         stated: f64 as "SI" = peak.stated,
         /// Peak of the samples, in SI units.
         measured: f64 as "SI" = peak.measured,
-        /// `true` if the stated peak and that of the samples agree.
+        /// `true` if the stated peak and the peak of the samples agree.
         agrees: bool = peak.agrees(),
     }
 
@@ -365,7 +367,7 @@ described! {
 
     /// An intensity measure.
     struct MeasureInfo of found: (f64, &str) {
-        /// Value of the measure, in the unit of `unit`.
+        /// Value of the measure, in the unit that `unit` states.
         value: f64 as "as `unit` says" = found.0,
         /// Unit of the value.
         unit: String = found.1.to_owned(),
@@ -379,7 +381,7 @@ described! {
         peak_velocity: f64 as "m/s" = fit.peak_velocity,
         /// Time at which the pulse starts.
         start: f64 as "s" = fit.start,
-        /// Share of the squared velocity of the record that is in the pulse.
+        /// Share of the integral of the squared velocity of the record that the pulse contains.
         energy_share: f64 as "1" = fit.energy_share,
     }
 

@@ -16,40 +16,43 @@ use super::archives;
 pub(super) use crate::store::plain;
 use crate::typed::typed;
 
-/// Maximum size (bytes) of a file that is read; the longest strong-motion files have a tenth of it.
+/// Maximum size (bytes) of a file that is read, about ten times the size of the largest
+/// strong-motion files.
 const LIMIT: u64 = 256 << 20;
 
-/// Files, and information that they may lack.
+/// Files, and options for information that the files may lack.
 #[derive(Debug, clap::Args)]
 pub(super) struct Input {
     /// Motion files of any known format, or napa-college-2014, which is bundled. Several files are
-    /// read as components of one record; `info` lists files that do not belong together separately.
-    /// `info`, `plot`, `process` and `convert` also accept folders, and use all records in them.
+    /// read as components of one record; for files that do not belong together, `info` lists each
+    /// file separately. `info`, `plot`, `process` and `convert` also accept folders, and use all
+    /// records in them.
     #[arg(required = true, value_name = "FILE")]
     pub(super) files: Vec<String>,
-    /// Join several files, as parts of one long record, where they overlap.
+    /// Join several files that are overlapping parts of one long record.
     #[arg(long)]
     pub(super) join: bool,
     /// Combine the components of several files even if they differ in station, sensor, event or
     /// publisher.
     #[arg(long, conflicts_with = "join")]
     pub(super) allow_mixed: bool,
-    /// Unit of acceleration if a file states none: g, g/10, m/s2, cm/s2, gal, mm/s2, ft/s2 or
-    /// in/s2.
+    /// Unit of acceleration if a file does not state one: g, g/10, m/s2, cm/s2, gal, mm/s2, ft/s2
+    /// or in/s2.
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
-    /// Time step if a file states none, such as "0.005 s".
+    /// Time step if a file does not state one, such as "0.005 s".
     #[arg(long, value_name = "TIME")]
     time_step: Option<String>,
-    /// Counts per m/s2, for files in counts; for a single channel as HNE=427819, once per channel.
+    /// Sensitivity of files in counts, in counts per m/s2; HNE=427819 sets that of a single
+    /// channel, and may be repeated for other channels.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
     /// `StationXML` file with the sensitivity and direction of each channel, or a folder of such
     /// files; by default, .xml files beside a file in counts are used.
     #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
-    /// Quantity in SEED and SAC files of instruments other than accelerometers; it is
-    /// differentiated to acceleration.
+    /// Quantity recorded in SEED and SAC files of instruments other than accelerometers; this
+    /// quantity is differentiated to acceleration.
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
     recorded: Option<Recorded>,
 }
@@ -57,7 +60,7 @@ pub(super) struct Input {
 typed! {
     /// Quantity recorded by an instrument.
     pub(super) enum Recorded of motion::Quantity {
-        /// Accelerations, whatever the channel code says.
+        /// Accelerations, regardless of the channel code.
         Acceleration = Self::Acceleration,
         /// Velocities; the sensitivity is then in counts per m/s.
         Velocity = Self::Velocity,
@@ -69,11 +72,11 @@ typed! {
 /// Components to use, and the processing to apply first.
 #[derive(Debug, clap::Args)]
 pub(super) struct Choice {
-    /// Component: its name in the file, an azimuth in degrees (rotated if no channel has it), h1,
-    /// h2 or vertical; may be repeated. By default all components are used.
+    /// Component: a name in the file, an azimuth in degrees (obtained by rotation if no channel has
+    /// it), h1, h2 or vertical; may be repeated. By default, all components are used.
     #[arg(long, value_name = "NAME")]
     pub(super) component: Vec<String>,
-    /// Processing to apply first; by default `convert` uses the numbers as read, and all other
+    /// Processing to apply first; by default, `convert` uses the numbers as read, and all other
     /// commands use `default`.
     #[arg(long, value_enum)]
     pub(super) processing: Option<Chain>,
@@ -86,10 +89,11 @@ pub(super) enum Chain {
     None,
     /// As in a scenario: compact for raw records, no processing for others.
     Default,
-    /// Remove the pre-event mean, taper 2 %, zero-phase high-pass at 0.1 Hz without its pads, close
-    /// the ends.
+    /// Remove the pre-event mean, taper 2 %, apply a zero-phase high-pass filter at 0.1 Hz and
+    /// remove its pads, and bring the final velocity and displacement to zero.
     Compact,
-    /// Like compact, but keep the pads of the filter: quiet time before and after the shaking.
+    /// Like compact, but keep the pads of the filter, which are quiet time before and after the
+    /// shaking.
     Padded,
 }
 
@@ -183,8 +187,8 @@ impl Input {
         Ok(options)
     }
 
-    /// Reads one file; if the sensitivity of counts is missing, searches the `StationXML` files
-    /// beside it.
+    /// Reads one file; if the file is in counts and its sensitivity is missing, searches the
+    /// `StationXML` files in the same folder.
     fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
@@ -222,7 +226,7 @@ impl Input {
         }
         first.map_err(|error| match damaged {
             Some(why) => with_option(error)
-                .context(format!("{why:#}; nothing else beside it has a sensitivity")),
+                .context(format!("{why:#}; no file beside it states a sensitivity")),
             None => with_option(error),
         })
     }
@@ -249,10 +253,10 @@ impl Input {
 }
 
 impl Choice {
-    /// Returns the selected components of a record, cut to the shortest.
+    /// Returns the selected components of a record, cut to the length of the shortest.
     ///
-    /// They are processed by the requested chain, or else by the `usual` chain of the command; the
-    /// notes list the processing.
+    /// The components are processed by the requested chain or, if none is requested, by the `usual`
+    /// chain of the command; the notes of the record list the processing.
     pub(super) fn take(&self, record: &Record, usual: Chain) -> anyhow::Result<Record> {
         let mut chosen = record.clone();
         let from = format!(
@@ -281,7 +285,7 @@ impl Choice {
                 }
                 if !record.channels.contains(&channel) {
                     chosen.notes.push(format!(
-                        "{} is rotated from two horizontals of known azimuth",
+                        "{} is obtained by rotation from two horizontals of known azimuth",
                         channel.name
                     ));
                 }
@@ -294,7 +298,7 @@ impl Choice {
     }
 }
 
-/// Returns the names of the files of a record, without folders.
+/// Returns the file names of a record, without folders.
 fn base_names(record: &Record) -> String {
     let names: Vec<&str> = record
         .file
@@ -356,7 +360,7 @@ fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
     Ok(read(&bytes, file, options)?)
 }
 
-/// Adds to a reading error the option that supplies the missing information.
+/// Adds to a reading error the command-line option that supplies the missing information.
 fn with_option(error: anyhow::Error) -> anyhow::Error {
     let Some(cause) = error.downcast_ref::<ReadError>() else { return error };
     let option = match cause.refusal {
@@ -417,7 +421,8 @@ fn read_station_xml(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())
 }
 
-/// Returns the files beside a file that have the extension of `StationXML`, sorted by name.
+/// Returns the files that have the extension of `StationXML` and are in the same folder as a file,
+/// sorted by name.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     xml_files(folder.unwrap_or(Path::new(".")))

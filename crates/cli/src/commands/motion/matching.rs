@@ -29,16 +29,17 @@ pub(super) struct MatchArgs {
     input: Input,
     #[command(flatten)]
     choice: Choice,
-    /// Target spectrum, at 5 % damping unless it states another damping; the targets are listed
-    /// below.
+    /// Target spectrum, at 5 % damping unless the target states another damping; the targets are
+    /// listed below.
     #[arg(long, value_name = "TARGET")]
     to: String,
-    /// Component to match; by default the first horizontal. `rotd50` and `rotd100` match both
-    /// horizontals together, by their response over all directions. Other components are only
+    /// Component to match; by default, the first horizontal. `rotd50` and `rotd100` match both
+    /// horizontals together, by their response over all directions. All other components are only
     /// scaled.
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
-    /// Method for a single component; two horizontals use amplitudes first, then wavelets.
+    /// Method for a single component; for two horizontals, amplitudes are matched first, then
+    /// wavelets are added.
     #[arg(long, value_enum, default_value_t = Method::Time)]
     method: Method,
     /// Shortest period to match.
@@ -47,7 +48,7 @@ pub(super) struct MatchArgs {
     /// Longest period to match.
     #[arg(long, value_name = "TIME", default_value = "3 s")]
     longest: String,
-    /// Largest misfit that is accepted at any matched period.
+    /// Maximum accepted misfit at any matched period.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     tolerance: String,
     /// Write the best motion even if it misses the tolerance; the misfit is printed, and the exit
@@ -56,12 +57,13 @@ pub(super) struct MatchArgs {
     accept_misfit: bool,
     #[command(flatten)]
     output: Output,
-    /// Plot target, before and after: as panels (.png, .svg, .pdf) or as a page (.html).
+    /// Plot the target and the motion before and after matching: as panels (.png, .svg, .pdf) or as
+    /// a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
 
-/// Exit status if a motion was written although it misses its target.
+/// Exit status if a motion was written although its spectrum misses the target.
 const NEAR: u8 = 3;
 
 typed! {
@@ -70,8 +72,8 @@ typed! {
         /// Adds wavelets at the times of the peak responses, which preserves the character of the
         /// motion.
         Time = Self::Time,
-        /// Scales Fourier amplitudes and keeps phases, which changes the character of the whole
-        /// motion.
+        /// Scales the Fourier amplitudes and keeps the phases, which changes the character of the
+        /// whole motion.
         Frequency = Self::Frequency,
     }
 }
@@ -162,7 +164,7 @@ impl Part {
         })
     }
 
-    /// Returns the record with this part only.
+    /// Returns the record reduced to this part.
     fn alone(&self, record: &Record) -> anyhow::Result<Record> {
         match self {
             Self::One(place) => panels::only(record, *place),
@@ -194,8 +196,8 @@ impl Part {
     }
 }
 
-/// Returns the matched record, and a description of the periods at which it misses the target, if
-/// any.
+/// Returns the matched record and, if the record misses the target, a description of the periods at
+/// which it does.
 fn matched(
     args: &MatchArgs,
     before: &Record,

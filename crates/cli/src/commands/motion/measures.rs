@@ -1,4 +1,4 @@
-//! Intensity measures in customary units, and tables of them.
+//! Intensity measures in customary units, and tables of intensity measures.
 
 use barrelstack_motion::{
     Channel, IntensityMeasure, MotionError, PulseFit, Quantity, Record, RotatedPeak,
@@ -38,7 +38,7 @@ pub(super) const FURTHER: &[Shown] = &[
     ("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
 ];
 
-/// Returns the customary unit of a measure, and its number per SI unit.
+/// Returns the customary unit of a measure, and the number of these units in one SI unit.
 pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     match measure {
         IntensityMeasure::Pga | IntensityMeasure::Rms | IntensityMeasure::Sa { .. } => {
@@ -60,8 +60,8 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     }
 }
 
-/// Returns the customary unit of a quantity, its number per SI unit, and the name of the peak of
-/// the quantity.
+/// Returns the customary unit of a quantity, the number of these units in one SI unit, and the name
+/// of the peak of the quantity.
 pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static str) {
     match quantity {
         Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY, "PGA"),
@@ -115,13 +115,14 @@ pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, Mot
     table(&columns, USUAL)
 }
 
-/// Returns the dominant velocity pulse, with a period from 0.3 to 12 s as far as the record allows.
+/// Returns the dominant velocity pulse among periods from 0.3 to 12 s, or in the part of this range
+/// that the record allows.
 pub(super) fn pulse(motion: &Sampled) -> Result<PulseFit, MotionError> {
     let shortest = (8.0 * motion.time_step()).max(0.3);
     dominant_pulse(motion, shortest, (0.5 * motion.duration()).min(12.0))
 }
 
-/// Describes the dominant velocity pulse of every channel in one sentence each.
+/// Describes the dominant velocity pulse of every channel, in one sentence per channel.
 pub(super) fn pulses(record: &Record) -> Vec<String> {
     let sentence = |channel: &Channel| match channel.sampled().and_then(|motion| pulse(&motion)) {
         Ok(fit) => format!(

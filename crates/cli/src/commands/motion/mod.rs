@@ -60,17 +60,18 @@ enum MotionCommand {
     Plot(plot::PlotArgs),
     /// Write a record as AT2, CSV, NPZ or the program's own text.
     Convert(change::ConvertArgs),
-    /// Remove the mean, taper, filter and close the ends; every step is printed.
+    /// Remove the mean, taper, filter, and bring the final velocity and displacement to zero; every
+    /// step is printed.
     Process(process::ProcessArgs),
     /// Select a set of records whose spectra have the mean and spread of a target.
     Select(select::SelectArgs),
-    /// Scale all components by one factor: to an intensity measure, by a number, or to another
-    /// length.
+    /// Scale all components by one factor: to a value of an intensity measure, by a number, or to
+    /// another length scale.
     Scale(scale::ScaleArgs),
     /// Match the response spectrum to a code spectrum or to a table.
     Match(matching::MatchArgs),
-    /// Compute response spectra at any damping, also over all directions; for Fourier spectra, see
-    /// plot.
+    /// Compute response spectra at any damping, also over all directions; `plot` draws Fourier
+    /// spectra.
     Spectrum(spectrum::SpectrumArgs),
     /// Make a motion from a formula, or from random numbers with a given seed.
     Synth(synth::SynthArgs),

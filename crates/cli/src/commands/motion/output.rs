@@ -14,7 +14,8 @@ use crate::typed::word;
 #[derive(Debug, clap::Args)]
 pub(super) struct Output {
     /// File to write; the extension selects the format: .at2 (PEER, g, one component), .csv, .npz
-    /// (NumPy) or .txt (the program's own, exact). For whole folders, the output folder.
+    /// (NumPy) or .txt (the program's own format, exact). If the input is a folder, the output
+    /// folder.
     #[arg(long, short, value_name = "FILE", visible_alias = "out")]
     pub(super) output: PathBuf,
     /// Replace the file if it exists.
@@ -44,7 +45,7 @@ pub(super) struct Target {
 }
 
 impl Form {
-    /// Writes a record into a file of this format below a folder, creating missing folders.
+    /// Writes a record as a file of this format below the folder `out`, creating missing folders.
     pub(super) fn write(self, source: &Source, out: &Path, record: &Record) -> anyhow::Result<()> {
         let path = source.beside(out, &word(self));
         make_folder_of(&path)?;
@@ -94,7 +95,7 @@ impl Target {
         Ok(self.losses(record))
     }
 
-    /// Returns warnings about information that the file format cannot store.
+    /// Returns warnings about information of a record that the file format cannot store.
     fn losses(&self, record: &Record) -> Vec<String> {
         let mut losses = Vec::new();
         if self.form != Form::At2 {
@@ -111,8 +112,7 @@ impl Target {
             // Rounding errors at the edge of a pulse do not count as a velocity.
             if channel.initial_velocity.abs() > 1e-6 * channel.pgv() {
                 losses.push(format!(
-                    "channel {} starts with a velocity of {} cm/s, which AT2 can state only in the title: \
-                     read back, the motion starts from rest; .txt, .csv and .npz keep the velocity",
+                    "channel {} starts with a velocity of {} cm/s, which AT2 can state only in the title, so a motion read from this file starts from rest; .txt, .csv and .npz keep the velocity",
                     channel.name,
                     super::table::number(100.0 * channel.initial_velocity)
                 ));
@@ -122,7 +122,7 @@ impl Target {
     }
 }
 
-/// Refuses an existing file, and a file in a missing folder.
+/// Returns an error if the file exists or its folder does not.
 pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     if path.is_dir() {
         bail!("{} is a folder, not a file", path.display());

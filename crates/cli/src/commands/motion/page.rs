@@ -1,4 +1,4 @@
-//! Pages about changed records: every component, spectra and tables, before and after.
+//! Pages about changed records: components, spectra and tables before and after the change.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use crate::store::store;
 
 /// Text of a page in addition to its figures.
 pub(super) struct PageText {
-    /// Headline of the page: the result in one sentence.
+    /// Headline of the page, which states the result in one sentence.
     pub(super) headline: String,
-    /// Tables of measures before and after.
+    /// Tables of measures before and after the change.
     pub(super) tables: Vec<Table>,
 }
 
@@ -26,14 +26,14 @@ fn is_page(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }
 
-/// Refuses a page or a picture that cannot be written.
+/// Returns an error if a page or a picture cannot be written.
 pub(super) fn vacant_figure(path: Option<&Path>, overwrite: bool) -> anyhow::Result<()> {
     let Some(path) = path else { return Ok(()) };
     if is_page(path) { vacant(path, overwrite) } else { panels::vacant_picture(path, overwrite) }
 }
 
-/// Writes the panels of a record before and after, as a page with text or as a picture, depending
-/// on the extension of the path; prints the path.
+/// Writes the panels of a record before and after a change, and prints the path. The extension of
+/// the path selects a page with text or a picture.
 pub(super) fn write(
     path: &Path,
     figure: &Figure,
@@ -94,7 +94,7 @@ fn live(id: &str, at: usize, plot: &Plot) -> Block {
     ))
 }
 
-/// Converts a table of the terminal to a table of a page.
+/// Converts the rows of a terminal table to a table of a page.
 pub(super) fn table(caption: &str, rows: &[Vec<String>]) -> Table {
     let Some((head, rows)) = rows.split_first() else { return Table::new(caption, &[]) };
     let columns: Vec<(&str, &str)> = head.iter().map(|name| (name.as_str(), "")).collect();

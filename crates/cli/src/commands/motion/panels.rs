@@ -1,5 +1,5 @@
-//! Figures of whole records: every component with its peaks, Husid plots and spectra, also before
-//! and after processing.
+//! Figures of whole records, also before and after processing: every component with its peaks,
+//! Husid plots, and spectra.
 
 use std::path::Path;
 
@@ -21,8 +21,8 @@ const DAMPING: f64 = 0.05;
 /// Resolution (dots per inch) of pixel pictures, at which three plots side by side have about 2000
 /// pixels.
 const DPI: f64 = 96.0;
-/// Range of the velocity axis relative to the peak after processing; larger drift before processing
-/// is cut off.
+/// Limit of the velocity axis, relative to the peak velocity after processing; the larger drift
+/// before processing is cut off.
 const BEYOND: f64 = 1.5;
 
 /// The quantities of a component that are plotted over time.
@@ -118,7 +118,7 @@ pub(super) fn write(path: &Path, figure: &Figure) -> anyhow::Result<()> {
     store(path, &figure.to_bytes(known_format(path)?, DPI))
 }
 
-/// Refuses a picture that cannot be written.
+/// Returns an error if a picture cannot be written.
 pub(super) fn vacant_picture(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     known_format(path)?;
     vacant(path, overwrite)
@@ -135,7 +135,7 @@ pub(super) fn format_of(path: &Path) -> Option<Format> {
     Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
 }
 
-/// Returns a record with one channel, as selected by `--of` among several.
+/// Returns a record reduced to the channel that `--of` selects.
 pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
     let Some(channel) = record.channels.get(place) else { bail!("there is no such component") };
     Ok(Record { channels: vec![channel.clone()], ..record.clone() })
@@ -165,7 +165,7 @@ pub(super) fn times(channel: &Channel) -> Vec<f64> {
     (0..channel.acceleration.len()).map(|k| k as f64 * channel.time_step).collect()
 }
 
-/// Returns the value with the largest magnitude, with its sign.
+/// Returns the value with the largest magnitude, including its sign.
 fn at_peak(values: &[f64]) -> f64 {
     let larger =
         |best: usize, k: usize| if values[k].abs() > values[best].abs() { k } else { best };
@@ -180,8 +180,8 @@ fn peak_mark(quantity: Quantity, time_step: f64, values: &[f64]) -> Option<Mark>
     (!values.is_empty()).then_some(Mark { at, label })
 }
 
-/// Plots the build-up of the Arias intensity (Husid plots), with the strong part of the strongest
-/// component shaded.
+/// Plots the build-up of the Arias intensity (Husid plots), with the strong-motion part of the
+/// strongest component shaded.
 fn build_up(record: &Record) -> Plot {
     let mut plot =
         Plot { x: time(), y: Axis::new("share of the Arias intensity", ""), ..Plot::default() };
@@ -201,8 +201,8 @@ fn build_up(record: &Record) -> Plot {
     plot
 }
 
-/// Plots response spectra, over all directions if there are two horizontals, and the target if
-/// there is one.
+/// Plots response spectra, over all directions if there are two horizontals, and the target, if a
+/// target is given.
 fn response(
     channels: &[(String, &Channel)],
     whole: Option<&Record>,

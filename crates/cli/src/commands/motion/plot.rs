@@ -32,8 +32,8 @@ pub(super) struct PlotArgs {
     /// figure as .csv.
     #[arg(long, short, value_name = "DIR|FILE", visible_alias = "out")]
     output: PathBuf,
-    /// Figure to draw; may be repeated. By default a folder gets all figures, and a file the
-    /// accelerations.
+    /// Figure to draw; may be repeated. By default, all figures are drawn into a folder, and the
+    /// accelerations into a single file.
     #[arg(long, value_enum)]
     figure: Vec<Kind>,
     #[command(flatten)]
@@ -54,17 +54,17 @@ enum Kind {
     /// All panels of a record: components with their peaks, Husid plots, response and Fourier
     /// spectra.
     Panels,
-    /// Acceleration over time (g).
+    /// Acceleration (g) against time.
     Acceleration,
-    /// Velocity over time (cm/s).
+    /// Velocity (cm/s) against time.
     Velocity,
-    /// Displacement over time (cm).
+    /// Displacement (cm) against time.
     Displacement,
-    /// Build-up of the Arias intensity (m/s).
+    /// Arias intensity (m/s) accumulated over time.
     Arias,
-    /// Pseudo-spectral acceleration over period (g).
+    /// Pseudo-spectral acceleration (g) against period.
     Response,
-    /// Fourier amplitudes of the acceleration over frequency (m/s).
+    /// Fourier amplitudes (m/s) of the acceleration against frequency.
     Fourier,
 }
 

@@ -22,7 +22,7 @@ use crate::typed::{typed, word};
 pub(super) struct ProcessArgs {
     #[command(flatten)]
     input: Input,
-    /// Component: its name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
+    /// Component: a name, an azimuth in degrees, h1, h2 or vertical; may be repeated.
     #[arg(long, value_name = "NAME")]
     component: Vec<String>,
     /// Processing chain to start from; the options below change it.
@@ -31,7 +31,7 @@ pub(super) struct ProcessArgs {
     /// Mean to remove.
     #[arg(long, value_enum)]
     mean: Option<Mean>,
-    /// Subtract the least-squares line of the acceleration.
+    /// Subtract the straight line that fits the acceleration best by least squares.
     #[arg(long)]
     detrend: bool,
     /// Length of the cosine taper at each end, as a share of the length of the record, such as "2
@@ -44,21 +44,23 @@ pub(super) struct ProcessArgs {
     /// Corner frequency of the low-pass filter, such as "25 Hz", or none.
     #[arg(long, value_name = "FREQUENCY")]
     low_pass: Option<String>,
-    /// Order of the Butterworth filter, which runs forward and backward.
+    /// Order of the Butterworth filter, which is applied forward and backward.
     #[arg(long, value_name = "NUMBER")]
     order: Option<u32>,
     /// Treatment of the zero pads that are added for the filter.
     #[arg(long, value_enum)]
     pads: Option<Fate>,
-    /// Bring the final velocity and displacement to zero by the smallest smooth acceleration.
+    /// Bring the final velocity and displacement to zero by adding the smallest smooth acceleration
+    /// that does so.
     #[arg(long, value_enum)]
     close: Option<Answer>,
-    /// Take both corner frequencies from the record: auto finds where the signal is at least three
-    /// times the noise before the first arrival; both horizontals share their corners.
+    /// Take both corner frequencies from the record. With auto, the signal between the corners is
+    /// at least three times the noise before the first arrival; both horizontals have the same
+    /// corners.
     #[arg(long, value_enum, conflicts_with_all = ["high_pass", "low_pass"])]
     corners: Option<CornersFrom>,
-    /// Rotate the horizontals first: to fault-normal and fault-parallel for a strike in degrees,
-    /// such as strike:122, or to the direction of the largest velocity, vmax.
+    /// Rotate the horizontals first: strike:122 rotates them to the fault-normal and fault-parallel
+    /// directions of a strike of 122 degrees, and vmax to the direction of the largest velocity.
     #[arg(long, value_name = "AXES", conflicts_with = "component")]
     rotate: Option<Axes>,
     #[command(flatten)]
@@ -196,7 +198,8 @@ impl ProcessArgs {
     }
 }
 
-/// Applies the chain to every channel, with corner frequencies from the noise of the channel.
+/// Applies the chain to every channel, with corner frequencies that the noise of the record
+/// determines.
 fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let criterion = NoiseCriterion::default();
     let mut after = before.clone();

@@ -1,4 +1,4 @@
-//! Options of the pulses that are given by formulas.
+//! Options of pulses that are defined by formulas.
 
 use anyhow::bail;
 use barrelstack::scenario::{Dimension, Quantity};
@@ -13,7 +13,7 @@ pub(super) struct Size {
     /// "5 cm".
     #[arg(long, value_name = "QUANTITY")]
     peak: String,
-    /// Period; for a half sine, its length.
+    /// Period; for a half sine, the duration of the pulse.
     #[arg(long, value_name = "TIME")]
     period: String,
 }

@@ -22,15 +22,15 @@ pub(super) struct ScaleArgs {
     /// g".
     #[arg(long, value_name = "MEASURE=VALUE", conflicts_with = "factor")]
     to: Option<String>,
-    /// Component whose measure --to refers to, by default the first horizontal; or both
-    /// horizontals: rotd50, rotd100 (median and largest over all directions) or geomean.
+    /// Component whose measure --to sets; by default, the first horizontal. For both horizontals:
+    /// rotd50 or rotd100 (median or largest value over all directions), or geomean.
     #[arg(long, value_name = "NAME", requires = "to")]
     of: Option<String>,
     /// Multiply the accelerations by this factor.
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     factor: Option<f64>,
-    /// Scale the motion for a model of this length ratio: time by its square root, with unchanged
-    /// accelerations. Applied after --to or --factor.
+    /// Scale the motion for a model of this length ratio: time is multiplied by the square root of
+    /// the ratio, and accelerations remain unchanged. Applied after --to or --factor.
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     froude: Option<f64>,
     #[command(flatten)]
@@ -68,7 +68,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     super::change::finish(&target, &read, &after, table.lines())
 }
 
-/// Returns the scale factor, and the name of the component that determines it.
+/// Returns the scale factor, and the name of the component that determines the factor.
 fn factor_to(
     args: &ScaleArgs,
     record: &Record,

@@ -29,8 +29,9 @@ pub(super) struct SpectrumArgs {
     /// Damping ratio, such as 0.05 or "5 %"; may be repeated.
     #[arg(long, value_name = "SHARE", default_value = "5 %")]
     damping: Vec<String>,
-    /// Periods in seconds or each with a unit, separated by commas, such as "100 ms,0.2,1"; 0 is
-    /// the ground itself. By default, 16 periods are printed and 121 are written.
+    /// Periods separated by commas, in seconds or each with its own unit, such as "100 ms,0.2,1"; a
+    /// period of 0 stands for the ground itself. By default, 16 periods are printed and 121 are
+    /// written.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
     #[arg(
@@ -57,13 +58,13 @@ struct Spectra {
     rotated: Option<Rotated>,
 }
 
-/// Peaks over all horizontal directions, with the directions of the largest peaks.
+/// Peaks over all horizontal directions, with the direction of each largest peak.
 struct Rotated {
     peaks: Vec<RotatedPeak>,
     /// Directions of the largest peaks (degrees): clockwise from north if both azimuths are known,
     /// otherwise from the first component towards the second.
     directions: Vec<f64>,
-    /// Reference of these directions.
+    /// Direction from which these directions are measured.
     from: &'static str,
 }
 

@@ -59,9 +59,9 @@ enum Kind {
     Ricker(Made<Size>),
     /// Gabor wavelet of velocity.
     Gabor(Made<Wavelet>),
-    /// Cycloidal pulse A: a forward step.
+    /// Cycloidal pulse A: a displacement forward.
     CycloidA(Made<Size>),
-    /// Cycloidal pulse B: forward and back.
+    /// Cycloidal pulse B: a displacement forward and back.
     CycloidB(Made<Size>),
     /// Cycloidal pulse C: several cycles.
     CycloidC(Made<Repeated>),
@@ -75,7 +75,7 @@ enum Kind {
     NearFault(Made<Fault>),
 }
 
-/// Arguments of one kind of motion, with the common options.
+/// Arguments of one kind of motion, together with the options of all kinds.
 #[derive(Debug, clap::Args)]
 struct Made<T: clap::Args> {
     #[command(flatten)]
@@ -134,7 +134,7 @@ struct Noise {
     /// Time at which the decay starts.
     #[arg(long, value_name = "TIME", default_value = "10 s")]
     decay_start: String,
-    /// Time in which the motion decays to 1/e.
+    /// Time in which the amplitude decays to 1/e.
     #[arg(long, value_name = "TIME", default_value = "2.5 s")]
     decay: String,
     #[command(flatten)]
@@ -171,7 +171,7 @@ struct Source {
     seed: Seed,
 }
 
-/// Options of a near-fault motion: a pulse and the stochastic remainder.
+/// Options of a near-fault motion, which consists of a pulse and a stochastic remainder.
 #[derive(Debug, clap::Args)]
 struct Fault {
     #[command(flatten)]
@@ -279,7 +279,7 @@ impl Noise {
         };
         let duration = time("--duration", &self.duration)?;
         let made = format!(
-            "made by filtered noise (Clough and Penzien): {} soil, rms {}, {} long, rise {}, decay \
+            "made from filtered noise (Clough and Penzien): {} soil, rms {}, {} long, rise {}, decay \
              from {} to 1/e in {}, seed {}",
             word(self.soil),
             self.rms,

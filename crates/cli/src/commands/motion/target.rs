@@ -44,11 +44,11 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
     Ok(spectrum)
 }
 
-/// Reads the rows of a table of periods (s) and accelerations (m/s²), which may have further
+/// Reads the rows of a table of periods (s) and accelerations (m/s²); the table may have further
 /// columns.
 ///
-/// The header states the unit of the accelerations. The text after the unit is passed to `behind`,
-/// with its position.
+/// The header states the unit of the accelerations. The part of the header after the unit is passed
+/// to `behind`, with its position.
 pub(super) fn rows<const N: usize>(
     path: &Path,
     columns: &str,

@@ -24,8 +24,8 @@ pub(crate) struct Answer {
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels that cases share, with counts by outcome; one more than the maximum if there are too
-    /// many.
+    /// Levels that several cases share, with counts by outcome. If there are more levels than the
+    /// maximum, the list has one level more than the maximum.
     levels: Vec<(f64, Tally)>,
     unit: String,
 }
@@ -64,8 +64,8 @@ impl Answer {
         }
     }
 
-    /// Returns the levels that several cases share, in ascending order; empty if levels are drawn
-    /// at random.
+    /// Returns the levels that several cases share, in ascending order; empty if the levels are
+    /// drawn at random.
     fn levels(&self) -> Vec<(f64, Tally)> {
         let mut levels = self.levels.clone();
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -85,8 +85,8 @@ fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
     counts
 }
 
-/// Describes the number of collapses. Their share is stated only if the cases are a sample, because
-/// adaptive designs choose levels by earlier results.
+/// Describes the number of collapses. The share of collapses is stated only if the cases are a
+/// sample; in adaptive designs they are not, because levels are chosen by earlier results.
 fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     let share = tally.collapse()?;
     let share =
@@ -188,7 +188,7 @@ described! {
         provenance: Provenance = found.1.clone(),
         /// Outcomes of the cases of the study.
         tally: TallyRow = TallyRow::of(&(found.0.tally, found.1.is_sample())),
-        /// Notes on cases that were not followed to their end.
+        /// Notes on cases whose runs were ended early.
         notes: Vec<String> = found.0.endings.sentences(),
         /// Outcomes of cases, for each level that several cases share.
         levels: Vec<LevelTally> = found.0.levels().iter().map(LevelTally::of).collect(),
@@ -216,7 +216,7 @@ described! {
 
     /// A share with its confidence interval.
     pub(crate) struct Fraction of found: &(f64, [f64; 2]) {
-        /// The share.
+        /// Share of the cases.
         fraction: f64 as "1" = found.0,
         /// 95 % interval of the share (Wilson).
         interval_95: [f64; 2] as "1" = found.1,

@@ -20,12 +20,12 @@ pub(super) struct EmitArgs {
     /// Folder for the results, which every worker must be able to access.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Time limit of a chunk in Slurm's format, such as 02:00:00; by default that of the partition
-    /// (slurm).
+    /// Time limit of a chunk in Slurm's format, such as 02:00:00; by default, the limit of the
+    /// partition (slurm).
     #[arg(long, value_name = "TIME")]
     walltime: Option<String>,
-    /// Maximum number of chunks that run at a time; by default as many as the scheduler allows
-    /// (slurm, parallel).
+    /// Maximum number of chunks that run at the same time; by default, as many as the scheduler
+    /// allows (slurm, parallel).
     #[arg(long, value_name = "NUMBER")]
     throttle: Option<NonZero<usize>>,
     /// Maximum number of tasks in an array job, `MaxArraySize` in Slurm's configuration; by default
@@ -39,13 +39,13 @@ pub(super) struct EmitArgs {
 enum Engine {
     /// A shell script that submits array jobs, followed by a job that collects the table.
     Slurm,
-    /// A shell script that runs as many chunks at a time as there are cores, with GNU parallel.
+    /// A shell script that runs one chunk per core at a time with GNU parallel.
     Parallel,
     /// A shell script that submits a task array.
     Hyperqueue,
     /// A Python script that runs the chunks as tasks of a Dask cluster.
     Dask,
-    /// A Python script that runs the chunks in one job on many nodes, with `PyLauncher`.
+    /// A Python script that runs the chunks with `PyLauncher`, in one job on many nodes.
     Pylauncher,
 }
 
@@ -70,7 +70,7 @@ struct Job {
 }
 
 impl Job {
-    /// Returns the shell command that runs a chunk, whose number is given as shell words.
+    /// Returns the shell command that runs a chunk; the number of the chunk is given as shell text.
     fn chunk(&self, number: &str) -> String {
         let [program, study, out] = [&self.program, &self.study, &self.out].map(|w| quoted(w));
         format!("{program} study run-chunk {study} --chunk {number} --out {out}")
@@ -118,7 +118,7 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
 /// Placeholder for the number of a chunk.
 const PLACE: &str = "\u{0}";
 
-/// Escapes a text for a here-document of the shell.
+/// Escapes text for a here-document of the shell.
 fn in_document(text: &str) -> String {
     text.replace('\\', "\\\\").replace('$', "\\$").replace('`', "\\`")
 }
@@ -187,7 +187,7 @@ fn hyperqueue(job: &Job) -> String {
     )
 }
 
-/// Returns a text as a Python literal, which a JSON string is.
+/// Returns text as a Python literal; a JSON string is a valid one.
 fn literal(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

@@ -17,12 +17,13 @@ pub(super) struct ExportArgs {
     /// Folder for the files.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Name of a stack in the other program (its taxonomy, or the id of its component).
+    /// Name of the stack in the other program (taxonomy in OpenQuake, id of the component in
+    /// Pelicun).
     #[arg(long, value_name = "NAME", default_value = "wine.barrel.stack")]
     asset: String,
 }
 
-/// Writes the files, and prints what they do not contain.
+/// Writes the files, and prints a list of the results that the files do not contain.
 pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
     let (decision, made) = decide_folder(&args.folder, &Request::default())?;
     let found = exported(&decision, &made, &args.asset)?;

@@ -17,7 +17,7 @@ use crate::progress::{Bar, Lines, Of, style};
 pub(super) struct Live {
     bar: Bar,
     lines: Lines,
-    /// `true` if the cases are a sample, so that their share of collapse is meaningful.
+    /// `true` if the cases are a sample, so that the share of cases that collapse is meaningful.
     sample: bool,
     interrupt: Interrupt,
     damaged: AtomicUsize,
@@ -25,11 +25,11 @@ pub(super) struct Live {
     waiting: Waiting,
 }
 
-/// Reports, once, the process that holds a chunk for which this process has been waiting: a
-/// suspended process holds its chunk indefinitely.
+/// Reports once which process holds the chunk for which this process waits, because a suspended
+/// process holds its chunk indefinitely.
 pub(super) struct Waiting {
     folder: PathBuf,
-    /// The chunk, the start of the wait, and whether it was reported.
+    /// The chunk, the start of the wait, and `true` if the wait was reported.
     state: Mutex<Option<(usize, Instant, bool)>>,
 }
 
@@ -55,8 +55,7 @@ impl Waiting {
         drop(state);
         if let Some(Holder { who, age }) = holder(&self.folder, chunk) {
             printer::warning(&format!(
-                "waiting for chunk {chunk}, which {who} has held for {}; if that process is suspended or hangs, continue it \
-                 (kill -CONT) or end it, and another process takes its chunk",
+                "waiting for chunk {chunk}, which {who} has held for {}; if that process is suspended or hangs, continue it (kill -CONT) or end it, so that another process can take its chunk",
                 age_in_words(age)
             ));
         }
@@ -97,7 +96,7 @@ impl Live {
         self.damaged.load(Ordering::Relaxed)
     }
 
-    /// `true` if the manifest was damaged and has been written anew.
+    /// `true` if the manifest was damaged and has been rewritten.
     pub(super) fn manifest_healed(&self) -> bool {
         self.healed.load(Ordering::Relaxed)
     }

@@ -54,10 +54,10 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes the page of a study after it was run.
+/// Writes the page of a study after the study was run.
 ///
-/// A study without a single verdict has no page, which is not an error: its table states the
-/// reasons.
+/// A study in which no case has a verdict has no page. This is not an error; the table of the study
+/// states the reasons.
 pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
     match decide_folder(out, &Request::default()) {
         Ok((decision, _)) => {

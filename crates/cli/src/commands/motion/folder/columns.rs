@@ -19,8 +19,8 @@ impl Found<'_> {
     /// Returns the file of a horizontal component, counted from 0, and its channel in the file,
     /// such as `#1` for the first.
     ///
-    /// `None` if several files have several channels each, because file names do not identify the
-    /// channels then.
+    /// `None` if several files have several channels each, because a file name then does not
+    /// identify a channel.
     fn place(&self, horizontal: usize) -> Option<(String, String)> {
         let (paths, channels) = (self.source.paths(), &self.worked.record.channels);
         let flat = channels.iter().enumerate().filter(|(_, channel)| !channel.is_vertical());
@@ -34,7 +34,7 @@ impl Found<'_> {
     }
 }
 
-/// A column, with its value in a row.
+/// A column, with the value of the column in a row.
 type Cell = (ColumnSpec, Option<Value>);
 
 fn spec(name: String, unit: &str, role: Role, kind: ValueKind) -> ColumnSpec {
@@ -97,7 +97,8 @@ pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     cells
 }
 
-/// Returns the descriptive columns; a flatfile takes precedence over a header.
+/// Returns the columns that describe a record and its processing; a flatfile takes precedence over
+/// a header.
 fn header(found: Option<&Found<'_>>) -> Vec<Cell> {
     let record = found.map(|f| &f.worked.record);
     let first = record.and_then(|record| record.channels.first());

@@ -1,4 +1,4 @@
-//! Journal of finished records, one line each, so that an interruption loses no work.
+//! Journal of finished records with one line per record, so that an interruption loses no work.
 
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
@@ -25,8 +25,8 @@ pub(super) struct Entry {
     pub(super) refused: Vec<(String, String)>,
 }
 
-/// The journal file. Only the positions of its lines are kept in memory, because the lines
-/// themselves could fill it.
+/// The journal file. Only the positions of the lines are kept in memory, because the lines
+/// themselves may be too long to keep.
 pub(super) struct Journal {
     path: PathBuf,
     specs: Vec<ColumnSpec>,
@@ -63,9 +63,9 @@ struct Line {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, or creates one.
+    /// Opens the journal of a folder, or creates a journal.
     ///
-    /// An incomplete line, as left by a killed process, counts as not done.
+    /// If the last line is incomplete, as after a killed process, its record counts as unfinished.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
         let path = out.join("rows.jsonl");
         let cannot = |what: &str| format!("cannot {what} {}", path.display());
@@ -92,7 +92,7 @@ impl Journal {
             if at == 0 && !head.as_bytes().starts_with(&line) {
                 let ours = found.as_ref().is_some_and(|first| first["settings"].is_string());
                 let whose = if ours {
-                    "the table of another command, of other options or of another version"
+                    "the table of another command, of the same command with other options, or of another version"
                 } else {
                     "a rows.jsonl of another program"
                 };
@@ -119,8 +119,8 @@ impl Journal {
         Ok(Self { path, specs, inner: Mutex::new(inner) })
     }
 
-    /// Returns `true` if a record is in the journal and was measured, `false` if it was refused;
-    /// `None` if it is not in the journal, or if its files have changed.
+    /// Returns `true` if a record is in the journal and was measured, `false` if the record was
+    /// refused; `None` if the record is not in the journal, or if its files have changed.
     pub(super) fn known(&self, record: &str, hash: u64) -> Option<bool> {
         let inner = self.inner.lock().ok()?;
         inner.lines.get(record).filter(|line| line.hash == hash).map(|line| line.measured)
@@ -138,8 +138,12 @@ impl Journal {
 
     /// Reads the entry of a record.
     pub(super) fn entry(&self, record: &str) -> anyhow::Result<Entry> {
-        let damaged =
-            || format!("{} was changed meanwhile: run the command again", self.path.display());
+        let damaged = || {
+            format!(
+                "{} was changed while the command was running: run the command again",
+                self.path.display()
+            )
+        };
         let Ok(inner) = self.inner.lock() else { bail!(damaged()) };
         let line = inner.lines.get(record).with_context(damaged)?;
         let mut reader = BufReader::new(&inner.file);
@@ -201,7 +205,7 @@ fn seal(line: &serde_json::Value) -> String {
 
 /// Parses a value of the type of a column; the outer `None` means that the value has a different
 /// type.
-#[expect(clippy::option_option, reason = "a missing value differs from a wrong one")]
+#[expect(clippy::option_option, reason = "a missing value is not the same as a wrong value")]
 fn cell(value: &serde_json::Value, kind: ValueKind) -> Option<Option<Value>> {
     if value.is_null() {
         return Some(None);

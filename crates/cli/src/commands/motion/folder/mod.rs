@@ -1,5 +1,5 @@
-//! Batch processing of folders: reads, processes and measures every record, and writes one table
-//! row each.
+//! Batch processing of folders: reads, processes and measures every record, and writes one row of a
+//! table per record.
 
 mod columns;
 mod journal;
@@ -32,17 +32,18 @@ const PERIODS: [f64; 20] = [
     0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0,
     4.0, 5.0, 10.0,
 ];
-/// Maximum number of refused files listed on the terminal; the table has all.
+/// Maximum number of refused files listed on the terminal; refused.csv lists all of them.
 const NAMED: usize = 5;
 
 /// Options for folders.
 #[derive(Debug, clap::Args)]
 pub(super) struct FolderArgs {
-    /// Flatfile (CSV) of NGA-West2, joined by the record sequence number in the file names, or of
-    /// ESM, joined by event and station.
+    /// Flatfile (CSV) of NGA-West2, matched by the record sequence number in the file names, or of
+    /// ESM, matched by event and station.
     #[arg(long, value_name = "FILE.csv")]
     pub(super) flatfile: Option<PathBuf>,
-    /// Periods of the spectra in the table, in seconds or each with a unit, separated by commas.
+    /// Periods of the spectra in the table, separated by commas, in seconds or each with its own
+    /// unit.
     #[arg(long = "table-periods", value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
     /// Show no progress.
@@ -75,11 +76,12 @@ pub(super) struct Batch<'a> {
     pub(super) out: &'a Path,
     /// Options for folders: flatfile and periods.
     pub(super) folder: &'a FolderArgs,
-    /// Settings that affect the rows, as text; different settings make a different table.
+    /// Settings that affect the rows, as text; a table continues only with the same settings.
     pub(super) settings: String,
-    /// Periods (s) of the spectra, in place of those of the options.
+    /// Periods (s) of the spectra; replaces the periods of the options.
     pub(super) periods: Option<Vec<f64>>,
-    /// Extension of the output file of each record; if the file is missing, the record is processed again.
+    /// Extension of the output file of each record; a record whose output file is missing is
+    /// processed again.
     pub(super) ending: Option<String>,
 }
 
@@ -95,22 +97,22 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// A record to be measured, with the processing to apply first.
+/// A record to be measured, with the processing to apply before the measurement.
 pub(super) struct Worked {
     /// The record, possibly processed.
     pub(super) record: Record,
-    /// Further processing before the record is measured.
+    /// Further processing to apply before the record is measured.
     pub(super) before: Processing,
 }
 
 impl Worked {
-    /// Wraps a record as read; it is measured after the default processing of a scenario.
+    /// Wraps a record as read, to be measured after the default processing of a scenario.
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
     }
 
-    /// Wraps a processed record; it is measured unchanged.
+    /// Wraps a processed record, to be measured without further processing.
     pub(super) fn done(record: Record) -> Self {
         Self { record, before: Processing::none() }
     }
@@ -131,7 +133,7 @@ pub(super) struct Measurements {
 enum Done {
     /// The record is in the journal.
     Noted,
-    /// Refused files with reasons; the record is tried again next time.
+    /// Refused files with reasons that may be temporary; the next command tries the record again.
     Unsure(Vec<(String, String)>),
     /// The command was stopped before this record was finished.
     Stopped,
@@ -142,7 +144,8 @@ enum Done {
 /// The files are `records.csv`, `records.parquet`, and `refused.csv` with the reasons.
 ///
 /// Each finished record is added to `rows.jsonl`, with the fingerprint of the bytes of its files.
-/// The same command continues after an interruption, and repeats records that have changed.
+/// After an interruption, the same command continues the work, and repeats records whose files have
+/// changed.
 pub(super) fn run(
     batch: &Batch<'_>,
     work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
@@ -276,7 +279,7 @@ fn fingerprint_of(source: &Source) -> u64 {
 /// Reads, processes and measures one record.
 ///
 /// Files that cannot be read, and records that cannot be processed, are refused with the reason.
-/// Failures that may be due to the disk are not final, and are tried again next time.
+/// Failures that may be due to the disk are not final; the next command tries these records again.
 fn entry(
     input: &Input,
     source: &Source,
@@ -332,7 +335,8 @@ fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
     Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
 }
 
-/// Returns stage and processing in words; raw records are processed before they are measured.
+/// Describes the stage and the processing of a record; raw records are processed before they are
+/// measured.
 fn stage_of(worked: &Worked) -> (String, &'static str) {
     let processing = match (worked.record.stage, worked.before.is_none()) {
         (Stage::Raw, false) => "compact, for the measures",

@@ -7,10 +7,10 @@ use barrelstack_motion::{RecordFiles, group_files};
 
 use crate::commands::motion::{archives, input};
 
-/// Maximum depth of folders, which stops cycles of links.
+/// Maximum depth of nested folders, which ends cycles of symbolic links.
 const DEEPEST: usize = 32;
 
-/// The files of one record, and the folder below which they were found.
+/// The files of one record, and the folder in which they were found.
 #[derive(Clone, Debug)]
 pub(in crate::commands::motion) struct Source {
     root: PathBuf,
@@ -32,11 +32,10 @@ impl Source {
     }
 }
 
-/// Returns the records of given files and folders; those of each folder are sorted. Hidden files
-/// and files below `out` are skipped.
+/// Returns the records in given files and folders; the records of each folder are sorted. Hidden
+/// files and files below `out` are skipped.
 pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source>> {
-    let out =
-        out.canonicalize().map_err(input::plain).context("cannot find the folder to write")?;
+    let out = out.canonicalize().map_err(input::plain).context("cannot find the output folder")?;
     let is_folder =
         |path: &&String| Path::new(path).is_dir() || archives::is_archive(Path::new(path));
     let folders = given.iter().filter(is_folder).count();
@@ -89,7 +88,7 @@ fn walk(
 ) -> anyhow::Result<()> {
     let refused = || format!("cannot read the folder {}", folder.display());
     if depth > DEEPEST {
-        bail!("{}: it is more than {DEEPEST} folders deep", refused());
+        bail!("{}: the folder is nested more than {DEEPEST} levels deep", refused());
     }
     let entries = std::fs::read_dir(folder).map_err(input::plain).with_context(refused)?;
     for entry in entries {

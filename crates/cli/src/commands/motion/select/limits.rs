@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use barrelstack_campaign::study::StudyTable;
 
-/// A range; an end that is left out is open.
+/// A range; if a limit is left out, the range is open at that end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     from: f64,
@@ -46,8 +46,8 @@ pub(super) struct Limits {
     /// Range of magnitudes, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) magnitude: Option<Range>,
-    /// Range of distances in km: to the rupture, from the flatfile, or else to the epicenter, from
-    /// the header.
+    /// Range of distances in km: distance to the rupture from the flatfile or, without a flatfile,
+    /// distance to the epicenter from the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) distance: Option<Range>,
     /// Range of Vs30 in m/s, from the flatfile or the header.
@@ -63,14 +63,14 @@ pub(super) struct Limits {
 enum Pulses {
     /// All records.
     Any,
-    /// Pulse-like records only.
+    /// Only pulse-like records.
     Only,
-    /// Records without a pulse only.
+    /// Only records without a pulse.
     None,
 }
 
-/// For each limit, the number of records that it excludes and the number of records without the
-/// data for it.
+/// For each limit, the number of records that the limit excludes and the number of records that
+/// lack the data to apply the limit.
 #[derive(Debug, Default)]
 pub(super) struct LeftOut {
     /// Number of records whose distance is measured to the epicenter.
@@ -136,7 +136,7 @@ impl LeftOut {
         self.counts.push((name, outside, unknown));
     }
 
-    /// Describes how many records are candidates, and why the others are excluded.
+    /// Describes how many records are candidates, and why the other records are excluded.
     pub(super) fn sentence(&self, all: usize, candidates: usize, spectrum: &str) -> String {
         let mut reasons = Vec::new();
         let mut lost = 0;

@@ -39,13 +39,13 @@ pub(super) struct SelectArgs {
     /// Target of the spectra; the kinds of targets are listed below.
     #[arg(long, value_name = "TARGET")]
     target: String,
-    /// Period at which Sa is given; one of the periods of the table.
+    /// Period at which Sa is given; must be one of the periods of the table.
     #[arg(long, value_name = "TIME")]
     at: Option<String>,
-    /// Sa at that period, such as "0.6 g".
+    /// Sa at the period --at, such as "0.6 g".
     #[arg(long, value_name = "ACCELERATION", requires = "at", conflicts_with = "epsilon")]
     level: Option<String>,
-    /// Sa at that period, as standard deviations of ln Sa above the median.
+    /// Sa at the period --at, as the number of standard deviations of ln Sa above the median.
     #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true)]
     epsilon: Option<f64>,
     /// Shortest period to match.
@@ -54,7 +54,7 @@ pub(super) struct SelectArgs {
     /// Longest period to match.
     #[arg(long, value_name = "TIME", default_value = "5 s")]
     longest: String,
-    /// Number of records; by default 30, or fewer if fewer reach the target.
+    /// Number of records; by default 30, or fewer if fewer records can be scaled to the target.
     #[arg(long, value_name = "NUMBER")]
     count: Option<usize>,
     /// Spectrum of each record that is compared with the target.
@@ -161,7 +161,7 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
 /// Default size of a set.
 const USUAL_COUNT: usize = 30;
 
-/// Returns the largest set, up to the default size, that the candidates allow.
+/// Returns a set of the default size, or the largest set that the candidates allow.
 fn as_many_as_there_are(
     target: &SelectionTarget,
     candidates: &[Candidate],

@@ -1,4 +1,4 @@
-//! Page of a selection: spectra against the target, their spread, and the records.
+//! Page of a selection: spectra compared with the target, spread of the spectra, and records.
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
@@ -28,7 +28,7 @@ fn document(
     let args = set.args;
     let given = target.condition().map(|(_, given)| {
         format!(
-            "Every record is scaled to Sa({} s) = {:.3} g; the target is the spectrum conditional on it.",
+            "Every record is scaled to Sa({} s) = {:.3} g; the target is the spectrum conditional on this value.",
             given.period,
             given.acceleration / STANDARD_GRAVITY
         )
@@ -73,8 +73,8 @@ fn document(
     }
 }
 
-/// Plots all selected spectra, and the medians of the set and of the target with two standard
-/// deviations.
+/// Plots all selected spectra, and the medians of the set and of the target with bands of two
+/// standard deviations.
 fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) -> Figure {
     let periods = target.periods().to_vec();
     let line = |label: &str, values: Vec<f64>, style: SeriesStyle| Series {
@@ -106,9 +106,9 @@ fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) ->
     series.push(line("set, median", moments(&set.selection.mean, deviation, 0.0), color(1)));
     if deviation.iter().any(|s| *s > 0.0) {
         for by in [-2.0, 2.0] {
-            let label = if by > 0.0 { "target, 2 standard deviations off" } else { "" };
+            let label = if by > 0.0 { "target ± 2 standard deviations" } else { "" };
             series.push(line(label, moments(mean, deviation, by), color(2)));
-            let label = if by > 0.0 { "set, 2 standard deviations off" } else { "" };
+            let label = if by > 0.0 { "set ± 2 standard deviations" } else { "" };
             let own = moments(&set.selection.mean, &set.selection.deviation, by);
             series.push(line(label, own, color(3)));
         }

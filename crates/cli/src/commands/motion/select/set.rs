@@ -1,4 +1,4 @@
-//! Files of a set: its table, and a study that uses the set directly.
+//! Files of a set of records: its table, and a study that runs with the set.
 
 use std::fmt::Write as _;
 
@@ -24,7 +24,7 @@ impl Set<'_> {
         self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
     }
 
-    /// Returns a text from the table.
+    /// Returns text from the table.
     pub(super) fn text(&self, column: &str, row: usize) -> &str {
         let texts = self.table.texts(column).unwrap_or_default();
         texts.get(row).and_then(Option::as_deref).unwrap_or_default()
@@ -65,8 +65,8 @@ impl Set<'_> {
         text
     }
 
-    /// Returns a study of the set as TOML: every horizontal component is a separate motion, with
-    /// the factor of its record.
+    /// Returns a study of the set as TOML; every horizontal component is a separate motion, scaled
+    /// by the factor of its record.
     fn study(&self) -> anyhow::Result<String> {
         let a = self.args;
         let mut text = format!(
@@ -121,7 +121,7 @@ impl Set<'_> {
         let selection = self.selection;
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         format!(
-            "{} selected of {} that reach the target within the factors: median within {:.1} % of the \
+            "{} selected of {} that can be scaled to the target: median within {:.1} % of the \
              target, {}, after {} rounds of exchanges",
             selection.chosen.len(),
             selection.eligible,
@@ -133,7 +133,7 @@ impl Set<'_> {
                 )
             } else {
                 format!(
-                    "standard deviation of ln Sa up to {:.2} around it",
+                    "standard deviation of ln Sa around the target up to {:.2}",
                     selection.deviation_error(target)
                 )
             },
@@ -142,7 +142,7 @@ impl Set<'_> {
     }
 }
 
-/// Quotes a text for TOML.
+/// Quotes text for TOML.
 fn quoted(text: &str) -> anyhow::Result<String> {
     // A JSON string is also a basic string in TOML.
     Ok(serde_json::to_string(text)?)
