@@ -63,7 +63,7 @@ pub(crate) fn shaken(
         "[intensity]\nmeasure = \"pgv\"\nlevels = [{}]\n\n[design]\nkind = \"stripes\"\nchunk = {CHUNK}\n",
         levels.join(", ")
     );
-    Study::parse(&format!("{title}.toml"), &text)
+    Study::written(title, &text)
 }
 
 /// Returns the motions of a round: the named records, or else synthetic ones, with the bundled record in the first

@@ -11,7 +11,7 @@ use crate::scenario::field::{Kind, Range};
 use crate::scenario::reader::{Reader, nearest};
 use crate::scenario::template::Opened;
 use crate::scenario::tree::Origin;
-use crate::scenario::{Dimension, FileRef, MotionSource, Problem, Scenario, ScenarioError};
+use crate::scenario::{Dimension, FileRef, MotionSource, Place, Problem, Scenario, ScenarioError};
 
 use super::design::{Cases, Design};
 use super::error::StudyError;
@@ -49,6 +49,24 @@ impl Study {
     /// As [`Study::load`].
     pub fn parse(source_name: &str, text: &str) -> Result<Self, StudyError> {
         read(&Opened::parse(source_name, text)?, None)
+    }
+
+    /// Reads a study that the program wrote itself for records that the caller named: errors have no place in a file,
+    /// which nobody could look up, and may quote the records.
+    pub(crate) fn written(name: &str, text: &str) -> Result<Self, StudyError> {
+        let read = Self::parse(&format!("{name}.toml"), text);
+        let mut study = read.map_err(|error| match error {
+            StudyError::File(error) => {
+                ScenarioError::new(error.problem().clone(), Place::Unknown).into()
+            }
+            other => other,
+        })?;
+        for motion in &mut study.motions {
+            if let Shaking::Spec(spec) = &mut motion.shaking {
+                spec.files_mut().for_each(|file| *file = FileRef::of_caller(file.path.clone()));
+            }
+        }
+        Ok(study)
     }
 
     /// Reads a study from text as [`Study::parse`], with records that `fetch` returns by path, so that no file is
@@ -273,7 +291,8 @@ fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Scenar
     for motion in motions {
         if !names.insert(&motion.name) {
             let message = format!(
-                "two motions have the name \"{}\"; give their [[motion]] each a `name` of its own",
+                "two motions have the name \"{}\"; give each its own, as `name` of its [[motion]] or as \
+                 name of its file",
                 motion.name
             );
             return Err(top.inconsistent("motion", message));

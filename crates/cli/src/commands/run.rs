@@ -76,7 +76,12 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = system::read(path, PAGE_LIMIT)
         .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is no text".to_owned()))
-        .map_err(|reason| anyhow!("cannot read the page {}: {reason}", path.display()))?;
+        .map_err(|reason| {
+            anyhow!(
+                "cannot read {}: {reason}; correct the path after --with-engine",
+                path.display()
+            )
+        })?;
     if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
         bail!(
             "{} holds no engine: take barrelstack.html of a release, or make one with `cargo xtask web`",
