@@ -328,6 +328,74 @@ fn folders_in_which_nothing_can_be_written_are_known_before_the_work() {
     cases.end(33);
 }
 
+/// Commands that read, with IN for what; `m.txt`, `m.csv`, `seen.csv` and `study` lie beside it.
+const READERS: [&[&str]; 40] = [
+    &["run", "IN"],
+    &["run", "demo-napa", "--record=IN"],
+    &["run", "demo-napa", "--set=motion.record=\"IN\""],
+    &["run", "demo-napa", "--set=motion.vertical_record=\"IN\""],
+    &["run", "rocking-block", "--out=o", "--with-engine=IN"],
+    &["check", "IN"],
+    &["check", "demo-napa", "--record=IN"],
+    &["render", "IN", "--out=o"],
+    &["render", "demo-napa", "--record=IN", "--out=o"],
+    &["compare", "IN", "demo-napa", "--out=o"],
+    &["compare", "demo-napa", "--against=stack.levels=3", "--record=IN", "--out=o"],
+    &["heights", "--record=IN", "--out=o"],
+    &["protect", "IN", "--out=o"],
+    &["protect", "demo-napa", "--record=IN", "--out=o"],
+    &["protect", "demo-napa", "--motions=IN", "--out=o"],
+    &["protect", "demo-napa", "--site=IN", "--out=o"],
+    &["score", "IN", "--out=o"],
+    &["reproduce", "--record=IN", "--out=o"],
+    &["calibrate", "stiffness", "IN"],
+    &["calibrate", "stiffness", "m.csv", "--scenario=IN"],
+    &["calibrate", "drop", "IN"],
+    &["calibrate", "friction", "IN"],
+    &["calibrate", "collapse", "candia-8-barrels", "IN"],
+    &["calibrate", "collapse", "IN", "seen.csv"],
+    &["calibrate", "response", "candia-8-barrels", "IN"],
+    &["study", "run", "IN", "--out=o"],
+    &["study", "plan", "IN"],
+    &["study", "emit", "IN", "--engine=slurm", "--out=o"],
+    &["study", "status", "IN"],
+    &["study", "collect", "IN"],
+    &["study", "report", "IN"],
+    &["study", "report", "study", "--hazard=IN"],
+    &["study", "export", "IN", "--out=o"],
+    &["motion", "info", "IN"],
+    &["motion", "plot", "IN", "-o", "o"],
+    &["motion", "convert", "IN", "-o", "o.txt"],
+    &["motion", "process", "IN", "-o", "o.txt"],
+    &["motion", "scale", "IN", "--factor=2", "-o", "o.txt"],
+    &["motion", "spectrum", "IN"],
+    &["motion", "match", "m.txt", "--to=IN", "-o", "o.txt"],
+];
+
+/// None waits for the other end of a pipe, or reads a device to its end.
+#[test]
+fn what_is_no_file_is_refused_by_every_command_that_reads() {
+    let mut cases = Cases::new();
+    let made = ["motion", "synth", "ricker", "--peak=0.3 g", "--period=0.5 s", "-o", "m.txt"];
+    assert!(cases.run(&made).unwrap().status.success());
+    cases.file("seen.csv", b"mode,until (s)\nstands,8\n");
+    cases.file("m.csv", b"penetration (mm),force (kN)\n1,1\n2,2\n3,3\n");
+    fs::create_dir(cases.at("study")).unwrap();
+    let pipe = std::process::Command::new("mkfifo").arg(cases.at("pipe")).status().unwrap();
+    assert!(pipe.success());
+    std::os::unix::fs::symlink("gone", cases.at("link")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", cases.at("device")).unwrap();
+    let _open = std::os::unix::net::UnixListener::bind(cases.at("socket")).unwrap();
+    for reader in READERS {
+        for input in ["pipe", "/dev/zero", "device", "socket", "link"] {
+            let arguments: Vec<String> =
+                reader.iter().map(|word| word.replace("IN", input)).collect();
+            cases.refused(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), &[input]);
+        }
+    }
+    cases.end(200);
+}
+
 /// Returns a record of 300 samples as AT2, and as the program's own text and NPZ.
 fn records(cases: &mut Cases) -> Vec<String> {
     ["at2", "txt", "csv", "npz"]
