@@ -529,6 +529,76 @@ fn names_of_bodies_stay_in_their_cells_and_folders() {
     cases.end(60);
 }
 
+/// Names of records, stations, channels, motions, factors and bodies reach tables, and spreadsheets compute cells.
+#[test]
+fn no_cell_of_any_table_is_a_formula() {
+    let mut cases = Cases::new();
+    let mut text =
+        "# barrelstack motion 1\n# station: =1+1\n# event: @SUM(1)\n# stage: corrected\n\
+                    # unit: m/s2\n# time_step: 0.02\n# channels: =E az=90, +N az=0\n"
+            .to_owned();
+    for at in 0..300 {
+        let phase = 0.1 * f64::from(at);
+        writeln!(text, "{} {}", 3.0 * phase.sin(), 2.0 * (1.3 * phase).cos() - 2.0).unwrap();
+    }
+    fs::create_dir(cases.at("records")).unwrap();
+    for name in ["records/=1+1.txt", "records/-a.txt"] {
+        cases.file(name, text.as_bytes());
+    }
+    cases.file("records/@bad.txt", b"=cmd|' /C calc'!A0\n");
+    cases.file("block.toml", block("=1+1").as_bytes());
+    let study = "schema = 1\ntitle = \"=1+1\"\n[base]\nextends = \"sliding-block\"\n\
+                 [base.run]\nduration = \"0.1 s\"\n\
+                 [[motion]]\nname = \"@SUM(1)\"\nrecords = [\"records/-a.txt\"]\n\
+                 [[motion]]\nrecords = [\"records/=1+1.txt\"]\n\
+                 [[factor]]\nname = \"=1+1\"\nfield = \"interface.block-ground.friction.coefficient\"\n\
+                 values = [0.2, 0.4]\n[design]\nkind = \"full-factorial\"\n";
+    cases.file("study.toml", study.as_bytes());
+    let record = "records/=1+1.txt";
+    let set = ["--target=ec8:ag=0.3,site=B", "--scale=0.01..1000", "--count=2", "--out=set"];
+    for command in [
+        &["run", "block.toml", "--out=run"][..],
+        &["compare", "block.toml", "--against=run.duration=0.1 s", "--out=compared"],
+        &["study", "study.toml", "--out=study"],
+        &["motion", "info", "records", "--out=table"],
+        &["motion", "plot", record, "-o", "drawn"],
+        &["motion", "convert", record, "-o", "converted.csv"],
+        &["motion", "process", record, "--high-pass=0.5 Hz", "-o", "processed.csv"],
+        &["motion", "scale", record, "--factor=2", "-o", "scaled.csv"],
+        &[
+            "motion",
+            "match",
+            record,
+            "--to=ec8:ag=0.3,site=B",
+            "--accept-misfit",
+            "-o",
+            "matched.csv",
+        ],
+        &["motion", "spectrum", record, "-o", "spectrum.csv"],
+        &[&["motion", "select", "records"], &set[..]].concat(),
+    ] {
+        let said = cases.run(command).unwrap();
+        assert!(matches!(said.status.code(), Some(0 | 3)), "{command:?}: {}", stderr(&said));
+    }
+    let (mut look, mut tables) = (vec![cases.at("")], 0);
+    while let Some(folder) = look.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                look.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "csv") {
+                tables += 1;
+                for cell in rows(&fs::read_to_string(&path).unwrap()).concat() {
+                    let computed = cell.starts_with(['=', '+', '-', '@', '\t', '\r']);
+                    let number = cell.len() == 1 || cell.parse::<f64>().is_ok();
+                    assert!(!computed || number, "{}: {cell:?}", path.display());
+                }
+            }
+        }
+    }
+    assert!(tables > 25, "{tables}");
+    cases.end(11);
+}
+
 /// Parses the rows of a CSV file (RFC 4180).
 fn rows(text: &str) -> Vec<Vec<String>> {
     let (mut rows, mut row, mut cell, mut quoted) = (Vec::new(), Vec::new(), String::new(), false);

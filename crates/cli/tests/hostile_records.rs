@@ -171,7 +171,7 @@ fn records_of_pages_are_refused_by_the_option_that_names_them() {
         (&[("bad.csv", unit)], "`barrelstack motion convert` with --unit", &all),
         (&[("a.at2", &good), ("a.txt", &good)], "the name \"a\"; give each its own", &[FOLDER]),
         (&[], "no file in the folder", &[FOLDER]),
-        (&[], "there is no such file; correct its path", &FILES),
+        (&[], "there is no such file; correct the path", &FILES),
     ] {
         let place = tempfile::tempdir().unwrap();
         let (folder, out) = (place.path().join("records"), place.path().join("out"));
