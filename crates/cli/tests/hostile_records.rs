@@ -194,6 +194,28 @@ fn records_of_pages_are_refused_by_the_option_that_names_them() {
     }
 }
 
+#[test]
+fn a_file_outside_the_folder_of_a_scenario_is_not_quoted_unless_the_user_names_it() {
+    let place = tempfile::tempdir().unwrap();
+    let (secret, folder) = (place.path().join("secret.txt"), place.path().join("scenario"));
+    fs::create_dir(&folder).unwrap();
+    let (inside, out) = (folder.join("inside.txt"), folder.join("out"));
+    let scenario = folder.join("mine.toml");
+    for path in [&secret, &inside] {
+        fs::write(path, "Dear sir,\nplease find attached\n").unwrap();
+    }
+    for (record, quoted) in [("../secret.txt", false), ("inside.txt", true)] {
+        let text =
+            format!("schema = 1\nextends = \"demo-napa\"\n[motion]\nrecord = \"{record}\"\n");
+        fs::write(&scenario, text).unwrap();
+        let said = barrelstack(["run", scenario.to_str().unwrap()]);
+        refused(record, &said, &out, &[record, if quoted { "Dear sir" } else { "not shown" }]);
+        assert_eq!(common::stderr(&said).contains("Dear sir"), quoted);
+    }
+    let named = ["run", "demo-napa", "--record", secret.to_str().unwrap()];
+    refused("named", &barrelstack(named), &out, &["Dear sir"]);
+}
+
 /// Returns two columns of two seconds whose third time is late.
 fn uneven() -> Vec<u8> {
     let mut text = String::from("0.00 0.1\n0.01 0.2\n0.05 -0.3\n");
