@@ -204,6 +204,17 @@ print("begins", flush=True)
 def test_ctrl_c_ends_work_within_a_second(work: str, tmp_path: Path) -> None:
     folder = tmp_path / "study"
     code = LONG.format(work=work.replace("FOLDER", str(folder)))
+    # Measured 0.1 to 0.5 s; three tries, since other work on the machine may hold one up.
+    assert any(until_ended(code) < 1.0 for _ in range(3))
+    if folder.exists():
+        # Finished chunks are kept, and no file is incomplete.
+        assert not list(folder.glob("**/*.part"))
+        study = barrelstack.Study.load("napa-four-levels")
+        assert len(study.plan(folder)) <= len(study.plan())
+
+
+def until_ended(code: str) -> float:
+    """Time (s) from Ctrl-C until a script has ended."""
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert child.stdout is not None
     assert child.stdout.readline() == "begins\n"
@@ -213,10 +224,4 @@ def test_ctrl_c_ends_work_within_a_second(work: str, tmp_path: Path) -> None:
     _, errors = child.communicate(timeout=20)
     passed = time.perf_counter() - start
     assert errors.rstrip().endswith("KeyboardInterrupt"), errors
-    # Measured 0.1 to 0.3 s.
-    assert passed < 1.0, passed
-    if folder.exists():
-        # Finished chunks are kept, and no file is incomplete.
-        assert not list(folder.glob("**/*.part"))
-        study = barrelstack.Study.load("napa-four-levels")
-        assert len(study.plan(folder)) <= len(study.plan())
+    return passed
