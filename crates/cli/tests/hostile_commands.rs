@@ -329,7 +329,7 @@ fn folders_in_which_nothing_can_be_written_are_known_before_the_work() {
 }
 
 /// Commands that read, with IN for what; `m.txt`, `m.csv`, `seen.csv` and `study` lie beside it.
-const READERS: [&[&str]; 40] = [
+const READERS: [&[&str]; 44] = [
     &["run", "IN"],
     &["run", "demo-napa", "--record=IN"],
     &["run", "demo-napa", "--set=motion.record=\"IN\""],
@@ -356,6 +356,7 @@ const READERS: [&[&str]; 40] = [
     &["calibrate", "collapse", "IN", "seen.csv"],
     &["calibrate", "response", "candia-8-barrels", "IN"],
     &["study", "run", "IN", "--out=o"],
+    &["study", "run-chunk", "IN", "--chunk=0", "--out=o"],
     &["study", "plan", "IN"],
     &["study", "emit", "IN", "--engine=slurm", "--out=o"],
     &["study", "status", "IN"],
@@ -364,6 +365,9 @@ const READERS: [&[&str]; 40] = [
     &["study", "report", "study", "--hazard=IN"],
     &["study", "export", "IN", "--out=o"],
     &["motion", "info", "IN"],
+    &["motion", "info", "m.txt", "--station-xml=IN"],
+    &["motion", "info", "study", "--flatfile=IN", "--out=o"],
+    &["motion", "select", "study", "--target=IN", "--out=o"],
     &["motion", "plot", "IN", "-o", "o"],
     &["motion", "convert", "IN", "-o", "o.txt"],
     &["motion", "process", "IN", "-o", "o.txt"],
