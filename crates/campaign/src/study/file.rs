@@ -54,12 +54,9 @@ impl Study {
     /// Reads a study that the program wrote itself for records that the caller named: errors have no place in a file,
     /// which nobody could look up, and may quote the records.
     pub(crate) fn written(name: &str, text: &str) -> Result<Self, StudyError> {
-        let read = Self::parse(&format!("{name}.toml"), text);
-        let mut study = read.map_err(|error| match error {
-            StudyError::File(error) => {
-                ScenarioError::new(error.problem().clone(), Place::Unknown).into()
-            }
-            other => other,
+        let mut study = Self::parse(&format!("{name}.toml"), text).map_err(|error| {
+            let StudyError::File(error) = error else { return error };
+            ScenarioError::new(error.problem().clone(), Place::Unknown).into()
         })?;
         for motion in &mut study.motions {
             if let Shaking::Spec(spec) = &mut motion.shaking {
