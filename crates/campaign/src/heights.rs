@@ -216,8 +216,7 @@ pub fn heights(
     for view in View::ALL {
         for recorded in [false, true] {
             let name = plan::name(view, recorded);
-            let study =
-                Study::parse(&format!("{name}.toml"), &plan::text(request, view, recorded)?)?;
+            let study = Study::written(&name, &plan::text(request, view, recorded)?)?;
             studies.push((view, recorded, study));
         }
     }

@@ -464,7 +464,7 @@ fn every_ensemble_is_tried_before_the_work_and_described_in_words() {
     let error = study(&format!("{}{}{STRIPES}", made("0.1 s"), made("0.9 s")))
         .run(&out, &RunOptions::default(), &|_| ControlFlow::Continue(()))
         .unwrap_err();
-    assert!(error.to_string().contains("the motion \"rise 0.9 s 1\" of the study"), "{error}");
+    assert!(error.to_string().contains("the motion \"rise 0.9 s 1\": "), "{error}");
     assert!(!out.exists());
 }
 

@@ -6,7 +6,8 @@ use barrelstack::RunFailure;
 use barrelstack::compare::CompareError;
 use barrelstack::export::ExportError;
 use barrelstack::ground::GroundError;
-use barrelstack_motion::MotionError;
+use barrelstack_campaign::study::StudyError;
+use barrelstack_motion::{MotionError, Refusal};
 
 /// Returns the advice after an error, if one option helps.
 pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
@@ -27,6 +28,14 @@ pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
         }
         if let Some(RunFailure::Ground(ground)) = cause.downcast_ref() {
             return of_ground(ground);
+        }
+        if let Some(StudyError::Motion { error, .. }) = cause.downcast_ref()
+            && let GroundError::Read(read) = &**error
+            && let Refusal::Missing(_) = read.refusal
+        {
+            return Some(
+                "`barrelstack motion convert` with --unit, --time-step or --sensitivity writes a file that states it",
+            );
         }
         cause.downcast_ref().and_then(of_ground)
     })

@@ -328,6 +328,78 @@ fn folders_in_which_nothing_can_be_written_are_known_before_the_work() {
     cases.end(33);
 }
 
+/// Commands that read, with IN for what; `m.txt`, `m.csv`, `seen.csv` and `study` lie beside it.
+const READERS: [&[&str]; 44] = [
+    &["run", "IN"],
+    &["run", "demo-napa", "--record=IN"],
+    &["run", "demo-napa", "--set=motion.record=\"IN\""],
+    &["run", "demo-napa", "--set=motion.vertical_record=\"IN\""],
+    &["run", "rocking-block", "--out=o", "--with-engine=IN"],
+    &["check", "IN"],
+    &["check", "demo-napa", "--record=IN"],
+    &["render", "IN", "--out=o"],
+    &["render", "demo-napa", "--record=IN", "--out=o"],
+    &["compare", "IN", "demo-napa", "--out=o"],
+    &["compare", "demo-napa", "--against=stack.levels=3", "--record=IN", "--out=o"],
+    &["heights", "--record=IN", "--out=o"],
+    &["protect", "IN", "--out=o"],
+    &["protect", "demo-napa", "--record=IN", "--out=o"],
+    &["protect", "demo-napa", "--motions=IN", "--out=o"],
+    &["protect", "demo-napa", "--site=IN", "--out=o"],
+    &["score", "IN", "--out=o"],
+    &["reproduce", "--record=IN", "--out=o"],
+    &["calibrate", "stiffness", "IN"],
+    &["calibrate", "stiffness", "m.csv", "--scenario=IN"],
+    &["calibrate", "drop", "IN"],
+    &["calibrate", "friction", "IN"],
+    &["calibrate", "collapse", "candia-8-barrels", "IN"],
+    &["calibrate", "collapse", "IN", "seen.csv"],
+    &["calibrate", "response", "candia-8-barrels", "IN"],
+    &["study", "run", "IN", "--out=o"],
+    &["study", "run-chunk", "IN", "--chunk=0", "--out=o"],
+    &["study", "plan", "IN"],
+    &["study", "emit", "IN", "--engine=slurm", "--out=o"],
+    &["study", "status", "IN"],
+    &["study", "collect", "IN"],
+    &["study", "report", "IN"],
+    &["study", "report", "study", "--hazard=IN"],
+    &["study", "export", "IN", "--out=o"],
+    &["motion", "info", "IN"],
+    &["motion", "info", "m.txt", "--station-xml=IN"],
+    &["motion", "info", "study", "--flatfile=IN", "--out=o"],
+    &["motion", "select", "study", "--target=IN", "--out=o"],
+    &["motion", "plot", "IN", "-o", "o"],
+    &["motion", "convert", "IN", "-o", "o.txt"],
+    &["motion", "process", "IN", "-o", "o.txt"],
+    &["motion", "scale", "IN", "--factor=2", "-o", "o.txt"],
+    &["motion", "spectrum", "IN"],
+    &["motion", "match", "m.txt", "--to=IN", "-o", "o.txt"],
+];
+
+/// None waits for the other end of a pipe, or reads a device to its end.
+#[test]
+fn what_is_no_file_is_refused_by_every_command_that_reads() {
+    let mut cases = Cases::new();
+    let made = ["motion", "synth", "ricker", "--peak=0.3 g", "--period=0.5 s", "-o", "m.txt"];
+    assert!(cases.run(&made).unwrap().status.success());
+    cases.file("seen.csv", b"mode,until (s)\nstands,8\n");
+    cases.file("m.csv", b"penetration (mm),force (kN)\n1,1\n2,2\n3,3\n");
+    fs::create_dir(cases.at("study")).unwrap();
+    let pipe = std::process::Command::new("mkfifo").arg(cases.at("pipe")).status().unwrap();
+    assert!(pipe.success());
+    std::os::unix::fs::symlink("gone", cases.at("link")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", cases.at("device")).unwrap();
+    let _open = std::os::unix::net::UnixListener::bind(cases.at("socket")).unwrap();
+    for reader in READERS {
+        for input in ["pipe", "/dev/zero", "device", "socket", "link"] {
+            let arguments: Vec<String> =
+                reader.iter().map(|word| word.replace("IN", input)).collect();
+            cases.refused(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), &[input]);
+        }
+    }
+    cases.end(200);
+}
+
 /// Returns a record of 300 samples as AT2, and as the program's own text and NPZ.
 fn records(cases: &mut Cases) -> Vec<String> {
     ["at2", "txt", "csv", "npz"]
@@ -459,6 +531,76 @@ fn names_of_bodies_stay_in_their_cells_and_folders() {
     }
     assert!(!cases.at("pwned").exists());
     cases.end(60);
+}
+
+/// Names of records, stations, channels, motions, factors and bodies reach tables, and spreadsheets compute cells.
+#[test]
+fn no_cell_of_any_table_is_a_formula() {
+    let mut cases = Cases::new();
+    let mut text =
+        "# barrelstack motion 1\n# station: =1+1\n# event: @SUM(1)\n# stage: corrected\n\
+                    # unit: m/s2\n# time_step: 0.02\n# channels: =E az=90, +N az=0\n"
+            .to_owned();
+    for at in 0..300 {
+        let phase = 0.1 * f64::from(at);
+        writeln!(text, "{} {}", 3.0 * phase.sin(), 2.0 * (1.3 * phase).cos() - 2.0).unwrap();
+    }
+    fs::create_dir(cases.at("records")).unwrap();
+    for name in ["records/=1+1.txt", "records/-a.txt"] {
+        cases.file(name, text.as_bytes());
+    }
+    cases.file("records/@bad.txt", b"=cmd|' /C calc'!A0\n");
+    cases.file("block.toml", block("=1+1").as_bytes());
+    let study = "schema = 1\ntitle = \"=1+1\"\n[base]\nextends = \"sliding-block\"\n\
+                 [base.run]\nduration = \"0.1 s\"\n\
+                 [[motion]]\nname = \"@SUM(1)\"\nrecords = [\"records/-a.txt\"]\n\
+                 [[motion]]\nrecords = [\"records/=1+1.txt\"]\n\
+                 [[factor]]\nname = \"=1+1\"\nfield = \"interface.block-ground.friction.coefficient\"\n\
+                 values = [0.2, 0.4]\n[design]\nkind = \"full-factorial\"\n";
+    cases.file("study.toml", study.as_bytes());
+    let record = "records/=1+1.txt";
+    let set = ["--target=ec8:ag=0.3,site=B", "--scale=0.01..1000", "--count=2", "--out=set"];
+    for command in [
+        &["run", "block.toml", "--out=run"][..],
+        &["compare", "block.toml", "--against=run.duration=0.1 s", "--out=compared"],
+        &["study", "study.toml", "--out=study"],
+        &["motion", "info", "records", "--out=table"],
+        &["motion", "plot", record, "-o", "drawn"],
+        &["motion", "convert", record, "-o", "converted.csv"],
+        &["motion", "process", record, "--high-pass=0.5 Hz", "-o", "processed.csv"],
+        &["motion", "scale", record, "--factor=2", "-o", "scaled.csv"],
+        &[
+            "motion",
+            "match",
+            record,
+            "--to=ec8:ag=0.3,site=B",
+            "--accept-misfit",
+            "-o",
+            "matched.csv",
+        ],
+        &["motion", "spectrum", record, "-o", "spectrum.csv"],
+        &[&["motion", "select", "records"], &set[..]].concat(),
+    ] {
+        let said = cases.run(command).unwrap();
+        assert!(matches!(said.status.code(), Some(0 | 3)), "{command:?}: {}", stderr(&said));
+    }
+    let (mut look, mut tables) = (vec![cases.at("")], 0);
+    while let Some(folder) = look.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                look.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "csv") {
+                tables += 1;
+                for cell in rows(&fs::read_to_string(&path).unwrap()).concat() {
+                    let computed = cell.starts_with(['=', '+', '-', '@', '\t', '\r']);
+                    let number = cell.len() == 1 || cell.parse::<f64>().is_ok();
+                    assert!(!computed || number, "{}: {cell:?}", path.display());
+                }
+            }
+        }
+    }
+    assert!(tables > 25, "{tables}");
+    cases.end(11);
 }
 
 /// Parses the rows of a CSV file (RFC 4180).

@@ -157,6 +157,65 @@ fn paths_that_are_no_files() {
     refused("empty name", &with(""), &out, &["--record"]);
 }
 
+/// Users of these commands wrote no study: what they named is an option, a folder, a file.
+#[test]
+fn records_of_pages_are_refused_by_the_option_that_names_them() {
+    const FOLDER: [&str; 2] = ["protect", "--motions"];
+    const FILES: [[&str; 2]; 2] = [["protect", "--record"], ["heights", "--record"]];
+    let all = [FOLDER, FILES[0], FILES[1]];
+    let unit = "time (s),a\n0,1\n0.01,2\n0.02,-3\n";
+    let good = peer(200);
+    for (files, words, commands) in [
+        (&[("bad.csv", "")][..], "found an empty file", &all[..]),
+        (&[("bad.csv", "To be added.\n")], "as first line", &all),
+        (&[("bad.csv", unit)], "`barrelstack motion convert` with --unit", &all),
+        (&[("a.at2", &good), ("a.txt", &good)], "the name \"a\"; give each its own", &[FOLDER]),
+        (&[], "no file in the folder", &[FOLDER]),
+        (&[], "there is no such file; correct the path", &FILES),
+    ] {
+        let place = tempfile::tempdir().unwrap();
+        let (folder, out) = (place.path().join("records"), place.path().join("out"));
+        fs::create_dir(&folder).unwrap();
+        for (name, text) in files {
+            fs::write(folder.join(name), text).unwrap();
+        }
+        for [command, option] in commands {
+            let named = if *option == FOLDER[1] { folder.clone() } else { folder.join("bad.csv") };
+            let (named, to) = (named.to_str().unwrap(), out.to_str().unwrap());
+            let said = barrelstack([command, option, named, "--quiet", "--out", to]);
+            assert_eq!(said.status.code(), Some(2), "{command} {option}");
+            let said = common::stderr(&said);
+            assert!(said.starts_with(&format!("error: {option}")), "{command}: {said}");
+            assert!(said.contains(words), "{command} {option}: {said}");
+            for no in ["study file", "of the study", "protection.toml", "transverse.toml"] {
+                assert!(!said.contains(no), "{command} {option}: {said}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_file_outside_the_folder_of_a_scenario_is_not_quoted_unless_the_user_names_it() {
+    let place = tempfile::tempdir().unwrap();
+    let (secret, folder) = (place.path().join("secret.txt"), place.path().join("scenario"));
+    fs::create_dir(&folder).unwrap();
+    let (inside, out) = (folder.join("inside.txt"), folder.join("out"));
+    let scenario = folder.join("mine.toml");
+    for path in [&secret, &inside] {
+        fs::write(path, "Dear sir,\nplease find attached\n").unwrap();
+    }
+    for (record, quoted) in [("../secret.txt", false), ("inside.txt", true)] {
+        let text =
+            format!("schema = 1\nextends = \"demo-napa\"\n[motion]\nrecord = \"{record}\"\n");
+        fs::write(&scenario, text).unwrap();
+        let said = barrelstack(["run", scenario.to_str().unwrap()]);
+        refused(record, &said, &out, &[record, if quoted { "Dear sir" } else { "not shown" }]);
+        assert_eq!(common::stderr(&said).contains("Dear sir"), quoted);
+    }
+    let named = ["run", "demo-napa", "--record", secret.to_str().unwrap()];
+    refused("named", &barrelstack(named), &out, &["Dear sir"]);
+}
+
 /// Returns two columns of two seconds whose third time is late.
 fn uneven() -> Vec<u8> {
     let mut text = String::from("0.00 0.1\n0.01 0.2\n0.05 -0.3\n");

@@ -102,11 +102,17 @@ def test_runs_and_tables_are_pickled_and_copied(run: Run, tmp_path: Path) -> Non
     assert table.to_csv() == run.variants.to_csv()
     with pytest.raises(barrelstack.RunError, match="run its scenario again"):
         again.write(tmp_path / "out")
+    for histories in (pickle.loads(pickle.dumps(run.histories)), copy.deepcopy(run.histories)):
+        assert {name: values.tobytes() for name, values in histories.items()} == {
+            name: values.tobytes() for name, values in run.histories.items()
+        }
+    assert pickle.loads(pickle.dumps(run.demands)) == run.demands
     assert copy.copy(run) is copy.deepcopy(run) is run
     assert copy.copy(table) is copy.deepcopy(table) is table
 
 
 STATED = Scenario({"extends": "sliding-block"})
+TILTS = Calibration.friction({"angle (deg)": [21.4, 22.0, 21.7]}, interface="rack-ground")
 
 
 @pytest.mark.parametrize(
@@ -191,6 +197,8 @@ def test_what_is_not_there_is_absent_as_in_any_mapping(run: Run) -> None:
         ("record.txt", lambda run, path: Record.bundled().write(path)),
         ("record.npz", lambda run, path: Record.bundled().write(path)),
         ("summary.json", lambda run, path: run.write(path.parent, overwrite=True)),
+        ("calibration.html", lambda run, path: TILTS.report(path)),
+        ("calibration.pdf", lambda run, path: TILTS.report(path)),
     ],
 )
 def test_no_writer_follows_a_link(
@@ -223,8 +231,15 @@ def test_an_assigned_field_is_refused_where_it_would_change_nothing() -> None:
         Record.read,
         Scenario.load,
         Study.load,
+        lambda path: Calibration.stiffness(path),
+        lambda path: Calibration.drop(path),
         lambda path: Calibration.friction(path, interface="rack-ground"),
+        lambda path: Calibration.response(Scenario.load("candia-8-barrels"), path),
+        lambda path: Calibration.collapse(Scenario.load("candia-8-barrels"), path),
         lambda path: Scenario.load("demo-napa", motion__record=path).run(variants=0),
+        lambda path: barrelstack.heights(f"{path}-out", records=[path]),
+        lambda path: barrelstack.protect("demo-napa", f"{path}-out", records=[path]),
+        lambda path: barrelstack.protect("demo-napa", f"{path}-out", site=path),
     ],
 )
 def test_no_reader_waits_for_a_pipe_or_reads_a_device(tmp_path: Path, read: Callable[[str], object]) -> None:
@@ -250,14 +265,35 @@ import barrelstack
 scenario = barrelstack.Scenario.load("candia-8-barrels")
 levels: int = scenario.stack.levels
 print(levels + 1, scenario.stack["levels"], scenario.fields.stack.levels)
+run = scenario.run(barrelstack.Record.bundled(), variants=2)
+print(run.histories["time"].max(), run.summary["demands"], run.demands, run.headline.upper())
+table = run.variants
+if table is not None:
+    losses = table.numbers("first_loss")
+    print(losses.mean(), table["outcome"], [column.name.upper() for column in table.columns])
+
+
+def look(glance: barrelstack.Glance) -> bool:
+    return glance.time < 1.0
+
+
+scenario.observe(look)
 """
 
 
-def test_fields_of_a_scenario_pass_a_strict_checker(tmp_path: Path) -> None:
-    pytest.importorskip("mypy", reason="no mypy")
+@pytest.mark.parametrize(
+    "checker",
+    [
+        ["mypy", "--strict", "--cache-dir", "cache"],
+        pytest.param(["pyright", "--pythonpath", sys.executable], marks=pytest.mark.heavy),
+    ],
+    ids=lambda checker: checker[0],
+)
+def test_a_script_of_a_user_passes_strict_checkers(checker: list[str], tmp_path: Path) -> None:
+    pytest.importorskip(checker[0], reason=f"no {checker[0]}")
     path = tmp_path / "mine.py"
-    path.write_text(SCRIPT)
-    words = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(path)]
+    path.write_text("# pyright: strict\n" + SCRIPT)
+    words = [sys.executable, "-m", *checker, str(path)]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 

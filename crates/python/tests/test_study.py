@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import shutil
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -74,7 +75,7 @@ def test_an_incremental_analysis_has_a_curve_a_motion(folder: Path) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
-def test_an_export_follows_no_link(folder: Path, tmp_path: Path) -> None:
+def test_an_export_and_a_collected_table_follow_no_link(folder: Path, tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     kept.write_text("kept")
     Study.export(folder, tmp_path / "first")
@@ -86,6 +87,13 @@ def test_an_export_follows_no_link(folder: Path, tmp_path: Path) -> None:
     Study.export(folder, out)
     assert kept.read_text() == "kept"
     assert all((out / name).read_bytes() == (tmp_path / "first" / name).read_bytes() for name in names)
+    again = shutil.copytree(folder, tmp_path / "again")
+    for name in ("table.csv", "table.parquet", "columns.csv", "provenance.json"):
+        (again / name).unlink(missing_ok=True)
+        (again / name).symlink_to(kept)
+    table = Study.collect(again, write=True)
+    assert kept.read_text() == "kept"
+    assert (again / "table.csv").read_text(encoding="utf-8") == table.to_csv()
 
 
 def test_an_export_is_what_openquake_documents(folder: Path, tmp_path: Path) -> None:

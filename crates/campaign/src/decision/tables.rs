@@ -68,10 +68,13 @@ pub(super) fn indices(all: &[Sensitivity]) -> Table {
     )
 }
 
-/// Formats the interval of an index, or states that there are too few blocks for one.
+/// Formats the interval of an index, rounded outward so that its printed width is never zero, or states that there are
+/// too few blocks for one.
 fn known(interval: Interval) -> String {
-    let whole = interval.low <= 0.0 && interval.high >= 1.0;
-    if whole { "too few blocks".to_owned() } else { range(interval, share) }
+    let (low, high) =
+        ((100.0 * interval.low).floor() / 100.0, (100.0 * interval.high).ceil() / 100.0);
+    let whole = low <= 0.0 && high >= 1.0;
+    if whole { "too few blocks".to_owned() } else { range(Interval { low, high }, share) }
 }
 
 /// Formats a share with two decimals.
@@ -108,4 +111,16 @@ pub(super) fn measures(decision: &Decision) -> Table {
             ("p (drift)", "", &|row| drift(row, |of| of.sufficiency)),
         ],
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Interval, known};
+
+    #[test]
+    fn no_interval_of_an_index_loses_its_width_when_it_is_printed() {
+        assert_eq!(known(Interval { low: 0.0, high: 0.003 }), "0.00 to 0.01");
+        assert_eq!(known(Interval { low: 0.996, high: 1.0 }), "0.99 to 1.00");
+        assert_eq!(known(Interval { low: 0.0, high: 1.0 }), "too few blocks to say");
+    }
 }

@@ -66,7 +66,7 @@ pub(crate) fn shaken(
         "[intensity]\nmeasure = \"pgv\"\nlevels = [{}]\n\n[design]\nkind = \"stripes\"\nchunk = {CHUNK}\n",
         levels.join(", ")
     );
-    Study::parse(&format!("{title}.toml"), &text)
+    Study::written(title, &text)
 }
 
 /// Returns the tables `[[motion]]` of a round: the given records, or synthetic motions and, in the first round, the

@@ -13,7 +13,7 @@ pub enum StudyError {
     #[error(transparent)]
     File(#[from] ScenarioError),
     /// A motion of the study cannot be read or generated.
-    #[error("the motion \"{name}\" of the study: {error}")]
+    #[error("the motion \"{name}\": {error}")]
     Motion {
         /// Name of the motion.
         name: String,

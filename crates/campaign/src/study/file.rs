@@ -11,7 +11,7 @@ use crate::scenario::field::{Kind, Range};
 use crate::scenario::reader::{Reader, nearest};
 use crate::scenario::template::Opened;
 use crate::scenario::tree::Origin;
-use crate::scenario::{Dimension, FileRef, MotionSource, Problem, Scenario, ScenarioError};
+use crate::scenario::{Dimension, FileRef, MotionSource, Place, Problem, Scenario, ScenarioError};
 
 use super::design::{Cases, Design};
 use super::error::StudyError;
@@ -49,6 +49,21 @@ impl Study {
     /// As [`Study::load`].
     pub fn parse(source_name: &str, text: &str) -> Result<Self, StudyError> {
         read(&Opened::parse(source_name, text)?, None)
+    }
+
+    /// Reads a study that the program wrote for records named by the caller. Its errors have no place in a file, since
+    /// the user never sees that file, and they may quote the records.
+    pub(crate) fn written(name: &str, text: &str) -> Result<Self, StudyError> {
+        let mut study = Self::parse(&format!("{name}.toml"), text).map_err(|error| {
+            let StudyError::File(error) = error else { return error };
+            ScenarioError::new(error.problem().clone(), Place::Unknown).into()
+        })?;
+        for motion in &mut study.motions {
+            if let Shaking::Spec(spec) = &mut motion.shaking {
+                spec.files_mut().for_each(|file| *file = FileRef::of_caller(file.path.clone()));
+            }
+        }
+        Ok(study)
     }
 
     /// Reads a study from text like [`Study::parse`], without opening files: `fetch` returns the bytes of a record by its
@@ -273,7 +288,8 @@ fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Scenar
     for motion in motions {
         if !names.insert(&motion.name) {
             let message = format!(
-                "two motions have the name \"{}\"; give each [[motion]] a different `name`",
+                "two motions have the name \"{}\"; give each a name of its own, as `name` of its [[motion]] or as the \
+                 name of its file",
                 motion.name
             );
             return Err(top.inconsistent("motion", message));

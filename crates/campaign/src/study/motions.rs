@@ -179,8 +179,7 @@ pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, 
 }
 
 pub(super) fn unreadable(name: &str, path: &Path, reason: String) -> StudyError {
-    let obtain =
-        "; correct the path in the study file, or take the file out of its folder".to_owned();
+    let obtain = "; correct the path, or take the file out of its folder".to_owned();
     let error = GroundError::Unreadable { path: path.to_owned(), reason, obtain };
     StudyError::Motion { name: name.to_owned(), error: Box::new(error) }
 }

@@ -6,10 +6,8 @@ use std::process::ExitCode;
 use barrelstack_campaign::heights::{
     HIGHEST, Heights, HeightsError, LOWEST, Request, VELOCITIES, View, heights,
 };
-use barrelstack_campaign::study::StudyError;
 
-use super::page::PageArgs;
-use crate::interrupt::Stopped;
+use super::page::{PageArgs, of_option};
 
 /// Arguments of `heights`.
 #[derive(Debug, clap::Args)]
@@ -54,7 +52,10 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         heights(&request, &args.out, &options, &|done, of| progress.counted(done, of, "runs"));
     drop(progress);
     let found = match result {
-        Err(HeightsError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
+        Err(HeightsError::Study(error)) => {
+            let records = if args.record.is_empty() { "" } else { "--record" };
+            return Err(of_option(error, records, &args.out));
+        }
         other => other?,
     };
     let file = (args.out.as_path(), "heights.json");

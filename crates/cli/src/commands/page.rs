@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use barrelstack_campaign::study::RunOptions;
+use barrelstack_campaign::study::{RunOptions, StudyError};
 use barrelstack_report::{Document, described, html, markdown};
 use serde::Serialize;
 
-use crate::interrupt::keeps;
+use crate::interrupt::{Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::Progress;
@@ -61,6 +61,25 @@ impl PageArgs {
         written?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Adds to an error the option that caused it: the user did not write the studies behind a page.
+pub(super) fn of_option(error: StudyError, motions: &str, out: &Path) -> anyhow::Error {
+    let option = match error {
+        StudyError::Stopped => return Stopped.into(),
+        StudyError::Motion { .. } | StudyError::File(_) if !motions.is_empty() => {
+            motions.to_owned()
+        }
+        StudyError::Folder { .. } => format!("--out {}", out.display()),
+        StudyError::Motion { .. }
+        | StudyError::File(_)
+        | StudyError::System { .. }
+        | StudyError::Shard { .. }
+        | StudyError::BuiltIn(_)
+        | StudyError::Table(_)
+        | StudyError::Chunk(_) => return error.into(),
+    };
+    anyhow::Error::from(error).context(option)
 }
 
 /// Writes a page, and a JSON document under the given name.

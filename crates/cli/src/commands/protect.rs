@@ -9,12 +9,10 @@ use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::protect::{
     ProtectError, Ranking, Reached, Request, Shaking, VELOCITIES, protect,
 };
-use barrelstack_campaign::study::StudyError;
 use barrelstack_report::significant;
 
-use super::page::PageArgs;
+use super::page::{PageArgs, of_option};
 use crate::args::ScenarioArgs;
-use crate::interrupt::Stopped;
 use crate::printer;
 use crate::progress::Progress;
 
@@ -62,7 +60,7 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     });
     drop(progress);
     let mut found = match result {
-        Err(ProtectError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
+        Err(ProtectError::Study(error)) => return Err(of_option(error, &motions(args), &args.out)),
         Err(ProtectError::Stack(failure)) => {
             return Err(super::placed(failure, &request.scenario, &args.scenario));
         }
@@ -79,6 +77,13 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
         lines(&found),
         &found.document.warnings,
     )
+}
+
+/// Returns the options that name recorded motions, as typed.
+fn motions(args: &ProtectArgs) -> String {
+    let record = args.scenario.record.iter().map(|file| format!("--record {}", file.display()));
+    let folder = args.motions.iter().map(|folder| format!("--motions {}", folder.display()));
+    record.chain(folder).collect::<Vec<_>>().join(" ")
 }
 
 fn request(args: &ProtectArgs) -> anyhow::Result<Request> {

@@ -1,9 +1,7 @@
 //! `barrelstack reproduce`: numbers and figures of the paper compared with those of the program.
 
-use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::Context;
 use barrelstack::render::write_figures;
 use barrelstack_report::{Paper, document_pdf};
 use barrelstack_reproduction::{
@@ -19,7 +17,7 @@ use crate::store::writable;
 
 /// Runs every case, writes the page, prints the table.
 pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
-    prepare(&args.out)?;
+    writable(&args.out)?;
     let progress = Progress::new(true);
     let result = run_all(args.record.as_deref(), !args.no_studies, &|done, of| {
         progress.counted(done as u64, of as u64, "runs")
@@ -40,12 +38,6 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
     found.document.warnings.iter().for_each(|warning| printer::warning(warning));
     Ok(ExitCode::SUCCESS)
-}
-
-/// Creates the folder before the computation starts, and checks that it is writable.
-fn prepare(out: &Path) -> anyhow::Result<()> {
-    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
-    writable(out)
 }
 
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {

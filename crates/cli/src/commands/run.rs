@@ -75,8 +75,13 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 /// Reads the page that contains the program.
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = system::read(path, PAGE_LIMIT)
-        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "the file is not text".to_owned()))
-        .map_err(|reason| anyhow!("cannot read the page {}: {reason}", path.display()))?;
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not text".to_owned()))
+        .map_err(|reason| {
+            anyhow!(
+                "cannot read {}: {reason}; correct the path after --with-engine",
+                path.display()
+            )
+        })?;
     if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
         bail!(
             "{} does not contain the program: use barrelstack.html of a release, or make one with `cargo xtask web`",

@@ -5,11 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack_campaign::score::{Protocol, ScoreError, Sheet, score};
-use barrelstack_campaign::study::StudyError;
 
-use super::page::PageArgs;
+use super::page::{PageArgs, of_option};
 use crate::args::ScenarioArgs;
-use crate::interrupt::Stopped;
 use crate::printer;
 
 /// Arguments of `score`.
@@ -39,7 +37,7 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     let result = score(&scenario, &protocol, &args.out, &options, &report);
     drop(progress);
     let sheet = match result {
-        Err(ScoreError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
+        Err(ScoreError::Study(error)) => return Err(of_option(error, "", &args.out)),
         Err(ScoreError::Stack(failure)) => {
             return Err(super::placed(failure, &scenario, &args.scenario));
         }

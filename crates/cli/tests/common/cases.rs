@@ -14,7 +14,8 @@ const AT_MOST: Duration = Duration::from_secs(30);
 const MEMORY: u32 = 5_000_000;
 
 /// Words of which every error contains one: the expectation, or the remedy.
-const NEXT: [&str; 39] = [
+const NEXT: [&str; 40] = [
+    "download",
     "lengthen",
     "there are:",
     "without it",

@@ -130,6 +130,9 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
     def __len__(self) -> int:
         return len(self._units)
 
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return Histories, (_kept(self._native),)
+
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Exports an Arrow stream, with ``time`` as the first column."""
         columns = [(name, unit, self[name]) for name, unit in self._units.items()]

@@ -142,6 +142,7 @@ pub(super) fn read_file(
                 Given::Step => " in the scenario, for example motion.time_step = \"0.01 s\"",
                 Given::Sensitivity => " in the scenario, for example motion.sensitivity = 427819",
             };
+            failure.remedy += ", or in `each` of a study's [[motion]]";
         }
         GroundError::Read(failure.into())
     })

@@ -10,6 +10,7 @@ use barrelstack_motion::{
     Channel, Record, ResponsePeaks, RotatedPeak, STANDARD_GRAVITY, response, rotated_spectrum,
     standard_periods,
 };
+use barrelstack_report::csv_field;
 
 use super::info;
 use super::input::{Chain, Choice, Input, number_or};
@@ -141,6 +142,7 @@ impl Spectra {
             head.push(format!("direction of RotD100 (deg {})", rotated.from));
         }
         if text.is_empty() {
+            let head: Vec<String> = head.iter().map(|cell| csv_field(cell)).collect();
             text.push_str(&head.join(","));
             text.push('\n');
         }
