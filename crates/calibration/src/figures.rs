@@ -7,7 +7,7 @@ use super::Estimate;
 /// Number of intervals into which a fitted curve is divided for drawing.
 const PLACES: usize = 60;
 
-/// Creates a series of single measurements.
+/// Creates a series of single measured values.
 pub(super) fn measured(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Series {
     let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
     Series { style, ..Series::new(label, x, y) }

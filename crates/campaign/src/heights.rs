@@ -1,8 +1,8 @@
 //! Safe heights: probability of collapse of stacks by height, direction and strength of shaking.
 //!
-//! Stacks of two levels and more on one kind of rack are shaken by the bundled record of South Napa, by synthetic
-//! motions and by the user's own records. All are scaled to the same levels of peak ground velocity, and friction is
-//! drawn for each run.
+//! Stacks of two or more levels on one kind of rack are shaken by the bundled record of South Napa, by
+//! synthetic motions and by the user's own records. All motions are scaled to the same levels of peak ground
+//! velocity. Friction is drawn at random for each run.
 
 mod field;
 mod json;

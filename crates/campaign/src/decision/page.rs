@@ -12,7 +12,7 @@ use super::words::{self, count, percent, range};
 use super::{Decision, figures, tables};
 use crate::study::Provenance;
 
-/// Builds the report page.
+/// Builds the report page of a decision.
 pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     Document {
         title: decision.cases.title.clone(),
@@ -28,7 +28,7 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     }
 }
 
-/// Returns the heading of a section.
+/// Returns a block with the heading of a section.
 pub(crate) fn heading(text: &str) -> Block {
     Block::Heading { level: 2, text: text.to_owned() }
 }
@@ -82,9 +82,9 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(Block::Table(tables::indices(&decision.sensitivities)));
         blocks.push(text(
             "The first index is the share of the variance that would vanish if the quantity were known; the total index is the \
-             share that would remain if all other quantities were known. The total exceeds the first by the effect of \
-             interactions. Demands are those up to the collapse. A quantity without effect in these blocks may have one in \
-             others, so no interval ends at zero.",
+             share that would remain if all other quantities were known. The total index exceeds the first by the \
+             effect of interactions. Demands are recorded until the collapse. A quantity without effect in these blocks may \
+             have an effect in others, so that no interval ends at zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
@@ -133,7 +133,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     let mut said = Vec::new();
     if !cases.hunted && !cases.shares_levels(cases.main) {
         said.push(format!(
-            "The cases share no levels, so they are counted in {} bins of about {} neighboring cases; the intensity of \
+            "The cases do not share levels, so they are counted in {} bins of about {} neighboring cases; the intensity of \
              a bin is the geometric mean over its cases. The curve is fitted to the single cases.",
             curve.stripes.len(),
             cases.all.len() / curve.stripes.len().max(1)

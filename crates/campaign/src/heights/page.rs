@@ -1,4 +1,4 @@
-//! Report page of a study of heights.
+//! Report page of a study of safe heights.
 
 use barrelstack_fragility::{Fit, Interval, at_most};
 use barrelstack_report::{
@@ -14,12 +14,14 @@ use crate::decision::{
 use crate::scenario::title::{counted, number};
 use crate::scenario::{View, catalog};
 
-/// Largest share of collapse that is rated low, and the largest upper bound of the probability of collapse that is.
+/// Conditions for the rating "low": the maximum share of collapse, and the maximum upper bound of the
+/// probability of collapse.
 ///
-/// A probability above that bound is rated low in at most one of 20 tries, for any number of motions.
+/// A stack whose probability of collapse exceeds the second number is rated low in at most one of 20 studies,
+/// for any number of motions.
 const LOW: (f64, f64) = (0.05, 0.12);
 
-/// Largest share of collapse that is rated medium.
+/// Maximum share of collapse for the rating "medium".
 const MEDIUM: f64 = 0.25;
 
 /// Builds the report page.
@@ -50,7 +52,8 @@ fn rack_source(name: &str) -> String {
 
 /// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of shaking maps.
 ///
-/// The classes are averages over earthquakes in California (Wald et al. 1999), so that they are an assumption elsewhere.
+/// The classes are averages over earthquakes in California (Wald et al. 1999). For other regions they are an
+/// assumption.
 fn felt(velocity: f64) -> &'static str {
     match 100.0 * velocity {
         v if v < 8.1 => "moderate (V)",
@@ -81,8 +84,8 @@ fn named(velocity: f64) -> String {
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// Returns the results of a height at a level of PGV (m/s), in the direction with the larger upper bound of the
-/// probability of collapse.
+/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which
+/// the upper bound of the probability of collapse is larger.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     View::ALL
         .into_iter()
@@ -101,7 +104,8 @@ fn rating(at: &AtLevel) -> Rating {
     }
 }
 
-/// Returns the largest height that is rated low at a level of PGV (m/s) along with all smaller heights.
+/// Returns the largest number of levels that is rated low at a level of PGV (m/s), provided that all smaller
+/// numbers are rated low as well.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     all.request
         .heights()
@@ -111,7 +115,7 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
         .last()
 }
 
-/// Returns the smallest number of motions with which a height can be rated low if no stack collapses.
+/// Returns the smallest number of motions that suffice for the rating "low" if no stack collapses.
 fn fewest_motions() -> u32 {
     (1..1_000_000).find(|n| at_most(0, *n, 0.95) <= LOW.1).unwrap_or(u32::MAX)
 }
@@ -122,7 +126,7 @@ fn headline(all: &Heights) -> String {
     if motions < fewest_motions() {
         let more = fewest_motions() - motions;
         return format!(
-            "Too few motions to call any stack {racks} low in risk: {motions} shook every stack, and {more} more would do."
+            "Too few motions to call any stack {racks} low in risk: {motions} shook every stack, and {more} more are needed."
         );
     }
     // Go from the weakest shaking up to the first level that is not rated low. If each level were judged
@@ -148,7 +152,8 @@ fn headline(all: &Heights) -> String {
     )
 }
 
-/// Returns the directions in which two levels are not rated low at a level of PGV (m/s), such as ", along the barrels".
+/// Returns the directions in which stacks of two levels are not rated low at a level of PGV (m/s), such as ",
+/// along the barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |view: &View| {
         let at = all.of(LOWEST, *view).and_then(|height| height.at(velocity));
@@ -158,8 +163,8 @@ fn weaker(all: &Heights, velocity: f64) -> String {
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
-/// Returns the worst result of all heights up to `levels` at a level of PGV (m/s), such as
-/// "in 24 motions none fell: at most 12 % (95 %)".
+/// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24
+/// motions none fell: at most 12 % (95 %)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -168,12 +173,12 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let Some(AtLevel { stripe, interval, .. }) = worst else { return String::new() };
     let fell = match stripe.failures {
         0 => "none fell".to_owned(),
-        count => format!("no more than {count} of a height fell"),
+        count => format!("no more than {count} of any height fell"),
     };
     format!("in {} motions {fell}: at most {} (95 %)", stripe.cases, bound(interval.high))
 }
 
-/// Formats a bound in whole percent, so that rounding may understate it by half a percent.
+/// Formats a bound as a whole percentage, so that rounding may understate the bound by half a percent.
 fn bound(high: f64) -> String {
     format!("{:.0} %", 100.0 * high)
 }
@@ -221,7 +226,7 @@ fn gravities(acceleration: f64) -> String {
     format!("{:.2} g", acceleration / barrelstack_motion::STANDARD_GRAVITY)
 }
 
-/// Returns the tilt (degrees) of a floor that acts like a steady horizontal acceleration (m/s²).
+/// Returns the tilt (degrees) of a floor that has the same effect as a steady horizontal acceleration (m/s²).
 fn tilt(acceleration: f64) -> f64 {
     libm::atan(acceleration / barrelstack_motion::STANDARD_GRAVITY).to_degrees()
 }
@@ -323,7 +328,7 @@ fn direction(all: &Heights, view: View) -> Table {
     )
 }
 
-/// Tabulates the static margin of each height, and the weakest shaking in which some stacks collapse.
+/// Tabulates, for each height, the static margin and the weakest shaking in which some stacks collapse.
 fn static_margins(all: &Heights) -> Table {
     let first = |height: &Height| {
         let falls = |at: &AtLevel| at.stripe.failures > 0;
@@ -352,7 +357,7 @@ fn level_axis(all: &Heights) -> Axis {
     Axis { range: Some(range), ..Axis::new("levels", "") }
 }
 
-/// Plots the share of collapse against height at three levels of shaking, with intervals.
+/// Plots the share of collapse against height at three levels of shaking, with 95 % intervals.
 fn chart(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
@@ -383,7 +388,7 @@ fn chart(all: &Heights) -> Figure {
     )
 }
 
-/// Plots the PGV at which half of the stacks collapse against height.
+/// Plots, against height, the PGV at which half of the stacks collapse.
 fn medians(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, view) in View::ALL.into_iter().enumerate() {

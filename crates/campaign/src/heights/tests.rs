@@ -7,7 +7,8 @@ use super::page::document;
 use super::*;
 use crate::decision::BandKind;
 
-/// Returns a curve without a fit, from counts for 24 motions at each level of shaking.
+/// Returns a curve without a fit. `failures` gives the number of failures in 24 motions as a function of the
+/// level of shaking.
 fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     let stripe =
         |velocity: f64| Stripe { intensity: velocity, cases: 24, failures: failures(velocity) };
@@ -36,7 +37,8 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
-/// Returns results in which `failures` stacks collapse, as a function of levels, direction and level of shaking.
+/// Returns results in which `failures` gives the number of stacks that collapse, as a function of levels,
+/// direction and level of shaking.
 fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
     let height = |levels: u32, view: View| Height {
         levels,
