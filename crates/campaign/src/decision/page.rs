@@ -145,7 +145,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         }
         Ok([median, dispersion]) => {
             said.push(format!(
-                "The curve is the lognormal one of maximum likelihood (Baker 2015); standard errors: {} of ln θ, \
+                "The curve is the lognormal curve of maximum likelihood (Baker 2015); standard errors: {} of ln θ, \
                  {} of ln β, {}.",
                 significant(median, 2),
                 significant(dispersion, 2),
@@ -310,8 +310,8 @@ fn assumptions() -> Vec<Block> {
         Block::Table(table),
         Block::List(vec![
             "No published drop tests of barrels with numbers were found. About one in ten of the barrels that toppled at Napa \
-             in 2014 was lost (Wines & Vines 2016); the heights of their falls are not known. The central curve (lognormal, \
-             median fall 5 m, dispersion 0.6) was chosen to agree: if stacks of four to six levels fall completely, 7 to \
+             in 2014 was lost (Wines & Vines 2016); the heights of their falls are not known. The central curve \
+             (lognormal, median height of fall 5 m, dispersion 0.6) was chosen to agree: if stacks of four to six levels fall completely, 7 to \
              18 % of the barrels above the lowest level burst."
                 .into(),
             "\"By force\" means that a barrel bursts by the largest force on it since it fell (lognormal, median 2.2 MN, \

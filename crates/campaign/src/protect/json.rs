@@ -102,11 +102,11 @@ described! {
         pub high: f64 as "that of the field" = estimate.high,
     }
 
-    /// Protection that was not tried.
+    /// A protection that was not tried.
     pub struct NotTried of one: &(String, String) {
         /// Name of the protection.
         pub name: String = one.0.clone(),
-        /// Reason why it was not tried.
+        /// Reason why the protection was not tried.
         pub reason: String = one.1.clone(),
     }
 }

@@ -19,8 +19,8 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         blocks: vec![
             Block::Table(table(sheet)),
             text(
-                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood through all runs, \
-                 with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, rounded down, \
+                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood \
+                 for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, rounded down, \
                  is the score.",
             ),
             Block::Figure(chart(sheet)),
@@ -69,7 +69,7 @@ fn headline(sheet: &Sheet) -> String {
             "RockScore {score}: shaken {direction} to {score} cm/s, nine in ten {stacks} stand."
         ),
         Capacity::Above(_) => format!(
-            "RockScore {score} at least: under the strongest shaking of the protocol nine in ten {stacks} stand."
+            "RockScore of at least {score}: under the strongest shaking of the protocol nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
             "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} to {} cm/s, the weakest \
@@ -90,7 +90,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     said
 }
 
-/// Formats a capacity, such as "42 cm/s".
+/// Formats the velocity of a capacity, such as "42 cm/s".
 fn bears(capacity: Capacity) -> String {
     match capacity {
         Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),
@@ -182,7 +182,7 @@ fn rules(sheet: &Sheet) -> Vec<String> {
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction is drawn for every run about that of the scenario, with a scatter of 20 % for rack on floor and of 25 % for \
+        "Friction is drawn for every run around the value in the scenario, with a scatter of 20 % for rack on floor and of 25 % for \
          barrel on rack; all racks get the same quantiles and the same motions."
             .into(),
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
