@@ -117,12 +117,10 @@ pub struct Case {
     drift: f64,
     /// Intensity (SI) of the case in each measure of [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
-    /// Number of the curve to which the case belongs. A curve consists of the cases of one motion that agree
-    /// in all factors except those drawn for each case. In an incremental dynamic analysis a curve is one
-    /// hunt.
+    /// Number of the curve to which the case belongs.
     ///
-    /// A curve has the cases of one motion with the same values of all factors except those drawn for each case. In an
-    /// incremental dynamic analysis it is a hunt.
+    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each
+    /// case. In an incremental dynamic analysis a curve is one hunt.
     pub curve: u32,
 }
 

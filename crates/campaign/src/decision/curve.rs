@@ -58,10 +58,9 @@ pub struct LimitCurve {
     pub goodness: Option<Goodness>,
     /// Test of the assumption that failure becomes likelier with intensity.
     pub monotony: Monotony,
-    /// Curves of one motion on which the stack failed at one intensity and stood at a higher one. Empty for
-    /// independent samples, of which each is a curve of its own.
+    /// Curves of one motion on which the stack failed at one intensity and stood at a higher one.
     ///
-    /// Empty for samples, since each is a curve of its own.
+    /// Empty for independent samples, since each of them is a curve of its own.
     pub returned: Vec<Returned>,
 }
 

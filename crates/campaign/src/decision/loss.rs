@@ -37,10 +37,10 @@ impl Breakage {
 }
 
 /// Assumed probability that a full barrel bursts, as a function of the largest force (N) on the barrel after
-/// it fell. It has not been tested.
+/// it fell.
 ///
-/// It is not tested. The function corresponds to the central assumption of [`Breakage`] for a barrel of 269
-/// kg that falls freely on the floor.
+/// The function has not been tested. It corresponds to the central assumption of [`Breakage`] for a barrel of
+/// 269 kg that falls freely on the floor.
 ///
 /// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The
 /// force grows as the height to the power 0.6, so that the dispersion of the force is 0.6 times that of the
@@ -51,10 +51,9 @@ pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersi
 /// Volume of wine in a bottle (m³).
 const BOTTLE: f64 = 0.75e-3;
 
-/// Assumed lower and upper value (US$) of a bottle of wine, for which the cellar could have sold it. A barrel
-/// of 225 L holds 25 cases (The Californian 2014).
+/// Assumed lower and upper value (US$) of a bottle of wine, for which the cellar could have sold it.
 ///
-/// A barrel of 225 L holds 25 cases (The Californian 2014).
+/// A barrel of 225 L holds 25 cases of wine (The Californian 2014).
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
 
 /// Assumed lower and upper cost (US$) of a burst barrel of any size, without its wine.

@@ -14,8 +14,7 @@ pub struct ModeIncidence {
     pub stripes: Vec<Stripe>,
     /// Wilson's interval for each fraction.
     pub intervals: Vec<Interval>,
-    /// Probability of collapse in this mode, at each intensity of [`LimitCurve::grid`]. Empty if collapse has
-    /// no fitted curve, or if the cases do not determine the shares of the modes.
+    /// Probability of collapse in this mode, at each intensity of [`LimitCurve::grid`].
     ///
     /// Empty if collapse has no fitted curve, or if the cases do not determine the shares of the modes.
     pub fitted: Vec<f64>,

@@ -53,10 +53,10 @@ pub struct Protection {
     pub degraded: Vec<(String, Vec<String>)>,
 }
 
-/// Lower and upper price (US$) of a new rack for two barrels. In 2009 the price was about 100
-/// (cedarrivercellars.com); it is assumed that the price may have doubled since.
+/// Lower and upper price (US$) of a new rack for two barrels.
 ///
-/// The price was about 100 in 2009 (cedarrivercellars.com); that it has doubled since is an assumption.
+/// The price was about US$100 in 2009 (cedarrivercellars.com). It is assumed that the price may have doubled
+/// since.
 const RACK: [f64; 2] = [100.0, 200.0];
 
 /// Assumed lower and upper price (US$) of a rack on posts, which contains about twice as much steel as a rack
@@ -126,10 +126,10 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     all
 }
 
-/// Returns the lower and upper price (US$) of a device. A price per level is multiplied by the number of
-/// levels in `changes`, or by `levels` if `changes` states none.
+/// Returns the lower and upper price (US$) of a device.
 ///
-/// A price per level is multiplied by the number of levels that the changes state, by default all.
+/// A price per level is multiplied by the number of levels that `changes` states, or by `levels` if it states
+/// none.
 fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     let set = |change: &String| change.split_once(".levels=")?.1.parse::<u32>().ok();
     let count = match cost.each {

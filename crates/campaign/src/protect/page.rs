@@ -232,7 +232,9 @@ fn table(all: &Ranking) -> Table {
             (fallen, "", &|one| Cell::text(interval(all, &one.fallen))),
             (burst, "", &|one| Cell::text(interval(all, &one.burst))),
             ("fewer fall, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
-            ("the same, for all protections at once", "", &|one| Cell::maybe(shown(&one.saved_together))),
+            ("the same, for all protections at once", "", &|one| {
+                Cell::maybe(shown(&one.saved_together))
+            }),
             ("fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
             ("weaker", "", &|one| Cell::text(one.direction.words())),
             ("motions", "", &|one| Cell::text(one.motions.to_string())),

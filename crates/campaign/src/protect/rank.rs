@@ -111,7 +111,7 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// Estimates by how much a quantity is smaller than in other runs (`others`) under the same motions.
+    /// Estimates by how much a quantity is smaller than in the runs `other` under the same motions.
     ///
     /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is
     /// widened for the number of tries, since the best of them is reported. `most` is the largest possible
