@@ -65,7 +65,8 @@ pub struct Rate {
     pub low: f64,
     /// Rate (1/year) if shaking stronger than the last row has the worst possible effect.
     pub high: f64,
-    /// Effect of shaking with the intensity of the first row.
+    /// Effect of shaking with the intensity of the first row. If this effect is not small, weaker and more frequent
+    /// shaking matters as well, and the table should begin at a lower intensity.
     pub at_first: f64,
 }
 

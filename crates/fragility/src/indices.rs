@@ -35,8 +35,8 @@ pub struct Index {
 /// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on
 /// the logarithmic scale, and the wider one is returned. If an input changes the result in at most half of
 /// the blocks, its changes are rare events. The interval then also covers the index that would result if the
-/// changes that the blocks may have missed were as large as the range of results. Bounds are clamped to 0 to
-/// 1. In simulations with 16 to 256 blocks, the coverage is at least 89 % for binary results, counts and
+/// changes that the blocks may have missed were as large as the range of results. Bounds are clamped to the range
+/// from 0 to 1. In simulations with 16 to 256 blocks, the coverage is at least 89 % for binary results, counts and
 /// continuous results (`tests/claims.rs`).
 ///
 /// Returns `None` for fewer than two blocks, for blocks of different lengths, and for constant results.

@@ -167,7 +167,7 @@ fn check(
         MotionError::require(
             values.len() == periods,
             format!("spectrum of {name}"),
-            format!("{periods} accelerations, one to a period of the target"),
+            format!("{periods} accelerations, one for each period of the target"),
             values.len(),
         )?;
         if let Some(k) = values.iter().position(|sa| sa.is_nan() || *sa <= 0.0) {
