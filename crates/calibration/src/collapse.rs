@@ -33,7 +33,8 @@ pub struct Settings {
     /// Maximum factor by which a parameter may be larger or smaller than its value in the scenario. The prior
     /// is uniform in the logarithm of the parameter.
     pub within: f64,
-    /// Standard deviation (m) of the position of each rack and each barrel when a stack is built.
+    /// Standard deviation (m) of the position at which each rack and each barrel is placed when a stack is
+    /// built.
     pub placement: f64,
     /// Assumed errors of the observations, compared with a correct simulation.
     pub errors: Errors,

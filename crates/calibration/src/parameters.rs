@@ -1,4 +1,5 @@
-//! Contact parameters that a test of a whole stack can determine, and scenarios with changed values of them.
+//! Contact parameters that a test of a whole stack can determine, and scenarios in which these parameters are
+//! changed.
 
 use std::fmt::Write as _;
 

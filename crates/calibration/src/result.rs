@@ -140,7 +140,7 @@ described! {
         pub schema: &'static str ["calibration/1"] = "calibration/1",
         /// Title: the test in one line.
         pub title: String = found.title.clone(),
-        /// Confidence of the intervals.
+        /// Confidence level of the intervals.
         pub confidence: f64 as "1" = 0.95,
         /// The parameters.
         pub estimates: Vec<EstimateRow> = found.estimates.iter().map(EstimateRow::of).collect(),

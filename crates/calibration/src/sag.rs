@@ -19,7 +19,8 @@ const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
 /// The column `load` holds the mass that was placed on the body, and `sag` the deflection under that mass.
 /// The optional column `angle` holds the angle between the contact normal and the vertical, for example in a
 /// cradle. `seats` is the number of seats that share the load, so `sag = load g / (seats k cos² angle)`. The
-/// interval is that of the slope of a line through the origin, sag against load, by Student's t distribution.
+/// interval follows from that of the slope of sag against load, for a line through the origin, by Student's t
+/// distribution.
 ///
 /// # Errors
 /// If the table lacks a column, has fewer than two rows, or the sag does not grow with the load.

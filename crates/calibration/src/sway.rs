@@ -157,7 +157,7 @@ fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }
 
-/// Returns the damping (N·s/m) of a linear law; `None` if the law states a restitution instead.
+/// Returns the damping (N·s/m) of a linear law; `None` for a law that states a restitution instead.
 fn damping(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { damping, .. } | NormalLaw::KelvinVoigt { damping, .. }) = law.normal
     else {

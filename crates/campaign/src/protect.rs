@@ -78,7 +78,7 @@ pub struct Request {
     pub records: Vec<PathBuf>,
     /// Folder of record files, which replace the bundled record and the synthetic motions.
     pub folder: Option<PathBuf>,
-    /// Number of motions of a round if no records are given.
+    /// Number of motions in each round if no records are given.
     pub motions: u32,
     /// Number of rounds.
     pub rounds: u32,
@@ -96,14 +96,17 @@ pub struct Ranked {
     /// Probability of collapse, averaged over the levels of shaking; for a site, the mean number of collapses
     /// per year.
     pub collapse: Estimate,
-    /// Number of barrels that fall, averaged over the levels of shaking; for a site, per year.
+    /// Number of barrels that fall, averaged over the levels of shaking; for a site, the mean number per
+    /// year.
     pub fallen: Estimate,
-    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a site, per year.
+    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a
+    /// site, the mean number per year.
     pub burst: Estimate,
-    /// Reduction of fallen barrels compared with the stack as it is, under the same motions; `None` for the stack as it is.
+    /// Reduction of the number of fallen barrels compared with the unprotected stack, under the same motions;
+    /// `None` for the unprotected stack.
     pub saved: Option<Estimate>,
-    /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since the best of
-    /// many is reported.
+    /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since
+    /// the best of many protections is reported.
     pub saved_together: Option<Estimate>,
     /// Direction of shaking in which more barrels fall.
     pub direction: View,
@@ -323,7 +326,7 @@ pub fn protect(
     Ok(ranking)
 }
 
-/// Returns the indices of those of the trials `open` that continue in the next round.
+/// Returns the indices of the trials that continue in the next round, among the trials `open`.
 fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
         let trial = &trials[*at];

@@ -91,7 +91,7 @@ impl Capacity {
         if let Self::Fitted(_, interval) = self { interval } else { None }
     }
 
-    /// Returns the velocity (m/s) that counts for the score; 0 if it is below the lowest level.
+    /// Returns the velocity (m/s) from which the score is computed; 0 if it is below the lowest level.
     pub fn velocity(self) -> f64 {
         match self {
             Self::Fitted(at, _) | Self::Between(at, _) | Self::Above(at) => at,

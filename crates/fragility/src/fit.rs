@@ -217,7 +217,7 @@ pub(crate) fn fixed_likelihood(evidence: &[Evidence], beta: f64) -> Likelihood<1
     likelihood(evidence, None, -ln(beta), |u| Score { offset: u / beta, row: [1.0] })
 }
 
-/// Returns the likelihood of evidence, where `score` returns `z` for `ln x`.
+/// Returns the likelihood of evidence; the function `score` gives `z` as a function of `ln x`.
 ///
 /// `ln_slope` is the logarithm of the slope `1/β` if the slope is not a parameter.
 pub(crate) fn likelihood<const N: usize>(

@@ -57,7 +57,7 @@ impl Pool {
     }
 }
 
-/// Pools neighboring stripes until no fraction is lower than that of the pool before it.
+/// Pools neighboring stripes until no pool has a lower fraction of failures than the pool before it.
 fn pools(stripes: &[Stripe]) -> Vec<Pool> {
     let mut pools: Vec<Pool> = vec![];
     for (i, stripe) in stripes.iter().enumerate() {

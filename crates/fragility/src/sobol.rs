@@ -88,9 +88,10 @@ impl Axis {
     }
 }
 
-/// Returns the coordinate of a point, counted from 0, in a dimension, of which there may be any number.
+/// Returns one coordinate of a point; points and dimensions are counted from 0, and the number of dimensions
+/// is unlimited.
 ///
-/// Dimensions are divided into groups of [`DIMENSIONS`]. Every group uses the points in an order of its own,
+/// Dimensions are divided into groups of [`DIMENSIONS`]. Every group uses the points in a different order,
 /// and in every dimension the digits are scrambled (Owen 1995, with the hash of Burley 2020). Each group is
 /// therefore a Sobol' net, and groups are independent of each other. If a dimension is divided into 2ᵐ equal
 /// parts, each part contains one of the first 2ᵐ points.

@@ -18,7 +18,7 @@ const SAMPLES: [usize; 2] = [400, 3000];
 /// result.
 const PRIOR: [f64; 2] = [3.0, 0.6];
 
-/// Standard deviation of the normal prior distribution of the first coefficient.
+/// Standard deviation of the first coefficient in its prior distribution, which is normal.
 const PRIOR_MIDDLE: f64 = 2.5;
 
 /// One trial: a run with randomly drawn constants.

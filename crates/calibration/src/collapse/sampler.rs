@@ -53,7 +53,7 @@ struct Proposal {
     width: Vec<f64>,
 }
 
-/// Samples the posterior of a uniform prior on the box with about `count` samples.
+/// Samples a posterior distribution, whose prior is uniform in the box, with about `count` samples.
 ///
 /// `evaluate` returns the log-likelihood of each sample of a batch, `−∞` for a likelihood of zero.
 /// Returns `None` if every sample has a likelihood of zero.

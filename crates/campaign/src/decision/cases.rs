@@ -15,7 +15,7 @@ use crate::watch::Ending;
 /// Intensity measure, with the name and unit in which it is displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the measure: that of its column in the table, or that in the study.
+    /// Name of the measure: the name of its column in the table, or its name in the study file.
     pub name: String,
     /// SI unit.
     pub unit: String,
@@ -99,7 +99,7 @@ pub struct Case {
     pub collapsed: bool,
     /// `true` if the stack fell under its own weight, before it was shaken.
     pub fell_at_rest: bool,
-    /// Mode of collapse, as an index of [`Cases::modes`]; `None` if the stack stood.
+    /// Mode of collapse, as an index into [`Cases::modes`]; `None` if the stack stood.
     pub mode: Option<u8>,
     /// `true` if the case was simulated until nothing moved, so that all falls are known.
     pub followed: bool,
@@ -215,7 +215,7 @@ pub(super) struct Reading {
     curves: Numbering,
     /// Number of rows read so far.
     rows: usize,
-    /// Number of rows read so far that are independent samples; each of them is a curve of its own.
+    /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
     /// Number of quantities that a sensitivity design exchanges between its samples; 0 for other designs.
     varied: usize,
@@ -406,7 +406,8 @@ impl Cases {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// Returns the number of curves: one for each motion and combination of the factors that are not drawn for each case.
+    /// Returns the number of curves. There is one curve for each motion and each combination of values of the
+    /// factors that are not drawn for each case.
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }

@@ -60,7 +60,7 @@ pub struct LimitCurve {
     pub monotony: Monotony,
     /// Curves of one motion on which the stack failed at one intensity and stood at a higher one.
     ///
-    /// Empty for independent samples, since each of them is a curve of its own.
+    /// Empty for independent samples, since each sample is a separate curve.
     pub returned: Vec<Returned>,
 }
 

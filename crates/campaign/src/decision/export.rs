@@ -127,8 +127,8 @@ pub fn export(
     Ok(found)
 }
 
-/// Returns a note for each pair of limit states whose curves cross, so that the curve of the more severe
-/// state lies above that of the less severe one.
+/// Returns a note for each pair of limit states whose curves cross, so that the more severe state is more
+/// probable than the less severe one at some intensities.
 fn crossings(limits: &[(String, Lognormal)], imls: &[f64], unit: &str) -> Vec<String> {
     let crosses = |pair: &[(String, Lognormal)]| {
         let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;

@@ -23,7 +23,7 @@ pub struct SiteHazard {
     pub hazard: Hazard,
 }
 
-/// Intensity measures for which a hazard curve may be given, with their dimensions.
+/// Intensity measures for which a hazard curve may be given, each with its dimension.
 const MEASURES: [(&str, Dimension); 8] = [
     ("pga", Dimension::ACCELERATION),
     ("pgv", Dimension::VELOCITY),
@@ -123,7 +123,7 @@ pub struct Site {
 
 impl Site {
     /// Convolves the fragility curves of the study with the hazard curve; the first fragility curve must be
-    /// that of collapse.
+    /// the curve of collapse.
     pub(super) fn of(
         cases: &Cases,
         curves: &[LimitCurve],

@@ -30,7 +30,7 @@ described! {
         pub measure: NamedMeasure = NamedMeasure::of(decision.cases.measure()),
         /// Fragility of every limit state against the measure of the study.
         pub fragility: Vec<Fragility> = decision.curves.iter().map(Fragility::of).collect(),
-        /// Efficiency of every intensity measure as a predictor of collapse, the best first.
+        /// Efficiency of every intensity measure as a predictor of collapse, the best measure first.
         pub measures: Vec<MeasureEfficiency> =
             decision.measures.iter().map(|row| MeasureEfficiency::of(&(row, &decision.cases))).collect(),
         /// Incidence of each collapse mode, the most frequent first.
@@ -83,7 +83,7 @@ described! {
         /// Standard error of the logarithm of the median. It is computed by jackknife over records if `band`
         /// is "jackknife over records", otherwise for independent cases.
         pub ln_median_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[median, _]| finite(median)),
-        /// Standard error of the logarithm of the dispersion, by the same method.
+        /// Standard error of the logarithm of the dispersion, by the same method as for the median.
         pub ln_dispersion_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[_, dispersion]| finite(dispersion)),
         /// 95 % interval of the median; an unbounded end is null.
         pub median_interval: Option<[Option<f64>; 2]> as "of the measure" =
@@ -251,7 +251,7 @@ described! {
         pub first_interval: [Option<f64>; 2] as "1" = bounds(input.1.first_interval),
         /// Total index, limited to the range from 0 to 1.
         pub total: f64 as "1" = input.1.total,
-        /// 95 % interval of the total index, by the same method.
+        /// 95 % interval of the total index, by the same method as for the first-order index.
         pub total_interval: [Option<f64>; 2] as "1" = bounds(input.1.total_interval),
     }
 

@@ -76,10 +76,10 @@ pub struct Loss {
     pub fallen: f64,
     /// 95 % interval of the mean number of barrels that fall, clustered by record.
     pub interval: Interval,
-    /// Expected number of barrels that burst, under the three assumptions of [`Breakage::RANGE`].
+    /// Expected number of barrels that burst, under each of the three assumptions in [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Expected loss of wine (m³), under the same assumptions: the contents of the barrels that burst. Leaks from the
-    /// bungs of intact barrels are not counted.
+    /// Expected loss of wine (m³), under each of the three assumptions. It is the contents of the barrels
+    /// that burst. Leaks from the bungs of intact barrels are not counted.
     pub wine: [f64; 3],
     /// Expected number of barrels that burst, if a barrel bursts by the largest force on it; `None` if the
     /// study does not record forces.
@@ -121,12 +121,14 @@ impl Losses {
         self.interpolated(intensity, |loss| loss.fallen)
     }
 
-    /// Returns the expected number of burst barrels at an intensity, under an assumption of [`Breakage::RANGE`].
+    /// Returns the expected number of burst barrels at an intensity, under the assumption with an index in
+    /// [`Breakage::RANGE`].
     pub fn burst(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.burst[assumption])
     }
 
-    /// Returns the expected loss of wine (m³) at an intensity, under an assumption of [`Breakage::RANGE`].
+    /// Returns the expected loss of wine (m³) at an intensity, under the assumption with an index in
+    /// [`Breakage::RANGE`].
     pub fn wine(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.wine[assumption])
     }

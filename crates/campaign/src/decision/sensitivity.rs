@@ -67,7 +67,7 @@ impl Effect {
     }
 }
 
-/// Maximum number of values of a factor for which each value is a group of its own.
+/// Maximum number of values of a factor for which each value is a separate group.
 const MOST: usize = 6;
 
 /// Returns the effects of all factors that vary, the largest first.

@@ -78,7 +78,8 @@ described! {
         pub cases: u32 = at.0.cases,
         /// Number of runs that collapse.
         pub collapsed: u32 = at.0.failures,
-        /// Lower and upper bound of the probability of collapse; each holds with 95 % confidence (Clopper and Pearson).
+        /// Lower and upper bound of the probability of collapse. Each of them is a one-sided bound with 95 %
+        /// confidence (Clopper and Pearson).
         pub interval: [Option<f64>; 2] as "1" = bounds(known(at.0)),
         /// Mean share of the barrels that fall.
         pub fallen_share: f64 as "1" = *at.1,

@@ -126,7 +126,7 @@ fn headline(all: &Heights) -> String {
     if motions < fewest_motions() {
         let more = fewest_motions() - motions;
         return format!(
-            "Too few motions to call any stack {racks} low in risk: {motions} shook every stack, and {more} more are needed."
+            "Too few motions to rate any stack {racks} as low risk: {motions} shook every stack, and {more} more are needed."
         );
     }
     // Go from the weakest shaking up to the first level that is not rated low. If each level were judged
@@ -135,18 +135,18 @@ fn headline(all: &Heights) -> String {
         VELOCITIES.into_iter().map_while(|velocity| Some((velocity, highest_low(all, velocity)?)));
     let Some((velocity, levels)) = low.last() else {
         return format!(
-            "Not even two levels {racks} are low in risk in {}{}.",
+            "Not even two levels {racks} have a low risk in {}{}.",
             named(VELOCITIES[0]),
             weaker(all, VELOCITIES[0])
         );
     };
     let next = VELOCITIES.into_iter().find(|other| *other > velocity);
     format!(
-        "Up to {levels} levels {racks} are low in risk in {}, across the barrels and along them: {}{}.",
+        "Up to {levels} levels {racks} have a low risk in {}, across the barrels and along them: {}{}.",
         named(velocity),
         found(all, levels, velocity),
         next.map(|next| {
-            format!("; in {} not even two levels are{}", named(next), weaker(all, next))
+            format!("; in {} not even two levels do{}", named(next), weaker(all, next))
         })
         .unwrap_or_default()
     )
@@ -164,7 +164,7 @@ fn weaker(all: &Heights, velocity: f64) -> String {
 }
 
 /// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24
-/// motions none fell: at most 12 % (95 %)".
+/// motions none fell, a probability of at most 12 % (95 % confidence)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -175,7 +175,11 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
         0 => "none fell".to_owned(),
         count => format!("no more than {count} of any height fell"),
     };
-    format!("in {} motions {fell}: at most {} (95 %)", stripe.cases, bound(interval.high))
+    format!(
+        "in {} motions {fell}, a probability of at most {} (95 % confidence)",
+        stripe.cases,
+        bound(interval.high)
+    )
 }
 
 /// Formats a bound as a whole percentage, so that rounding may understate the bound by half a percent.

@@ -76,21 +76,21 @@ fn every_headline_says_the_rack_and_the_direction() {
     let page = document(&made(along));
     assert_eq!(
         page.verdict.headline,
-        "Up to 5 levels on two-barrel racks are low in risk in very strong shaking (24 cm/s), across the barrels and \
-         along them: in 24 motions none fell: at most 12 % (95 %); in severe shaking (36 cm/s) not even two levels are, \
-         along the barrels."
+        "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), across the barrels and \
+         along them: in 24 motions none fell, a probability of at most 12 % (95 % confidence); in severe shaking \
+         (36 cm/s) not even two levels do, along the barrels."
     );
     // One collapse in 24 leaves up to 18 % possible, which is not rated low.
     let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
     assert_eq!(
         one.verdict.headline,
-        "Not even two levels on two-barrel racks are low in risk in strong shaking (12 cm/s), across the barrels."
+        "Not even two levels on two-barrel racks have a low risk in strong shaking (12 cm/s), across the barrels."
     );
     let few = document(&Heights { motions: 5, ..made(along) });
     assert!(
         few.verdict
             .headline
-            .contains("any stack on two-barrel racks low in risk: 5 shook every stack")
+            .contains("any stack on two-barrel racks as low risk: 5 shook every stack")
     );
 }
 

@@ -62,7 +62,8 @@ described! {
         pub collapse: Interval = Interval::of(&one.collapse),
         /// Number of barrels that fall, per event or per year.
         pub barrels_fallen: Interval = Interval::of(&one.fallen),
-        /// Number of barrels that burst under the central assumption, per event or per year.
+        /// Number of barrels that burst under the central assumption, per event or per year, according to
+        /// `per`.
         pub barrels_burst: Interval = Interval::of(&one.burst),
         /// Reduction of fallen barrels compared with the unprotected stack, under the same motions; null for
         /// the unprotected stack.

@@ -129,7 +129,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Tries the worn states of the protections on the Pareto front, under the motions of the first round.
+    /// Runs the protections on the Pareto front in their worn states, under the motions of the first round.
     pub(super) fn worn(
         &mut self,
         trials: &[Trial],

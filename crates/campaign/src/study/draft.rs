@@ -1,4 +1,4 @@
-//! Draft files, which get their final names only when they are complete and on the disk.
+//! Draft files, which receive their final names only when they are complete and on the disk.
 
 use std::fs::{self, File, TryLockError};
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};

@@ -1,4 +1,5 @@
-//! Endings of cases: how many were followed until nothing moved, and how many were stopped earlier.
+//! Endings of cases: numbers of cases that were followed until nothing moved, and of cases that were stopped
+//! earlier.
 
 use std::fmt::Write as _;
 
@@ -70,7 +71,7 @@ impl Endings {
     /// losses are reported.
     const MOST_MOVING: f64 = 0.02;
 
-    /// Returns the reason why the falls in these cases are unknown; `None` if they are known.
+    /// Returns the reason why the falls in the cases are unknown; `None` if the falls are known.
     pub fn no_losses(&self) -> Option<String> {
         let Self { judged, stopped, short, moving, .. } = *self;
         if stopped > 0 {

@@ -1,4 +1,4 @@
-//! Execution of a study: runs one chunk, or all missing chunks of a folder on all cores.
+//! Runs the chunks of a study: one chunk, or all chunks that are missing from a folder, on all cores.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;

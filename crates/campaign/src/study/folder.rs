@@ -110,7 +110,7 @@ described! {
     pub struct MotionSource {
         /// Name of the motion in the table.
         pub name: String,
-        /// Description of the source: files, or the method by which the motion is made.
+        /// Description of the source: the files, or the method by which the motion is made.
         pub source: String,
         /// Fingerprint of the bytes of the files; none if the motion has no files.
         pub hash: Option<String>,

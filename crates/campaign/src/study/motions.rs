@@ -84,7 +84,8 @@ impl Synthetic {
 }
 
 impl Shaking {
-    /// Returns the motion for a stack of the length scale `similitude`, scaled as its source states.
+    /// Returns the motion for a stack with the length scale `similitude`; the motion is scaled as its source
+    /// states.
     pub(super) fn ground(&self, base: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
         match self {
             Self::Base => ground::of_spec(base, similitude),
@@ -100,7 +101,8 @@ impl Shaking {
         }
     }
 
-    /// Returns all components of the motion for a stack of the length scale `similitude`, scaled as its source states.
+    /// Returns all components of the motion for a stack with the length scale `similitude`; the components
+    /// are scaled as their source states.
     fn in_space(
         &self,
         base: &MotionSpec,

@@ -36,7 +36,8 @@ pub(super) enum Sizes {
 /// Number of chunks of one size before the size doubles.
 const ALIKE: u64 = 512;
 
-/// Maximum number of doublings, which avoids overflow. Ten million cases, the maximum of a study, need eight.
+/// Maximum number of doublings, which prevents overflow. A study of ten million cases, the maximum, needs
+/// eight doublings.
 const DOUBLINGS: u64 = 40;
 
 /// Number of cases of the first chunks.

@@ -42,7 +42,8 @@ impl From<InSpace> for FinishedCase {
 }
 
 impl Study {
-    /// Runs a case in space under all components of its motion, scaled by one factor; `None` if canceled.
+    /// Runs a case in space under all components of its motion, which are scaled by a common factor; `None`
+    /// if canceled.
     pub(super) fn run_in_space(
         &self,
         case: &Case,

@@ -165,8 +165,8 @@ impl Ratios {
         Level { x, mean, variation }
     }
 
-    /// Returns the levels to be written: those of the study, and as many between them as linear interpolation
-    /// needs.
+    /// Returns the levels to be written: the levels of the study, and as many levels between them as linear
+    /// interpolation requires.
     fn levels(&self) -> Vec<Level> {
         let Some((lowest, _)) = self.means.first() else { return Vec::new() };
         let first = self.at(*lowest);
@@ -236,7 +236,7 @@ fn vulnerability(
     )
 }
 
-/// Returns the two vulnerability functions as XML: that of the barrels and that of the wine.
+/// Returns two vulnerability functions as XML: one for the barrels and one for the wine.
 pub(super) fn vulnerabilities(
     decision: &Decision,
     foreign: &Foreign,
