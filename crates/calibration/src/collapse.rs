@@ -38,7 +38,7 @@ pub struct Settings {
     pub placement: f64,
     /// Assumed errors of the observations, compared with a correct simulation.
     pub errors: Errors,
-    /// Number of parameter sets. Every test is simulated once with each of them.
+    /// Number of parameter sets. Each set is used to simulate every test once.
     pub simulations: usize,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -188,8 +188,8 @@ pub fn collapse(
     }
     let posterior = posterior.ok_or_else(|| TableError::Unsuited {
         file: observations.file.clone(),
-        reason: "no simulation within the range runs to its end from a stack that stands at rest: start from \
-                 other values"
+        reason: "in every simulation within the range, the stack falls at rest or the run fails: start from other \
+                 values"
             .to_owned(),
     })?;
     let estimates = estimates(&lead.tunable, &posterior, reach);
@@ -340,7 +340,7 @@ fn identifiability(
         if width > (1.0 - INFORMATIVE) * 1.9 {
             warnings.push(format!(
                 "the observations do not determine {}: its interval is the range that was tried, not a \
-                 measurement; determine it by a test of its own, or do not fit it",
+                 measurement; determine it by a separate test, or do not fit it",
                 estimate.name
             ));
         } else if posterior.quantile(at, 0.975) > 0.98 || posterior.quantile(at, 0.025) < -0.98 {

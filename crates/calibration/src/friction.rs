@@ -62,7 +62,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
         let kinetic = coefficient("kinetic friction", slide);
         if kinetic.value <= 0.0 {
             return Err(table.unsuited(format!(
-                "the kinetic coefficient comes out as {}: check distance, time and angle, and their units",
+                "the computed kinetic coefficient is {}: check distance, time and angle, and their units",
                 short(kinetic.value)
             )).into());
         }
@@ -71,8 +71,8 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
             let _ = writeln!(scenario, "static_coefficient = {}", rounded(at_rest));
         } else {
             warnings.push(
-                "the kinetic coefficient is not below the static one: static_coefficient is left out, and the kinetic \
-                 coefficient stands for both"
+                "the kinetic coefficient is not below the static one: static_coefficient is omitted, and the \
+                 kinetic coefficient is used for both"
                     .to_owned(),
             );
         }
@@ -190,8 +190,8 @@ fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, Calibrate
     let at = |force: f64| short(found.intercept + found.slope * force);
     Ok(clear.then(|| {
         format!(
-            "the coefficient changes with the load, from {} at {} N to {} at {} N: test near the load that \
-             the stack puts on the interface",
+            "the coefficient changes with the load, from {} at {} N to {} at {} N: test near the load that the \
+             interface carries in the stack",
             at(low),
             short(low),
             at(high),

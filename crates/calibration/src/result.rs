@@ -79,7 +79,7 @@ impl Estimate {
 }
 
 impl Calibration {
-    /// Returns the estimate of the parameter with a name; `None` if there is none.
+    /// Returns the estimate of the parameter with the name `name`; `None` if there is no such parameter.
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.name == name)
     }
@@ -183,8 +183,8 @@ pub(super) fn inseparable(
     for (i, row) in correlation.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > limit) {
             warnings.push(format!(
-                "the measurements do not separate {} from {} (correlation {value:.3}): determine one \
-                 of them by a test of its own and fit the other",
+                "the measurements do not separate {} from {} (correlation {value:.3}): determine one of them by a \
+                 separate test and fit the other",
                 estimates[i].name, estimates[j].name
             ));
         }

@@ -23,7 +23,7 @@ pub struct Fall {
 pub struct Monotony {
     /// Failure counts, in ascending order of intensity.
     pub stripes: Vec<Stripe>,
-    /// Nondecreasing probabilities of maximum likelihood, one for each stripe (Ayer et al. 1955).
+    /// Nondecreasing probabilities that maximize the likelihood, one for each stripe (Ayer et al. 1955).
     pub isotonic: Vec<f64>,
     /// Deviance: twice the log-likelihood ratio between the observed fractions and the nondecreasing
     /// probabilities.

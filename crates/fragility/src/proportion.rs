@@ -95,7 +95,8 @@ mod tests {
         assert_eq!(wilson(0, 0, 0.95), Interval { low: 0.0, high: 1.0 });
     }
 
-    /// Returns the probability of at least `k` failures of `n`.
+    /// Returns the probability of at least `k` failures in `n` cases, each of which fails with the
+    /// probability `p`.
     fn at_least(k: u32, n: u32, p: f64) -> f64 {
         (k..=n)
             .map(|j| {

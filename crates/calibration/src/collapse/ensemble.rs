@@ -48,7 +48,8 @@ impl Course {
         fallen.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// Returns the time at which the barrel with a name had fallen; `None` if there is no such barrel.
+    /// Returns the time at which the barrel with the name `barrel` had fallen; `None` if there is no such
+    /// barrel.
     pub(super) fn fall(&self, barrel: &str) -> Option<Time> {
         self.falls.iter().find(|(name, _)| name == barrel).map(|(_, time)| *time)
     }

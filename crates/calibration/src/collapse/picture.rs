@@ -83,8 +83,9 @@ fn times(
             row(&format!("{barrel} fell"), *time, &|course| course.fall(barrel));
         }
     }
-    let caption = "Observed times of the events, and bars for their simulated times: the central 90 % of the posterior weight of \
-                   the simulations in which the event happens. A row without a bar: it happens in none.";
+    let caption = "Observed times of the events. Bars show the simulated times: the central 90 % of the posterior \
+                   weight of the simulations in which the event happens. A row has no bar if the event happens in \
+                   none of them.";
     rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(observed))
 }
 

@@ -222,7 +222,7 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// Creates a reader for the rows of a study with a provenance.
+    /// Creates a reader for the rows of a study; `made` is the provenance of the rows.
     pub(super) fn new(made: &Provenance) -> Result<Self, DecisionError> {
         let measures = made.columns.iter().filter(|column| column.role == Role::Intensity);
         let mut measures: Vec<Measure> =

@@ -248,7 +248,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     Figure::new(
         "losses",
         format!(
-            "Mean number of barrels, of {}, that fall and that burst. The chance that a barrel bursts is an assumption \
+            "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is an assumption \
              based on the height of its fall, with a range: see below.",
             losses.barrels
         ),

@@ -223,8 +223,8 @@ described! {
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
         /// Expected volume of wine lost in burst barrels, under each assumption.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
-        /// Mean number of barrels that burst, if a barrel bursts by the largest force on it; null if the
-        /// study does not record forces.
+        /// Mean number of barrels that burst, if the largest force on a barrel determines whether it bursts;
+        /// null if the study does not record forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 

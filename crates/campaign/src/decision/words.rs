@@ -197,7 +197,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         let rate = &site.limits[0];
         let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
         said.push(format!(
-            "At the site of {} that is {}, a chance of {} in {} years{}.",
+            "At the site of {} this means {}, with a chance of {} in {} years{}.",
             site.hazard.file,
             recurrence(annual),
             percent(rate.chance),
@@ -355,7 +355,7 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
     if rows[rows.len() - 1].0 > 1.5 * last {
         said.push(format!(
-            "The hazard table reaches {}, but the study only {}: losses beyond are taken as those of its last level.",
+            "The hazard table reaches {}, but the study only {}: for stronger shaking, the losses at the last level of the study are used.",
             cases.measure().words(rows[rows.len() - 1].0),
             cases.measure().words(last)
         ));

@@ -242,7 +242,7 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse, in the direction with the higher bound, and in brackets the range \
              of the true chance; each end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range \
-             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 tries. ! medium: at most \
+             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 studies. ! medium: at most \
              {:.0} %. ✗ high: more. These limits are a choice.",
             100.0 * LOW.0,
             100.0 * LOW.1,
@@ -318,7 +318,7 @@ fn direction(all: &Heights, view: View) -> Table {
     by_height(
         all,
         format!(
-            "Collapse under shaking {}: number of stacks that collapse, of those run.",
+            "Collapse under shaking {}: number of stacks that collapse and number of stacks that were run.",
             view.words()
         ),
         |levels, velocity| {
@@ -341,8 +341,8 @@ fn static_margins(all: &Heights) -> Table {
     };
     Table::of(
         "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
-         with the friction and the seats of the catalog. Shaking with pulses as long as the stack takes to tip over \
-         fells it at little more.",
+         with the friction and the seats of the catalog. If the shaking has pulses that last as long as the stack \
+         takes to tip over, a slightly larger acceleration makes it collapse.",
         &all.heights,
         &[
             ("levels", "", &|height| Cell::text(height.levels.to_string())),
@@ -461,23 +461,23 @@ fn median_table(all: &Heights) -> Table {
 fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
-            "Motions: both horizontal components of South Napa 2014 at Napa College with its vertical, {} synthetic ones \
-             (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of near faults){}, each scaled to \
+            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
+             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of near faults){}, each scaled to \
              every level of PGV.",
             all.request.synthetic,
             if all.request.records.is_empty() { "" } else { ", and the given records" }
         ),
         format!(
-            "Full barrels, `{}` of the catalog. Friction is drawn for every run: rack on floor about 0.5 (scatter 20 %), \
-             barrel on rack about 0.3 (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure \
+            "Full barrels, `{}` of the catalog. Friction is drawn for every run, with a median of about 0.5 for \
+             rack on floor (scatter 20 %) and about 0.3 for barrel on rack (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure \
              your own.",
             all.request.barrel
         ),
         "Each stack stands alone, in a plane model: no neighbors, no walls, no straps. Collapse is the first loss of a seat \
          by a barrel or a rack."
             .into(),
-        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. Results at \
-         levels far from a motion's own strength are the least certain."
+        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. Results \
+         at levels far from the original strength of a motion are the least certain."
             .into(),
         "Ranges count every motion as one observation. They apply to motions like these and do not cover errors of the model."
             .into(),

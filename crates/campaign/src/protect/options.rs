@@ -7,7 +7,7 @@ use crate::scenario::{MotionSource, Scenario, ScenarioError, catalog};
 /// Kind of a protection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// The stack as it is.
+    /// The unprotected stack, as it is.
     AsItIs,
     /// Fewer levels.
     Height,
@@ -105,8 +105,8 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
         all.push(Protection {
             changes: vec![format!("stack.rack=\"{}\"", rack.base)],
             cost: times(price, count),
-            source: "about US$100 for a rack of two barrels in 2009; that racks on posts cost twice as much is an \
-                     assumption"
+            source: "about US$100 for a rack of two barrels in 2009; it is assumed that racks on posts cost twice \
+                     as much"
                 .to_owned(),
             ..none(Kind::Rack, &format!("rack-{}", rack.base), &format!("{} racks", rack.base))
         });

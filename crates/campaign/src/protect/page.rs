@@ -139,7 +139,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
         let shown = |x: f64| significant(x, 2);
         said.push(format!(
             "It keeps {} barrels from falling on average ({} to {} with 95 % confidence, for all {} protections that were \
-             tried simultaneously). The mean of the best of many tends to be somewhat too good.",
+             tried simultaneously). The mean for the best of many protections tends to be somewhat too favorable.",
             shown(saved.mean),
             shown(saved.low),
             shown(saved.high),
@@ -172,7 +172,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
         }
     }
     said.push(format!(
-        "{} protections were tried in {} runs, across the barrels and along them where the scenario has both.",
+        "{} protections were tried in {} runs, across the barrels and along them if the scenario has both directions.",
         all.tries(),
         all.runs
     ));
@@ -245,7 +245,7 @@ fn table(all: &Ranking) -> Table {
 fn legend(all: &Ranking) -> String {
     format!(
         "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections with \
-         fewer motions were dropped early, because a cheaper one is significantly better or half of the others did better. \
+         fewer motions were dropped early, because a cheaper protection is significantly better or because half of the others did better. \
          \"Fewer fall\" compares run by run under the same {}, which is more precise than the difference of two means. \
          The next column has an interval that holds for all {} protections at once; it decides whether a protection helps \
          significantly, since the best of many protections looks better than it is. All intervals allow for the small number of \
@@ -311,7 +311,7 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     let motions = if own {
         "Motions: the given records, each scaled to every level of peak ground velocity.".to_owned()
     } else {
-        "Motions: both components of South Napa 2014 at Napa College with its vertical, and synthetic ones (earthquakes \
+        "Motions: both components of South Napa 2014 at Napa College with the vertical component, and synthetic motions (earthquakes \
          of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every level of peak ground velocity."
             .to_owned()
     };

@@ -106,7 +106,7 @@ fn table(sheet: &Sheet) -> Table {
     let mut columns = vec![("state", ""), ("shaken", ""), ("one in ten collapses at", "")];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));
     let mut table = Table::new(
-        "Velocity that the stack bears in every state and direction, and the share that collapses at every level of shaking.",
+        "Velocity at which one stack in ten collapses, in every state and direction, and the share of stacks that collapse at every level of shaking.",
         &columns,
     );
     let weakest = sheet.weakest();
@@ -191,7 +191,7 @@ fn rules(sheet: &Sheet) -> Vec<String> {
         "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once the stack has come to rest on \
          ground that stays below 0.02 g."
             .into(),
-        "A protocol never changes; any change gets a new version number.".into(),
+        "A protocol never changes; any change requires a new version number.".into(),
     ]
 }
 

@@ -214,8 +214,8 @@ impl Cases {
         }
     }
 
-    /// Returns the case with a number. For an incremental dynamic analysis this is a hunt, whose level is not
-    /// set.
+    /// Returns the case with the number `number`. For an incremental dynamic analysis this is a hunt, whose
+    /// level is not set.
     pub(super) fn case(&self, study: &Study, number: u64) -> Case {
         match self {
             Self::Crossed => crossed(study, number),

@@ -91,7 +91,7 @@ struct Shared<'a> {
     report: &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync),
 }
 
-/// State behind the mutex.
+/// State of a run that all its threads share, protected by a mutex.
 struct State {
     /// Chunks that no thread of this process has taken. The next chunk to be taken is the last element.
     open: Vec<usize>,

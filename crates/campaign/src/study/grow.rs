@@ -128,7 +128,7 @@ pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<Stri
     }
     if known.seed != wanted.seed {
         return Some(format!(
-            "its seed is {}, and that of this study is {}",
+            "its seed is {}, and the seed of this study is {}",
             known.seed, wanted.seed
         ));
     }

@@ -27,8 +27,8 @@ pub(super) enum Manifest {
     Damaged(String),
 }
 
-/// Splits a manifest into its bytes, with zeros in place of the fingerprint, and the fingerprint; `None` if
-/// there is no fingerprint.
+/// Returns the bytes of a manifest with zeros in place of the fingerprint, and the fingerprint itself; `None`
+/// if there is no fingerprint.
 fn parted(bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     let rest = bytes.strip_suffix(BEHIND.as_bytes())?;
     let (head, stated) = rest.split_at_checked(rest.len().checked_sub(DIGITS)?)?;

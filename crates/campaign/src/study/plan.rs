@@ -29,7 +29,7 @@ pub struct Chunk {
 pub(super) enum Sizes {
     /// All chunks have the given number of cases.
     Given(u32),
-    /// The size of chunks grows with their number.
+    /// Chunks with higher numbers have more cases.
     Growing,
 }
 

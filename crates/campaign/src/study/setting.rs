@@ -175,7 +175,7 @@ impl Domain {
         Ok(Setting { node: node.clone(), value })
     }
 
-    /// Reads a required number (SI) with the unit of the field.
+    /// Reads a required number, whose unit must be one of the field's, and returns it in SI units.
     pub(super) fn number(
         self,
         reader: &Reader<'_>,
