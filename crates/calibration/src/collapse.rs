@@ -27,7 +27,7 @@ use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 
 pub use likelihood::Errors;
 
-/// Settings of a calibration from collapses.
+/// Settings for a calibration from observed collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Maximum factor by which a parameter may be larger or smaller than its value in the scenario. The prior

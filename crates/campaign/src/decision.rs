@@ -90,7 +90,7 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> DecisionDocument {
         DecisionDocument::of(self)
     }

@@ -169,7 +169,7 @@ impl Heights {
         self.heights.iter().find(|height| height.levels == levels && height.view == view)
     }
 
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> HeightsDocument {
         HeightsDocument::of(self)
     }

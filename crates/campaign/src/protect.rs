@@ -177,7 +177,7 @@ impl Ranking {
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> ProtectDocument {
         ProtectDocument::of(self)
     }

@@ -160,7 +160,7 @@ impl Sheet {
         self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
     }
 
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> ScoreDocument {
         ScoreDocument::of(self)
     }

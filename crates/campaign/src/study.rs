@@ -172,7 +172,7 @@ pub fn json_schema() -> serde_json::Value {
     barrelstack_input::schema::of_file("barrelstack study", &STUDY)
 }
 
-/// Returns a reference of every table and field of a study file, in Markdown.
+/// Returns a reference manual in Markdown, with every table and field of a study file.
 ///
 /// The fields of `[base]` are not listed, since they are those of a scenario file.
 pub fn reference() -> String {

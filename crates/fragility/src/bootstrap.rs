@@ -53,8 +53,8 @@ impl Replicates {
     }
 }
 
-/// Returns the normal quantile of the fraction of sorted values that lie below a value. Each value equal to
-/// it counts as one half.
+/// Returns the normal quantile of the fraction of sorted values that lie below a value. Values equal to the
+/// given value count as one half.
 fn bias(ascending: &[f64], value: f64) -> f64 {
     let below = ascending.partition_point(|x| *x < value);
     let same = ascending[below..].partition_point(|x| *x <= value);

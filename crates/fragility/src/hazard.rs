@@ -81,7 +81,7 @@ pub struct Contribution {
     pub rate: f64,
 }
 
-/// Abscissas and weights of five-point Gauss–Legendre quadrature on −1 to 1.
+/// Abscissas and weights of five-point Gauss–Legendre quadrature on the interval from −1 to 1.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),

@@ -149,7 +149,7 @@ mod tests {
         assert_ne!(padded(3, 5, 7), padded(3, 5, 8));
     }
 
-    /// Returns the coordinate as a cell index, without the half cell of the midpoint.
+    /// Returns the index of the cell whose center is the coordinate of a point.
     fn cell(dimension: usize, point: u32) -> f64 {
         Axis::new(dimension, 0).at(point) - 0.5 / 4_294_967_296.0
     }

@@ -170,7 +170,8 @@ impl Conditional {
         totals.into_iter().enumerate().map(of).collect()
     }
 
-    /// Returns the mean share, and its interval, with one constant at a deviate and all others unknown.
+    /// Returns the mean share, and its interval, with one constant fixed at a given deviate and all other
+    /// constants unknown.
     pub fn at(&self, unknown: usize, deviate: f64, level: f64) -> (f64, Interval) {
         let mut shares = self.shares_at(unknown, normal(deviate));
         shares.sort_by(f64::total_cmp);

@@ -44,8 +44,8 @@ pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
     })
 }
 
-/// Returns a sentence on stacks that fall under their own weight, which can precede another statement; empty
-/// if there are none.
+/// Returns a sentence on stacks that fall under their own weight, to be placed before another sentence; empty
+/// if there are no such stacks.
 pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     let (falls, they) = match fallen {
         0 => return String::new(),
