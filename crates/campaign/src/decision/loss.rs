@@ -121,14 +121,14 @@ impl Losses {
         self.interpolated(intensity, |loss| loss.fallen)
     }
 
-    /// Returns the expected number of burst barrels at an intensity, under the assumption with an index in
-    /// [`Breakage::RANGE`].
+    /// Returns the expected number of burst barrels at an intensity, under the assumption at the index
+    /// `assumption` in [`Breakage::RANGE`].
     pub fn burst(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.burst[assumption])
     }
 
-    /// Returns the expected loss of wine (m³) at an intensity, under the assumption with an index in
-    /// [`Breakage::RANGE`].
+    /// Returns the expected loss of wine (m³) at an intensity, under the assumption at the index `assumption`
+    /// in [`Breakage::RANGE`].
     pub fn wine(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.wine[assumption])
     }

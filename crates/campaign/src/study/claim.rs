@@ -84,7 +84,8 @@ fn this_process() -> String {
     host.map_or(process.clone(), |host| format!("{process} on {host}"))
 }
 
-/// Returns the process that has claimed a chunk; `None` if no process has, or if this process has.
+/// Returns the process that has claimed a chunk; `None` if the chunk is not claimed, or if this process has
+/// claimed it.
 pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
     let path = folder.join("shards").join(format!("{chunk:06}.claim"));
     let text = String::from_utf8(system::read_result(&path, 1000).ok()?).ok()?;
