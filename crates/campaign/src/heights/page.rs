@@ -164,7 +164,7 @@ fn weaker(all: &Heights, velocity: f64) -> String {
 }
 
 /// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24
-/// motions none fell, a probability of at most 12 % (95 % confidence)".
+/// motions none fell (the probability is at most 12 % with 95 % confidence)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -176,7 +176,7 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
         count => format!("no more than {count} of any height fell"),
     };
     format!(
-        "in {} motions {fell}, a probability of at most {} (95 % confidence)",
+        "in {} motions {fell} (the probability is at most {} with 95 % confidence)",
         stripe.cases,
         bound(interval.high)
     )

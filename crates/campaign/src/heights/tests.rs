@@ -77,7 +77,7 @@ fn every_headline_says_the_rack_and_the_direction() {
     assert_eq!(
         page.verdict.headline,
         "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), across the barrels and \
-         along them: in 24 motions none fell, a probability of at most 12 % (95 % confidence); in severe shaking \
+         along them: in 24 motions none fell (the probability is at most 12 % with 95 % confidence); in severe shaking \
          (36 cm/s) not even two levels do, along the barrels."
     );
     // One collapse in 24 leaves up to 18 % possible, which is not rated low.
