@@ -302,8 +302,8 @@ fn gravity_warning(striker: &Striker, log_ratio: f64, speed: f64) -> Option<Stri
     let shown = striker.strike(log_ratio, speed).speed / speed;
     (shown < 0.9 * ideal).then(|| {
         format!(
-            "gravity reduces the rebound of the slowest impact ({1} m/s) by {0:.0} %, so c depends strongly on the given k: drop from \
-             higher, or leave out the last bounces",
+            "gravity reduces the rebound of the slowest impact ({1} m/s) by {0:.0} %, so c depends strongly on \
+             the given k: drop from higher, or leave out the last bounces",
             100.0 * (1.0 - shown / ideal),
             short(speed)
         )

@@ -71,8 +71,8 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
         let variance = found.center_variance + found.center * found.center * found.slope_variance;
         if hollow.abs() > student_quantile(0.95, found.freedom) * variance.sqrt() {
             warnings.push(format!(
-                "the line through the readings has a sag of {} mm at zero load, as if the seats did not touch at first: apply a light \
-                 load first, and measure both load and sag from there",
+                "the line through the readings has a sag of {} mm at zero load, as if the seats did not touch \
+                 at first: apply a light load first, and measure both load and sag from there",
                 short(1e3 * hollow)
             ));
         }

@@ -85,7 +85,8 @@ pub fn export(
                 limits.push((name, Lognormal { median, ..fit.curve }));
                 if curve.violates_order() {
                     found.notes.push(format!(
-                        "{}: the raw fractions do not grow steadily with intensity, which the exported curve does not show",
+                        "{}: the raw fractions do not grow steadily with intensity, which the exported curve \
+                         does not show",
                         curve.limit.words()
                     ));
                 }
@@ -134,7 +135,8 @@ fn crossings(limits: &[(String, Lognormal)], imls: &[f64], unit: &str) -> Vec<St
         let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;
         let at = imls.iter().find(above)?;
         Some(format!(
-            "the curve of {} lies above that of {} at {} {unit}: programs that require nested limit states reject such curves",
+            "the curve of {} lies above that of {} at {} {unit}: programs that require nested limit states \
+             reject such curves",
             pair[1].0,
             pair[0].0,
             barrelstack_report::significant(*at, 3)

@@ -83,8 +83,8 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(text(
             "The first index is the share of the variance that would vanish if the quantity were known; the total index is the \
              share that would remain if all other quantities were known. The total index exceeds the first by the \
-             effect of interactions. Demands are recorded until the collapse. A quantity without effect in these blocks may \
-             have an effect in others, so that no interval ends at zero.",
+             effect of interactions. Demands are recorded until the collapse. A quantity without effect in \
+             these blocks may have an effect in others, so that no interval ends at zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
@@ -133,8 +133,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     let mut said = Vec::new();
     if !cases.hunted && !cases.shares_levels(cases.main) {
         said.push(format!(
-            "The cases do not share levels, so they are counted in {} bins of about {} neighboring cases; the intensity of \
-             a bin is the geometric mean over its cases. The curve is fitted to the single cases.",
+            "The cases do not share levels, so they are counted in {} bins of about {} neighboring cases; the \
+             intensity of a bin is the geometric mean over its cases. The curve is fitted to the single cases.",
             curve.stripes.len(),
             cases.all.len() / curve.stripes.len().max(1)
         ));
@@ -309,10 +309,11 @@ fn assumptions() -> Vec<Block> {
     vec![
         Block::Table(table),
         Block::List(vec![
-            "No published drop tests of barrels with numerical results were found. About one in ten of the barrels that toppled at Napa \
-             in 2014 was lost (Wines & Vines 2016); the heights of their falls are not known. The central curve \
-             (lognormal, median height of fall 5 m, dispersion 0.6) was chosen to agree: if stacks of four to six levels fall completely, 7 to \
-             18 % of the barrels above the lowest level burst."
+            "No published drop tests of barrels with numerical results were found. About one in ten of the \
+             barrels that toppled at Napa in 2014 was lost (Wines & Vines 2016); the heights of their falls are \
+             not known. The central curve (lognormal, median height of fall 5 m, dispersion 0.6) was chosen to \
+             agree: if stacks of four to six levels fall completely, 7 to 18 % of the barrels above the lowest \
+             level burst."
                 .into(),
             "\"By force\" means that the largest force on a barrel after it fell determines whether it bursts \
              (lognormal, median 2.2 MN, dispersion 0.36). For a fall on the floor this is equivalent to the central \
@@ -322,9 +323,10 @@ fn assumptions() -> Vec<Block> {
             "The assumed cost of a burst barrel is US$4 to US$20 per bottle of 0.75 L for its wine, plus US$400 to \
              US$1,200 for the barrel, regardless of its size."
                 .into(),
-            "A burst barrel loses all its wine; the volume follows from the size and the fill of the barrel in the scenario. Partly filled barrels are taken to burst \
-             like full ones. Barrels that do not burst lose nothing here, although bungs may leak. Damage to neighboring \
-             stacks, racks and buildings is not counted."
+            "A burst barrel loses all its wine; the volume follows from the size and the fill of the barrel in \
+             the scenario. Partly filled barrels are taken to burst like full ones. Barrels that do not burst \
+             lose nothing here, although bungs may leak. Damage to neighboring stacks, racks and buildings is \
+             not counted."
                 .into(),
             "Only cases that were followed until nothing moved are counted. In a plane model, every barrel \
              represents all barrels behind it in its row."

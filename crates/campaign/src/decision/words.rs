@@ -248,8 +248,8 @@ pub(super) fn warnings(
     }
     if cases.hunted {
         said.push(
-            "The levels were chosen by hunts for collapse, so that shares and means over all cases apply to the levels that were \
-             run, and not to shaking of a given strength."
+            "The levels were chosen by hunts for collapse, so that shares and means over all cases apply to the \
+             levels that were run, and not to shaking of a given strength."
                 .to_owned(),
         );
     }
@@ -355,7 +355,8 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
     if rows[rows.len() - 1].0 > 1.5 * last {
         said.push(format!(
-            "The hazard table reaches {}, but the study only {}: for stronger shaking, the losses at the last level of the study are used.",
+            "The hazard table reaches {}, but the study only {}: for stronger shaking, the losses at the last \
+             level of the study are used.",
             cases.measure().words(rows[rows.len() - 1].0),
             cases.measure().words(last)
         ));

@@ -126,7 +126,8 @@ fn headline(all: &Heights) -> String {
     if motions < fewest_motions() {
         let more = fewest_motions() - motions;
         return format!(
-            "Too few motions to rate any stack {racks} as low risk: {motions} shook every stack, and {more} more are needed."
+            "Too few motions to rate any stack {racks} as low risk: {motions} shook every stack, and {more} \
+             more are needed."
         );
     }
     // Go from the weakest shaking up to the first level that is not rated low. If each level were judged
@@ -242,8 +243,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse, in the direction with the higher bound, and in brackets the range \
              of the true chance; each end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range \
-             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 studies. ! medium: at most \
-             {:.0} %. ✗ high: more. These limits are a choice.",
+             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 studies. ! \
+             medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * MEDIUM
@@ -462,22 +463,22 @@ fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
             "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
-             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of near faults){}, each scaled to \
-             every level of PGV.",
+             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of \
+             near faults){}, each scaled to every level of PGV.",
             all.request.synthetic,
             if all.request.records.is_empty() { "" } else { ", and the given records" }
         ),
         format!(
             "Full barrels, `{}` of the catalog. Friction is drawn for every run, with a median of about 0.5 for \
-             rack on floor (scatter 20 %) and about 0.3 for barrel on rack (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure \
-             your own.",
+             rack on floor (scatter 20 %) and about 0.3 for barrel on rack (scatter 25 %). Both are \
+             assumptions; wet floors and painted racks differ. Measure your own.",
             all.request.barrel
         ),
         "Each stack stands alone, in a plane model: no neighbors, no walls, no straps. Collapse is the first loss of a seat \
          by a barrel or a rack."
             .into(),
-        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. Results \
-         at levels far from the original strength of a motion are the least certain."
+        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. \
+         Results at levels far from the original strength of a motion are the least certain."
             .into(),
         "Ranges count every motion as one observation. They apply to motions like these and do not cover errors of the model."
             .into(),

@@ -245,11 +245,12 @@ fn table(all: &Ranking) -> Table {
 fn legend(all: &Ranking) -> String {
     format!(
         "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections with \
-         fewer motions were dropped early, because a cheaper protection is significantly better or because half of the others did better. \
-         \"Fewer fall\" compares run by run under the same {}, which is more precise than the difference of two means. \
-         The next column has an interval that holds for all {} protections at once; it decides whether a protection helps \
-         significantly, since the best of many protections looks better than it is. All intervals allow for the small number of \
-         motions. Numbers are for the direction of shaking in which more barrels fall.",
+         fewer motions were dropped early, because a cheaper protection is significantly better or because half \
+         of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more precise \
+         than the difference of two means. The next column has an interval that holds for all {} protections at \
+         once; it decides whether a protection helps significantly, since the best of many protections looks \
+         better than it is. All intervals allow for the small number of motions. Numbers are for the direction \
+         of shaking in which more barrels fall.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -311,19 +312,21 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     let motions = if own {
         "Motions: the given records, each scaled to every level of peak ground velocity.".to_owned()
     } else {
-        "Motions: both components of South Napa 2014 at Napa College with the vertical component, and synthetic motions (earthquakes \
-         of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every level of peak ground velocity."
+        "Motions: both components of South Napa 2014 at Napa College with the vertical component, and synthetic \
+         motions (earthquakes of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every \
+         level of peak ground velocity."
             .to_owned()
     };
     vec![
         motions,
-        "Friction is drawn for every run around the value in the scenario, with an assumed scatter of 20 % for rack on floor and of \
-         25 % for barrel on rack. All protections draw the same quantiles."
+        "Friction is drawn for every run around the value in the scenario, with an assumed scatter of 20 % for \
+         rack on floor and of 25 % for barrel on rack. All protections draw the same quantiles."
             .into(),
-        "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the table. Labor, lost \
-         time and injuries are not counted."
+        "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
+         table. Labor, lost time and injuries are not counted."
             .into(),
-        "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; none has been tested.".into(),
+        "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; \
+         none has been tested.".into(),
         "The stack stands alone, in a plane model: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
          do not tear unless the scenario states a strength."
             .into(),

@@ -20,8 +20,8 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Table(table(sheet)),
             text(
                 "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood \
-                 for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, rounded down, \
-                 is the score.",
+                 for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all \
+                 velocities, rounded down, is the score.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
@@ -106,7 +106,8 @@ fn table(sheet: &Sheet) -> Table {
     let mut columns = vec![("state", ""), ("shaken", ""), ("one in ten collapses at", "")];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));
     let mut table = Table::new(
-        "Velocity at which one stack in ten collapses, in every state and direction, and the share of stacks that collapse at every level of shaking.",
+        "Velocity at which one stack in ten collapses, in every state and direction, and the share of stacks \
+         that collapse at every level of shaking.",
         &columns,
     );
     let weakest = sheet.weakest();
@@ -182,8 +183,8 @@ fn rules(sheet: &Sheet) -> Vec<String> {
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction is drawn for every run around the value in the scenario, with a scatter of 20 % for rack on floor and of 25 % for \
-         barrel on rack; all racks get the same quantiles and the same motions."
+        "Friction is drawn for every run around the value in the scenario, with a scatter of 20 % for rack on \
+         floor and of 25 % for barrel on rack; all racks get the same quantiles and the same motions."
             .into(),
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
          one at a time."

@@ -161,7 +161,8 @@ table! {
     /// Number of cases in a chunk, the unit of work that is run and stored as a whole; in an incremental
     /// dynamic analysis, number of hunts.
     chunk = Kind::Integer(1, 100_000),
-        Default::Derived("64, doubled after every 512 chunks; 8 for stacks in space and for an incremental dynamic analysis");
+        Default::Derived("64, doubled after every 512 chunks; 8 for stacks in space and for an incremental \
+            dynamic analysis");
     by kind {
         /// Every combination of all values, levels and motions.
         "full-factorial" {}

@@ -364,8 +364,8 @@ fn read_design(
                 (quantiles.collect::<Result<_, _>>()?, reader.integer("draws")?);
             if draws > 0 && factors.iter().all(|factor| factor.crossed().is_none()) {
                 return refuse(
-                    "every factor is drawn, so that no factor is changed one at a time: give at least one of them `values`, or use \
-                     \"stripes\"",
+                    "every factor is drawn, so that no factor is changed one at a time: give at least one of \
+                     them `values`, or use \"stripes\"",
                 );
             }
             Design::OneAtATime { quantiles, draws }
