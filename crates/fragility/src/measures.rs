@@ -15,9 +15,9 @@ pub struct Measured {
     /// under the ROC curve). It is 0.5 if the measure does not discriminate and 1 if it discriminates
     /// perfectly.
     pub concordance: f64,
-    /// p-value of the sufficiency test, which is small if the first measure is not sufficient. It is the
-    /// probability that a second measure without further information improves the fit at least as much as the
-    /// second measure does. `None` if the second measure follows from the first.
+    /// p-value of the sufficiency test: the probability that a second quantity without further information
+    /// would improve the fit at least as much as the tested quantity does. A small value means that the first
+    /// measure is not sufficient. `None` if the second quantity follows from the first measure.
     pub sufficiency: Option<f64>,
 }
 

@@ -134,7 +134,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     if !cases.hunted && !cases.shares_levels(cases.main) {
         said.push(format!(
             "The cases do not share levels, so they are counted in {} bins of about {} neighboring cases; the \
-             intensity of a bin is the geometric mean over its cases. The curve is fitted to the single cases.",
+             intensity of a bin is the geometric mean over its cases. The curve is fitted to the individual cases.",
             curve.stripes.len(),
             cases.all.len() / curve.stripes.len().max(1)
         ));

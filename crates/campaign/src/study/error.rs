@@ -49,13 +49,13 @@ pub enum StudyError {
         /// What is wrong with the shard.
         reason: String,
     },
-    /// There is no built-in study with the name.
+    /// There is no built-in study with this name.
     #[error("{0}")]
     BuiltIn(String),
     /// A table is inconsistent.
     #[error("{0}")]
     Table(String),
-    /// The study has no chunk with the number.
+    /// The study has no chunk with this number.
     #[error("{0}")]
     Chunk(String),
     /// The caller canceled the run.
