@@ -200,8 +200,8 @@ pub enum HeightsError {
 
 /// Runs the studies of every height in both directions and evaluates them.
 ///
-/// The studies are stored in folders below `folder`, from which an interrupted run resumes.
-/// `report` receives the number of finished runs and the total, and may cancel.
+/// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
+/// receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
 /// If the rack, the barrel or the height is unknown, a record cannot be read, or a folder cannot be written.

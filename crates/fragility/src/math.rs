@@ -56,11 +56,11 @@ pub(crate) fn normal_between(low: f64, high: f64) -> f64 {
     if low > 0.0 { normal(-low) - normal(-high) } else { normal(high) - normal(low) }
 }
 
-/// Returns the `z` at which `Φ(z)` equals a probability; infinite for the probabilities 0 and 1, NaN outside
-/// of them.
+/// Returns the `z` at which `Φ(z)` equals a probability; infinite for the probabilities 0 and 1, and NaN
+/// outside the range from 0 to 1.
 ///
-/// A rough start (Abramowitz and Stegun 1964, 26.2.23) is refined by Halley's method on `ln Φ` of
-/// the smaller tail, which keeps all digits down to the smallest probability.
+/// A rough initial value (Abramowitz and Stegun 1964, 26.2.23) is refined by Halley's method on `ln Φ` of the
+/// smaller tail, which keeps all digits down to the smallest probability.
 pub fn normal_quantile(probability: f64) -> f64 {
     if probability.is_nan() || !(0.0..=1.0).contains(&probability) {
         return f64::NAN;
