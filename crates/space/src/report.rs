@@ -52,10 +52,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.extend(decides);
     }
     if let Some(found) = &summary.remedy {
-        blocks.extend([
-            heading("What would have kept the stack up"),
-            Block::Table(found.table(false)),
-        ]);
+        blocks.extend([heading("What would have kept the stack up"), Block::Table(found.table(false))]);
     }
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
@@ -142,10 +139,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     if let Some(share) = spread.share {
         let percent = barrelstack::variants::words::percent;
         let [low, high] = spread.interval.map(percent);
-        row(
-            "share that collapses, with its 95 % interval",
-            format!("{} ({low} to {high})", percent(share)),
-        );
+        row("share that collapses, with its 95 % interval", format!("{} ({low} to {high})", percent(share)));
     }
     if let Some([low, high]) =
         spread.range.map(|range| range.map(barrelstack::variants::words::percent))
