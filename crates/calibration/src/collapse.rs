@@ -27,21 +27,23 @@ use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 
 pub use likelihood::Errors;
 
-/// Settings of a calibration from collapses.
+/// Settings for a calibration from observed collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Largest factor, up or down, between a parameter and its value in the scenario; the prior is uniform in the
-    /// logarithm of the parameter.
+    /// Maximum factor by which a parameter may be larger or smaller than its value in the scenario. The prior
+    /// is uniform in the logarithm of the parameter.
     pub within: f64,
-    /// Standard deviation (m) of the position of each rack and each barrel when a stack is built.
+    /// Standard deviation (m) of the position at which each rack and each barrel is placed when a stack is
+    /// built.
     pub placement: f64,
-    /// Assumed errors of the observations relative to a correct simulation.
+    /// Assumed errors of the observations, compared with a correct simulation.
     pub errors: Errors,
-    /// Number of parameter sets, each simulated once for every test.
+    /// Number of parameter sets. Each set is used to simulate every test once.
     pub simulations: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Vector width of the simulations; `None` for the widest of the machine. The result does not depend on it.
+    /// Vector width of the simulations; `None` for the widest that the machine supports. The result does not
+    /// depend on it.
     pub lanes: Option<Width>,
 }
 
@@ -58,13 +60,14 @@ impl Default for Settings {
     }
 }
 
-/// Fraction by which an interval must be narrower than that of the prior for the test to count as informative.
+/// Minimum relative narrowing, from the prior interval to the posterior interval of a parameter, for the test
+/// to count as informative.
 const INFORMATIVE: f64 = 0.15;
 
 /// Correlation above which two parameters are reported as inseparable.
 const ALIKE: f64 = 0.9;
 
-/// Posterior weight of the simulations with the observed mode below which a warning is given.
+/// Posterior weight of the simulations with the observed mode, below which a warning is given.
 const UNSEEN: f64 = 0.2;
 
 /// Observed collapses, read from a table with one row per test.
@@ -72,11 +75,11 @@ const UNSEEN: f64 = 0.2;
 /// | column | content |
 /// |---|---|
 /// | `mode` | `ejection`, `rocking`, `rack-sliding`, `overturning`, or `stands` |
-/// | `B4.1 fell (s)` | time at which that barrel had fallen, or `stands`; one column per barrel |
-/// | `first fall (s)`, `first barrel` | the same for the first barrel, if others were not observed |
+/// | `B4.1 fell (s)` | time at which barrel `B4.1` had fallen, or `stands`; one column per barrel |
+/// | `first fall (s)`, `first barrel` | time of the first fall and name of the barrel, if the other falls were not observed |
 /// | `loss of seat (s)` | time at which the first body left its seat |
-/// | `until (s)` | duration of observation; required if anything stands |
-/// | `scenario` | scenario of the test, if the tests have different ones |
+/// | `until (s)` | duration of the observation; required if a barrel or the stack still stood |
+/// | `scenario` | scenario of the test, if the tests have different scenarios |
 ///
 /// An empty cell means that the quantity was not observed. Times count from the start of the motion.
 #[derive(Clone, Debug)]
@@ -90,40 +93,39 @@ impl Observations {
     /// Reads the observations from a table.
     ///
     /// # Errors
-    /// If a cell is invalid; the error names the first one.
+    /// If a cell is invalid; the error names the first invalid cell.
     pub fn read(table: &Table, errors: &Errors) -> Result<Self, CalibrateError> {
         let (tests, warnings) = Observed::read(table, 5.0 * errors.reading)?;
         Ok(Self { file: table.file().to_owned(), tests, warnings })
     }
 
-    /// Returns the scenario that each test names; `None` for a test that names none.
+    /// Returns, for each test, the scenario that its row names, or `None` if it names none.
     pub fn scenarios(&self) -> impl Iterator<Item = Option<&str>> {
         self.tests.iter().map(|test| test.scenario.as_deref())
     }
 }
 
-/// One test, prepared for simulation.
+/// A test that is ready to be simulated.
 struct Trial<'a> {
     observed: &'a Observed,
     tunable: Tunable,
-    /// Scenario of the test, with the duration of the observation.
+    /// Scenario of the test; its run lasts as long as the observation.
     scenario: Scenario,
     /// Ground motion.
     ground: Arc<Ground>,
-    /// Standard deviation of the positions of racks and barrels (m at full scale).
+    /// Standard deviation (m at full scale) of the positions of racks and barrels.
     scatter: f64,
 }
 
 /// Estimates parameters of a stack from observed collapses; `scenarios` holds one scenario per test, in order.
 ///
-/// Collapse is chaotic: the course of one stack cannot be fitted, but its probability can.
-/// Each set of parameters is simulated with random offsets of racks and barrels, since no two
-/// stacks are built alike, and weighted by the likelihood of the observations given that course
-/// ([`Errors`]). Sampling is iterated around likely parameters; the intervals hold the central
-/// 95 % of the weight. If too few courses agree, the likelihood is raised to a power below one,
-/// which widens the intervals; the result states the power.
-/// Constants of the rack–ground and barrel–rack interfaces keep their ratio, as in
-/// [`super::response`].
+/// Collapse is chaotic: the course of a single collapse cannot be fitted, but the probability of a course
+/// can. Each set of parameters is simulated with random offsets of racks and barrels, since no two stacks are
+/// built alike. The set is then weighted by the likelihood of the observations given the simulated course
+/// ([`Errors`]). Further rounds sample around likely parameters. The intervals hold the central 95 % of the
+/// weight. If too few courses agree with the observations, the likelihood is raised to a power below one,
+/// which widens the intervals; the result states the power. The constants of the rack–ground interface keep
+/// their ratio to those of the barrel–rack interface, as in [`super::response`].
 ///
 /// The result is a function of the observations, the scenarios and the settings, independent of the number of
 /// threads. `report` is called from several threads with the number of completed simulations and the total, and may
@@ -186,8 +188,8 @@ pub fn collapse(
     }
     let posterior = posterior.ok_or_else(|| TableError::Unsuited {
         file: observations.file.clone(),
-        reason: "no simulation within the range runs to its end from a stack that stands at rest: start from \
-                 other values"
+        reason: "in every simulation within the range, the stack falls at rest or the run fails: start from other \
+                 values"
             .to_owned(),
     })?;
     let estimates = estimates(&lead.tunable, &posterior, reach);
@@ -213,8 +215,8 @@ pub fn collapse(
             ));
             if share < UNSEEN {
                 warnings.push(format!(
-                    "test {}: the model hardly reproduces the observation ({name} in {:.0} % of the weight): check \
-                     that motion, geometry and the definition of the mode are those of the test",
+                    "test {}: the model hardly reproduces the observed mode ({name}, with {:.0} % of the \
+                     weight): check that motion, geometry and the definition of the mode are those of the test",
                     at + 1,
                     100.0 * share
                 ));
@@ -236,7 +238,8 @@ pub fn collapse(
     })
 }
 
-/// Pairs the tests with their scenarios and checks that they are consistent.
+/// Pairs each test with its scenario, and checks that the scenarios agree with each other and with the
+/// observations.
 fn trials<'a>(
     observations: &'a Observations,
     scenarios: &[Scenario],
@@ -276,7 +279,8 @@ fn trials<'a>(
     Ok(trials)
 }
 
-/// Runs the scenario of a test for a millisecond, to check that it can be simulated and has the observed barrels.
+/// Checks that the scenario of a test can be simulated, by a run of one millisecond, and that it contains the
+/// observed barrels.
 fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);
@@ -298,7 +302,7 @@ fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), Cali
     }
     if observed.until > 120.0 {
         return Err(CalibrateError::Run(RunFailure::Duration(format!(
-            "test {}: the observation lasts {} s, too long to simulate many times: shorten it to 120 s at most",
+            "test {}: the observation lasts {} s, too long to be simulated many times: shorten it to at most 120 s",
             at + 1,
             observed.until
         ))));
@@ -336,7 +340,7 @@ fn identifiability(
         if width > (1.0 - INFORMATIVE) * 1.9 {
             warnings.push(format!(
                 "the observations do not determine {}: its interval is the range that was tried, not a \
-                 measurement; determine it by a test of its own, or do not fit it",
+                 measurement; determine it by a separate test, or do not fit it",
                 estimate.name
             ));
         } else if posterior.quantile(at, 0.975) > 0.98 || posterior.quantile(at, 0.025) < -0.98 {
@@ -357,8 +361,8 @@ fn identifiability(
     warnings
 }
 
-/// Returns the observed mode of a test and the weight of the simulations with this mode; `None` if no mode
-/// was observed.
+/// Returns the name of the observed mode of a test, and the weight of the simulations with this mode; `None`
+/// if no mode was observed.
 fn alike<'a>(
     trial: &Trial<'_>,
     courses: impl Iterator<Item = &'a Option<Course>>,

@@ -1,4 +1,4 @@
-//! Restitution and damping `c` from drop tests, given as heights or as times of impact.
+//! Restitution and damping `c` from drop tests, which give heights or the times of impacts.
 
 use barrelstack::scenario::Dimension;
 use barrelstack_dynamics::contact::restitution;
@@ -12,12 +12,12 @@ use super::result::{quoted, rounded, short};
 use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table, impact};
 
-/// Properties of a drop test that the file does not contain.
+/// Properties of the striking mass and its contact, which the file of a drop test does not contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Striker {
     /// Falling mass (kg).
     pub mass: f64,
-    /// Stiffness `k` (N/m) of one contact node.
+    /// Stiffness `k` (N/m) of the contact at one node.
     pub stiffness: f64,
     /// Number of contact nodes that the mass hits at once.
     pub nodes: u32,
@@ -28,7 +28,7 @@ pub struct Striker {
 /// Standard gravity (m/s²).
 pub const GRAVITY: f64 = 9.80665;
 
-/// Fits parameters of about 1, with small finite differences and a small last step.
+/// Fits parameters whose magnitude is about 1, with narrow finite differences and a tight stopping criterion.
 fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
     let parameters = start.to_vec();
     least_squares::fit(Start { parameters, slopes: None, width: 1e-4, share: 0.01 }, evaluate)
@@ -39,14 +39,13 @@ fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
 /// The table has the columns `drop height` and `rebound height`, or the column `time` with the impacts of one bounce
 /// sequence.
 ///
-/// With a striker, the impact is solved with gravity and with its duration, and ζ is fitted to
-/// the rebounds or the times: gravity presses the mass into the contact and reduces the
-/// rebound of slow impacts.
-/// Without a striker the impact is taken as instantaneous.
-/// The scatter is attributed to the restitution, which differs from drop to drop, or to the times.
+/// With a striker, the impact is solved with gravity and takes a finite time, and the damping ratio ζ is
+/// fitted to the rebounds or the times. Gravity presses the mass into the contact and so reduces the rebound
+/// of slow impacts. Without a striker, the impact is assumed to be instantaneous. For heights, the scatter is
+/// attributed to the restitution, which differs from drop to drop; for times, it is attributed to the times.
 ///
 /// # Errors
-/// If the table lacks its columns or rows, or a rebound does not match its drop.
+/// If the table lacks columns or rows, or a rebound is not lower than its drop.
 pub fn drop(
     table: &Table,
     striker: Option<Striker>,
@@ -104,10 +103,10 @@ pub fn drop(
     })
 }
 
-/// Result of a drop test, from heights or from times.
+/// Result of a drop test, whether from heights or from times.
 struct Found {
     restitution: Estimate,
-    /// ln ζ, with ζ the damping ratio, and half the width of its interval.
+    /// ln ζ, where ζ is the damping ratio, and half the width of its 95 % interval.
     log_ratio: Option<(f64, f64)>,
     impacts: usize,
     /// Figure of the measured and the fitted rebounds.
@@ -116,7 +115,7 @@ struct Found {
 }
 
 impl Striker {
-    /// Returns total stiffness (N/m) and damping (N·s/m) at a damping ratio.
+    /// Returns the total stiffness (N/m) and damping (N·s/m) for a damping ratio.
     fn constants(&self, ratio: f64) -> (f64, f64) {
         let stiffness = self.stiffness * f64::from(self.nodes);
         (stiffness, restitution::damping(stiffness, ratio, self.mass))
@@ -173,7 +172,7 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
     Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// Draws rebounds (m) over drops (m), measured and fitted.
+/// Draws the rebound height (m) against the drop height (m), measured and fitted.
 fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     let centimeters = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
     // The curve spans the measured drops only: after a lower drop the mass may not rebound.
@@ -188,8 +187,8 @@ fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     figure("drops", caption, axes, series)
 }
 
-/// Draws the flights between the impacts at `times` (s), measured and fitted; residuals are in units of
-/// `unit` (s).
+/// Draws the measured and the fitted duration of each flight between two impacts; the impacts are at `times`
+/// (s), and the residuals are in units of `unit` (s).
 fn bounces(times: &[f64], residuals: &[f64], unit: f64) -> Figure {
     let found: Vec<f64> = times.iter().zip(residuals).map(|(t, r)| t + unit * r).collect();
     let between = |times: &[f64]| times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -273,13 +272,14 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// Returns ln ζ for a restitution without gravity, from which the fit with gravity starts.
+/// Returns ln ζ that gives a restitution without gravity. The fit with gravity starts from this value.
 fn start_ratio(e: f64) -> f64 {
     let ratio = restitution::speed_gap_damping_ratio(e).unwrap_or(0.1);
     math::log(ratio.clamp(1e-3, 1e3))
 }
 
-/// Returns a parameter and half its 95 % interval; `None` if the fit failed or does not determine it.
+/// Returns the fitted parameter at an index and half the width of its 95 % interval; `None` if the fit failed
+/// or does not determine the parameter.
 fn log_interval(fit: Option<&Fit>, at: usize) -> Option<(f64, f64)> {
     let fit = fit.filter(|fit| fit.converged && fit.matters.iter().all(|matters| *matters))?;
     let variance = fit.covariance.as_ref()?[at][at];
@@ -288,7 +288,7 @@ fn log_interval(fit: Option<&Fit>, at: usize) -> Option<(f64, f64)> {
 
 fn no_rebound(striker: &Striker) -> String {
     format!(
-        "no damping gives these rebounds for {} kg on {} nodes of {} N/m under gravity: check mass, \
+        "no value of the damping gives these rebounds for {} kg on {} nodes of {} N/m under gravity: check mass, \
          stiffness and their units",
         short(striker.mass),
         striker.nodes,
@@ -296,14 +296,14 @@ fn no_rebound(striker: &Striker) -> String {
     )
 }
 
-/// Returns a warning if impacts are so slow that gravity, rather than the damper, determines the rebound.
+/// Returns a warning if the slowest impact is so slow that gravity reduces its rebound noticeably.
 fn gravity_warning(striker: &Striker, log_ratio: f64, speed: f64) -> Option<String> {
     let ideal = restitution::speed_gap(math::exp(log_ratio));
     let shown = striker.strike(log_ratio, speed).speed / speed;
     (shown < 0.9 * ideal).then(|| {
         format!(
-            "gravity takes {:.0} % of the slowest rebound ({} m/s), so c depends strongly on the given k: drop from \
-             higher, or leave out the last bounces",
+            "gravity reduces the rebound of the slowest impact ({1} m/s) by {0:.0} %, so c depends strongly on \
+             the given k: drop from higher, or leave out the last bounces",
             100.0 * (1.0 - shown / ideal),
             short(speed)
         )

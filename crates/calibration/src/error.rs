@@ -3,7 +3,7 @@
 use barrelstack::run::RunFailure;
 use barrelstack_input::measured::TableError;
 
-/// Reason why a test gives no parameters.
+/// Reason why a calibration gives no parameters.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// The table is invalid, or does not determine the parameters.
@@ -15,7 +15,7 @@ pub enum CalibrateError {
     /// The first simulation of the fit fails.
     #[error(transparent)]
     Run(#[from] RunFailure),
-    /// The calibration was canceled; a part of the simulations gives no estimate.
+    /// The calibration was canceled; the simulations completed so far give no estimate.
     #[error("the simulations were stopped")]
     Stopped,
 }

@@ -7,7 +7,7 @@ use super::Estimate;
 /// Number of intervals into which a fitted curve is divided for drawing.
 const PLACES: usize = 60;
 
-/// Creates a series of single measurements.
+/// Creates a series of single measured values.
 pub(super) fn measured(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Series {
     let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
     Series { style, ..Series::new(label, x, y) }
@@ -27,7 +27,8 @@ pub(super) fn curve(label: &str, [from, to]: [f64; 2], of: impl Fn(f64) -> f64) 
     fitted(label, x, y, 0)
 }
 
-/// Creates a horizontal line at an estimate between two values of `x`, with the interval of the estimate.
+/// Creates a horizontal line at an estimate between two values of `x`, and shades the interval of the
+/// estimate.
 pub(super) fn level(estimate: &Estimate, [from, to]: [f64; 2], index: usize) -> Series {
     let label = format!("{}, 95 % interval", estimate.name);
     let range = vec![[estimate.low, estimate.high]; 2];

@@ -13,7 +13,7 @@ use super::result::{rounded, short};
 use super::statistics::{line, mean};
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// Columns of both tests.
+/// Columns of pull tests and of tilt tests.
 const COLUMNS: [&str; 6] = [
     "normal force",
     "breakaway force",
@@ -25,12 +25,12 @@ const COLUMNS: [&str; 6] = [
 
 /// Estimates static and kinetic friction from a table of repeated tests, one per row.
 ///
-/// Pull tests have the columns `normal force`, `breakaway force` (the largest pull before it moves)
-/// and, for the kinetic coefficient, `sliding force`; each row gives a ratio of forces.
-/// Tilt tests have the column `angle` of first slip, whose tangent is μ, and, for the kinetic
-/// coefficient, `sliding distance` and `sliding time` from rest at that angle:
-/// `μ = tan α − 2 s / (t² g cos α)`.
-/// The interval is that of the mean over the rows by Student's t.
+/// Pull tests have the columns `normal force`, `breakaway force` (the largest pull before the body moves)
+/// and, for the kinetic coefficient, `sliding force`; the coefficients are the ratios of these two forces to
+/// the normal force. Tilt tests have the column `angle`, the angle of first slip, whose tangent is the static
+/// coefficient. For the kinetic coefficient they also have `sliding distance` and `sliding time`, measured
+/// from rest at that angle: `μ = tan α − 2 s / (t² g cos α)`. The interval is that of the mean over the rows,
+/// by Student's t distribution.
 ///
 /// # Errors
 /// If the table lacks its columns, has fewer than two rows, or contains an impossible value.
@@ -62,7 +62,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
         let kinetic = coefficient("kinetic friction", slide);
         if kinetic.value <= 0.0 {
             return Err(table.unsuited(format!(
-                "the kinetic coefficient comes out as {}: check distance, time and angle, and their units",
+                "the computed kinetic coefficient is {}: check distance, time and angle, and their units",
                 short(kinetic.value)
             )).into());
         }
@@ -71,8 +71,8 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
             let _ = writeln!(scenario, "static_coefficient = {}", rounded(at_rest));
         } else {
             warnings.push(
-                "the kinetic coefficient is not below the static one: static_coefficient is left out, and the kinetic \
-                 coefficient stands for both"
+                "the kinetic coefficient is not below the static one: static_coefficient is omitted, and the \
+                 kinetic coefficient is used for both"
                     .to_owned(),
             );
         }
@@ -109,7 +109,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     })
 }
 
-/// Draws the coefficient of every test and the means, against the load if it was measured.
+/// Draws the coefficient of every test and the means, against the normal force if it was measured.
 fn picture(
     table: &Table,
     coefficients: &[Option<Vec<f64>>; 2],
@@ -132,7 +132,8 @@ fn picture(
     Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
 }
 
-/// Returns the standard deviation of ln μ of another test: of the scatter of these tests and of their mean.
+/// Returns the standard deviation of ln μ in a further test: the scatter of the tests, with the uncertainty
+/// of their mean included.
 fn dispersion(values: &[f64]) -> f64 {
     let logs: Vec<f64> = values.iter().map(|value| libm::log(*value)).collect();
     let count = logs.len() as f64;
@@ -141,7 +142,7 @@ fn dispersion(values: &[f64]) -> f64 {
     (squares / (count - 1.0) * (1.0 + 1.0 / count)).sqrt()
 }
 
-/// Static coefficients, and kinetic ones if measured.
+/// Static coefficients, and kinetic coefficients if they were measured.
 type Coefficients = (Vec<f64>, Option<Vec<f64>>);
 
 fn pull(table: &Table) -> Result<Coefficients, CalibrateError> {
@@ -174,7 +175,8 @@ fn tilt(table: &Table) -> Result<Coefficients, CalibrateError> {
     Ok((rest, Some(slide.collect())))
 }
 
-/// Returns a warning if the coefficient depends on the load: the 99 % interval of the slope excludes zero.
+/// Returns a warning if the coefficient depends on the normal force, that is, if the 99 % interval of the
+/// slope excludes zero.
 fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, CalibrateError> {
     if !table.has("normal force") || table.has("angle") {
         return Ok(None);
@@ -188,8 +190,8 @@ fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, Calibrate
     let at = |force: f64| short(found.intercept + found.slope * force);
     Ok(clear.then(|| {
         format!(
-            "the coefficient changes with the load, from {} at {} N to {} at {} N: test near the load that \
-             the stack puts on the interface",
+            "the coefficient changes with the load, from {} at {} N to {} at {} N: test near the load that the \
+             interface carries in the stack",
             at(low),
             short(low),
             at(high),

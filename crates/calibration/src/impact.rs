@@ -7,24 +7,25 @@ use barrelstack_dynamics::{NormalLaw, math};
 pub struct Impact {
     /// Rebound speed (m/s); zero if the mass does not rebound.
     pub speed: f64,
-    /// Time (s) from first touch to release; zero if the mass does not rebound.
+    /// Time (s) from first contact to release; zero if the mass does not rebound.
     pub duration: f64,
     /// Largest penetration (m).
     pub depth: f64,
 }
 
-/// Integration steps of the approach per radian of the undamped oscillation.
+/// Number of integration steps per radian of the undamped oscillation, during the approach.
 const STEPS: f64 = 100.0;
 
-/// Ratio of speed to depth × frequency below which the mass counts as at rest.
+/// Speed, relative to depth × natural frequency, below which the mass counts as at rest.
 const CREEP: f64 = 1e-9;
 
 /// Computes the impact of a mass on a contact of the speed-gap law under gravity.
 ///
 /// `mass` is in kg, `stiffness` in N/m, `damping` in N·s/m, `gravity` in m/s² and the impact speed `speed` in m/s.
 ///
-/// The approach, on which the damper acts, is integrated by the classical Runge–Kutta method to the
-/// deepest point `x`; the rebound is elastic, so the mass leaves at `√(ω² x² − 2 g x)`, if at all.
+/// The damper acts only during the approach, which is integrated by the classical Runge–Kutta method up to
+/// the maximum penetration `x`. The rebound is elastic, so the mass leaves with the speed `√(ω² x² − 2 g x)`,
+/// unless the root is imaginary.
 ///
 /// ```
 /// use barrelstack_calibration::impact;

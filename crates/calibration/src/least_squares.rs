@@ -1,16 +1,18 @@
 //! Nonlinear least squares for a few parameters, by the method of Levenberg and Marquardt.
 //!
 //! Derivatives are central differences that are evaluated in one batch, so that simulations run in parallel.
-//! With at most four parameters the linear algebra is a Cholesky factorization of a 4 × 4 matrix; a library
-//! for it would be larger than the whole of calibration.
+//! There are at most four parameters, so the linear algebra is a Cholesky factorization of a matrix of at
+//! most 4 × 4. A library for that would be larger than this whole crate.
 
-/// Function that returns the residuals for each of a batch of parameter sets; `None` if the model has no result there.
+/// Function that returns the residuals for each parameter set of a batch; `None` for a set for which the
+/// model has no result.
 pub type Evaluate<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + 'a;
 
-/// Largest number of steps before a fit counts as not converged.
+/// Maximum number of steps; a fit that needs more counts as not converged.
 const MOST_STEPS: usize = 30;
 
-/// Largest change of a parameter in one step. Parameters are logarithms, or scaled to be about 1.
+/// Maximum change of a parameter in one step. Parameters are logarithms, or are scaled to a magnitude of
+/// about 1.
 const LONGEST: f64 = 0.5;
 
 /// Result of a fit.
@@ -20,15 +22,18 @@ pub struct Fit {
     pub parameters: Vec<f64>,
     /// Residuals at the fitted parameters.
     pub residuals: Vec<f64>,
-    /// Derivatives of the residuals with respect to every parameter, taken at most one final step away from the fit.
+    /// Derivatives of the residuals with respect to every parameter, taken at the fitted parameters or at
+    /// most one final step away from them.
     pub slopes: Vec<Vec<f64>>,
     /// `true` for each parameter on which at least one residual depends.
     pub matters: Vec<bool>,
-    /// Covariance of the parameters that matter, in their order; `None` if they are inseparable.
+    /// Covariance of the parameters that matter, in the order of the parameters; `None` if they are
+    /// inseparable.
     pub covariance: Option<Vec<Vec<f64>>>,
-    /// Matrix `JᵀJ` of the derivatives with respect to the parameters that matter, in their order.
+    /// Matrix `JᵀJ`, where `J` holds the derivatives with respect to the parameters that matter, in the order
+    /// of the parameters.
     pub information: Vec<Vec<f64>>,
-    /// Degrees of freedom: residuals minus parameters that matter.
+    /// Degrees of freedom: number of residuals minus number of parameters that matter.
     pub freedom: usize,
     /// `true` if the fit converged: its last step was short enough.
     pub converged: bool,
@@ -41,15 +46,15 @@ pub struct Start {
     pub parameters: Vec<f64>,
     /// Derivatives of the residuals at the start, if known.
     pub slopes: Option<Vec<Vec<f64>>>,
-    /// Step of the finite differences to either side.
+    /// Step of the central differences.
     pub width: f64,
-    /// Fraction of the standard error; a step shorter than this ends the fit.
+    /// Length of a step, relative to the standard error, below which the fit ends.
     pub share: f64,
 }
 
 /// Minimizes the sum of squared residuals.
 ///
-/// Returns `None` if the model has no result at the start or around it.
+/// Returns `None` if the model has no result at the start or at a point of the finite differences around it.
 pub fn fit(start: Start, evaluate: &Evaluate<'_>) -> Option<Fit> {
     let Start { mut parameters, slopes, width, share } = start;
     let mut residuals = evaluate(std::slice::from_ref(&parameters)).pop()??;
@@ -135,7 +140,7 @@ fn jacobian(at: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Vec<Vec<f
     Some(found.chunks_exact(2).map(slope).collect())
 }
 
-/// Solves `(JᵀJ + λ diag JᵀJ) δ = −Jᵀr`; parameters that affect no residual do not change.
+/// Solves `(JᵀJ + λ diag JᵀJ) δ = −Jᵀr` for the step `δ`; parameters that affect no residual do not change.
 fn damped_step(normal: &[Vec<f64>], gradient: &[f64], lambda: f64) -> Option<Vec<f64>> {
     let mut matrix = normal.to_vec();
     for (at, row) in matrix.iter_mut().enumerate() {
@@ -170,7 +175,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Computes the lower Cholesky factor of a symmetric matrix; `None` unless it is positive definite beyond rounding.
+/// Computes the lower Cholesky factor of a symmetric matrix; `None` unless the matrix is positive definite,
+/// with a margin for rounding errors.
 fn cholesky(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let size = matrix.len();
     let mut lower = vec![vec![0.0; size]; size];
@@ -211,7 +217,7 @@ fn inverse(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some((0..matrix.len()).map(|at| solve(&lower, &unit(at))).collect())
 }
 
-/// Scales a symmetric matrix to a unit diagonal: correlations from covariances.
+/// Scales a symmetric matrix to a unit diagonal; a covariance matrix becomes a correlation matrix.
 pub fn normalized(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let size = |at: usize| matrix[at][at].sqrt();
     let row = |i: usize| (0..matrix.len()).map(|j| matrix[i][j] / (size(i) * size(j))).collect();

@@ -1,4 +1,4 @@
-//! Calibration of contact parameters from tests, each parameter with its 95 % interval.
+//! Calibration of contact parameters from tests, with a 95 % interval for each parameter.
 //!
 //! | test | file | gives |
 //! |---|---|---|
@@ -10,10 +10,12 @@
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
 //! | [`mod@collapse`] | mode and fall times of collapses | `k`, `c`, μ together |
 //!
-//! In tests with simulated records, the intervals of [`response`] covered the true value in only about 90 %.
+//! In tests with simulated records, the 95 % intervals of [`response`] covered the true value in only about
+//! 90 % of cases.
 //!
 //! Files are CSV with a header that names each column and its unit, such as `penetration (mm),force (kN)`.
-//! Intervals cover the scatter in the file, not the errors of values taken as exact (a mass, the model itself).
+//! Intervals cover the scatter of the data in the file. They do not cover errors of values that are taken as
+//! exact, such as a mass, or errors of the model itself.
 
 // Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -5,7 +5,7 @@ use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, signifi
 use super::{Calibration, Estimate};
 
 impl Calibration {
-    /// Builds the report page.
+    /// Builds the report page of a calibration.
     pub fn document(&self) -> Document {
         let heading = |text: &str| Block::heading(2, text);
         let mut blocks = Vec::new();
@@ -57,7 +57,7 @@ impl Calibration {
         }
     }
 
-    /// Returns a sentence with the value of every parameter.
+    /// Returns the headline: a sentence that states the value of every parameter.
     fn headline(&self) -> String {
         let stated = |estimate: &Estimate| {
             let unit = estimate.unit();

@@ -1,4 +1,5 @@
-//! Contact parameters that a test of a whole stack can determine, and scenarios with changed values of them.
+//! Contact parameters that a test of a whole stack can determine, and scenarios in which these parameters are
+//! changed.
 
 use std::fmt::Write as _;
 
@@ -14,13 +15,15 @@ use super::result::{quoted, rounded};
 /// A parameter that a response or a collapse can determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// Stiffness of barrel–rack contacts; the ratio of rack–ground stiffness to it is kept.
+    /// Stiffness of barrel–rack contacts. The stiffness of rack–ground contacts changes in proportion.
     Stiffness,
-    /// Damping of barrel–rack contacts; the ratio of rack–ground damping to it is kept.
+    /// Damping of barrel–rack contacts. The damping of rack–ground contacts changes in proportion.
     Damping,
-    /// Friction of barrel–rack contacts; the ratio of static to kinetic friction is kept.
+    /// Friction coefficients of barrel–rack contacts. The static and the kinetic coefficient keep their
+    /// ratio.
     FrictionBarrelRack,
-    /// Friction of rack–ground contacts; the ratio of static to kinetic friction is kept.
+    /// Friction coefficients of rack–ground contacts. The static and the kinetic coefficient keep their
+    /// ratio.
     FrictionRackGround,
 }
 
@@ -53,9 +56,10 @@ struct Constants {
     rest: f64,
 }
 
-/// Parameters to be estimated, with their values in a scenario.
+/// Parameters to be estimated, and the contact constants of the scenario.
 ///
-/// A point of the search holds one number per parameter: the logarithm of the factor on its value in the scenario.
+/// A point of the search holds one number per parameter: the logarithm of the ratio of the parameter to its
+/// value in the scenario.
 pub(super) struct Tunable {
     parameters: Vec<Parameter>,
     barrel_rack: Constants,
@@ -91,7 +95,7 @@ impl Tunable {
         Ok(Self { parameters: parameters.to_vec(), barrel_rack, rack_ground, basis })
     }
 
-    /// Returns the parameters, in the order of a point.
+    /// Returns the parameters, in the order of the coordinates of a point.
     pub(super) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -117,7 +121,7 @@ impl Tunable {
         }
     }
 
-    /// Returns a copy of a scenario with the parameter values of a point.
+    /// Returns a copy of a scenario in which the parameters have the values of a point.
     pub(super) fn at(&self, scenario: &Scenario, point: &[f64]) -> Scenario {
         let mut scenario = scenario.clone();
         if let Scene::Stack { stack, .. } = &mut scenario.scene {
@@ -127,7 +131,8 @@ impl Tunable {
         scenario
     }
 
-    /// Returns the constants of barrel–rack or of rack–ground at a point.
+    /// Returns the contact constants at a point, of the barrel–rack interface or of the rack–ground
+    /// interface.
     fn constants(&self, barrel_rack: bool, point: &[f64]) -> Constants {
         let mut constants = if barrel_rack { self.barrel_rack } else { self.rack_ground };
         for (parameter, log) in self.parameters.iter().zip(point) {
@@ -146,7 +151,7 @@ impl Tunable {
         constants
     }
 
-    /// Returns the lines to paste into a scenario: each interface with its fitted constants.
+    /// Returns the lines to paste into a scenario, with the fitted constants of each interface.
     pub(super) fn scenario_lines(&self, point: &[f64]) -> String {
         let mut text = String::new();
         let has = |parameter| self.parameters.contains(&parameter);
@@ -178,7 +183,8 @@ impl Tunable {
     }
 }
 
-/// Returns the constants of an interface; an error if one of them is not positive, since a factor could not change it.
+/// Returns the constants of an interface, or an error if one of them is not positive, since no factor could
+/// then change it.
 fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
     let refuse =
         |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
@@ -206,7 +212,7 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
             (coefficient, static_coefficient)
         }
         Friction::Regularized { coefficient, .. } => (coefficient, coefficient),
-        Friction::None => return refuse("a fit needs a law of friction: set law = \"coulomb\""),
+        Friction::None => return refuse("a fit needs a friction law: set law = \"coulomb\""),
     };
     if [stiffness, damping, kinetic].iter().any(|value| *value <= 0.0) {
         return refuse("a fit needs starting values of stiffness, damping and friction above zero");

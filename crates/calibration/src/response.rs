@@ -14,43 +14,45 @@ use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::{inseparable, short};
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 
-/// Finite-difference step in the logarithms of the parameters: wide enough
-/// that the effects of single nodes coming into contact average out.
+/// Step of the finite differences in the logarithms of the parameters. It is wide enough that the effects of
+/// single nodes coming into contact average out.
 const WIDTH: f64 = 0.01;
 
-/// Longest last step of a fit, relative to the standard error; it adds 0.3 % to an interval.
+/// Maximum length of the last step of a fit, relative to the standard error. A step of this length adds 0.3 %
+/// to an interval.
 const SHARE: f64 = 0.05;
 
-/// Longest last step of the first fit, which only estimates the scatter of the channels.
+/// Maximum length of the last step of the first fit, relative to the standard error. This fit only estimates
+/// the scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
-/// Fraction of the root mean square of a channel below which residuals count as rounding.
+/// Fraction of the root mean square of a channel, below which its residuals are taken for rounding errors.
 const ROUNDING: f64 = 1e-9;
 
 /// Correlation above which two parameters are reported as inseparable.
 const ALIKE: f64 = 0.95;
 
-/// Largest condition number of a well-conditioned test.
+/// Condition number above which a test is reported as ill conditioned.
 const ILL: f64 = 1e3;
 
 /// Fits parameters of a stack to its recorded histories.
 ///
-/// The table has a column `time` from the start of the scenario's motion and further columns named as
-/// in `histories.csv`, such as `B1.1 displacement x (m)` (relative to the ground and to the position at
-/// rest) or `R1 rotation (rad)`; rows after `until` (s) are ignored.
+/// The table has a column `time`, counted from the start of the scenario's motion, and further columns that
+/// are named as in `histories.csv`, such as `R1 rotation (rad)` or `B1.1 displacement x (m)`. Displacements
+/// are relative to the ground and to the position at rest. Rows after `until` (s) are ignored.
 ///
-/// The sum of squared differences between simulated and recorded values, each over the scatter of its channel, is
-/// minimized over the logarithms of the parameters; the scatter is that of a first fit.
-/// The covariance follows from the last sensitivities and residuals. If residuals are correlated in time
-/// (lag-one correlation ρ), it is widened by (1 + ρ)/(1 − ρ).
-/// The nominal 95 % intervals covered the true values in about 90 of 100 simulated records (89 to 94). The reason is
-/// not known; the result contains a warning.
+/// The differences between simulated and recorded values are divided by the scatter of their channel, which a
+/// first fit estimates. The sum of their squares is minimized; the variables are the logarithms of the
+/// parameters. The covariance follows from the sensitivities and residuals at the end of the fit. If
+/// residuals are correlated in time (lag-one correlation ρ), the covariance is multiplied by (1 + ρ)/(1 − ρ).
+/// The nominal 95 % intervals covered the true values in about 90 of 100 simulated records (89 to 94). The
+/// reason is not known, so the result contains a warning.
 ///
 /// `report` is called from several threads with the number of simulations started, and may cancel the calibration.
 ///
-/// The fit starts from the scenario and finds the minimum next to it.
-/// Impacts, slips and falls make responses chaotic within seconds. The response stays smooth in short windows of mild
-/// shaking with a little sliding.
+/// The fit starts from the values in the scenario and finds the nearest local minimum. Impacts, slips and
+/// falls make responses chaotic within seconds. The response remains a smooth function of the parameters in
+/// short windows of mild shaking with little sliding.
 ///
 /// # Errors
 /// If the scenario is not a stack of linear laws, the table does not match the scenario, or the first
@@ -130,7 +132,7 @@ pub fn response(
     let widening = if follow > 2.0 / (values as f64).sqrt() {
         let follow = follow.min(0.999);
         warnings.push(format!(
-            "residuals are correlated in time ({follow:.2} from sample to sample): the model does not \
+            "residuals are correlated in time (correlation {follow:.2} between successive samples): the model does not \
              reproduce the whole recording, or the recording was filtered; the intervals are widened accordingly"
         ));
         ((1.0 + follow) / (1.0 - follow)).sqrt()
@@ -152,7 +154,7 @@ pub fn response(
         facts.push((format!("scatter of {name}"), short(scatter * rms(residuals))));
     }
     Ok(Calibration {
-        title: format!("response {}: fitted by simulations", table.file()),
+        title: format!("response {}: fitted by simulation", table.file()),
         scenario: simulator.tunable.scenario_lines(&found.parameters),
         estimates,
         correlation,
@@ -213,7 +215,7 @@ fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figu
     figures
 }
 
-/// Returns estimates and their correlations, both in the order of `parameters`.
+/// Returns the estimates and the matrix of their correlations, both in the order of `parameters`.
 fn estimates(
     simulator: &Simulator<'_>,
     parameters: &[Parameter],
@@ -260,7 +262,7 @@ fn identifiability(
             ));
         } else if estimate.high > 4.0 * estimate.low {
             warnings.push(format!(
-                "this test hardly determines {}: the interval spans a factor of {}",
+                "this test hardly determines {}: the ends of its interval differ by a factor of {}",
                 estimate.name,
                 short(estimate.high / estimate.low)
             ));

@@ -1,4 +1,4 @@
-//! Results of a calibration: parameters with intervals, lines for a scenario, warnings.
+//! Result of a calibration: parameters with intervals, lines for a scenario, and warnings.
 
 use std::collections::BTreeMap;
 
@@ -23,22 +23,23 @@ pub struct Estimate {
 /// Result of a calibration from one test or several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// The test, in one line.
+    /// Title: the test in one line.
     pub title: String,
     /// Parameters.
     pub estimates: Vec<Estimate>,
-    /// Correlations between the estimates, in their order; empty if the parameters are not fitted together.
+    /// Correlation matrix of the estimates, in the order of `estimates`; empty if the parameters are not
+    /// fitted together.
     pub correlation: Vec<Vec<f64>>,
-    /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the correlation matrix of the
-    /// sensitivities; `None` if parameters are not fitted together.
+    /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the normalized
+    /// information matrix; `None` if parameters are not fitted together.
     pub condition: Option<f64>,
     /// Measurements compared with the fit.
     pub figures: Vec<Figure>,
-    /// Names and values of further numbers for the reader.
+    /// Further results for display, as pairs of name and value.
     pub facts: Vec<(String, String)>,
     /// Lines to paste into a scenario.
     pub scenario: String,
-    /// Warnings, such as of limits of the test, one sentence each.
+    /// Warnings, for example about limits of the test; one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -49,7 +50,7 @@ impl Estimate {
         Self { name: name.to_owned(), value, low, high, dimension }
     }
 
-    /// Creates an estimate that is a function of a logarithm; the logarithm has a symmetric interval.
+    /// Creates an estimate from its logarithm, for which the interval is symmetric.
     pub(super) fn of_log(
         name: &str,
         log: f64,
@@ -78,12 +79,13 @@ impl Estimate {
 }
 
 impl Calibration {
-    /// Returns the estimate with a name; `None` if there is none.
+    /// Returns the estimate of the parameter with the name `name`; `None` if there is no such parameter.
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.name == name)
     }
 
-    /// Formats the result for a terminal: a table of the estimates, further numbers, and the lines for a scenario.
+    /// Formats the result for a terminal: a table of the estimates, further results, and the lines for a
+    /// scenario.
     pub fn lines(&self) -> Vec<String> {
         let head = ["parameter", "value", "95 % interval", "unit"].map(str::to_owned);
         let cells = |estimate: &Estimate| {
@@ -124,7 +126,8 @@ impl Calibration {
         lines
     }
 
-    /// Returns the result as a document for programs, all numbers in SI; unbounded ends are null.
+    /// Returns the result as a document for programs. All numbers are in SI units; unbounded ends of
+    /// intervals are null.
     pub fn to_document(&self) -> CalibrationDocument {
         CalibrationDocument::of(self)
     }
@@ -135,17 +138,19 @@ described! {
     pub struct CalibrationDocument of found: &Calibration {
         /// Name and version of this layout.
         pub schema: &'static str ["calibration/1"] = "calibration/1",
-        /// The test, in one line.
+        /// Title: the test in one line.
         pub title: String = found.title.clone(),
-        /// Confidence of the intervals.
+        /// Confidence level of the intervals.
         pub confidence: f64 as "1" = 0.95,
         /// The parameters.
         pub estimates: Vec<EstimateRow> = found.estimates.iter().map(EstimateRow::of).collect(),
-        /// Correlations between the estimates, in their order; empty if the parameters are not fitted together.
+        /// Correlation matrix of the estimates, in the order of `estimates`; empty if the parameters are not
+        /// fitted together.
         pub correlation: Vec<Vec<f64>> as "1" = found.correlation.clone(),
-        /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities.
+        /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the normalized
+        /// information matrix.
         pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
-        /// Further numbers for display, by name.
+        /// Further results for display: text by name.
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
         /// Lines to paste into a scenario.
         pub scenario: String = found.scenario.clone(),
@@ -178,8 +183,8 @@ pub(super) fn inseparable(
     for (i, row) in correlation.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > limit) {
             warnings.push(format!(
-                "the measurements do not separate {} from {} (correlation {value:.3}): determine one \
-                 of them by a test of its own and fit the other",
+                "the measurements do not separate {} from {} (correlation {value:.3}): determine one of them by a \
+                 separate test and fit the other",
                 estimates[i].name, estimates[j].name
             ));
         }
@@ -208,7 +213,8 @@ fn aligned<R: AsRef<[String]>>(rows: &[R]) -> Vec<String> {
     rows.iter().map(padded).collect()
 }
 
-/// Rounds to four significant digits: three are shown, and one more is kept for further computation.
+/// Rounds a number to four significant digits: the three that are displayed, and one more for further
+/// computation.
 pub(super) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
@@ -223,7 +229,7 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// Formats a quantity for a scenario, with its quotes.
+/// Formats a quantity with its unit, in quotes, for a scenario.
 pub(super) fn quoted(value: f64, dimension: Dimension) -> String {
     format!("\"{} {}\"", short(value), dimension.si_unit())
 }

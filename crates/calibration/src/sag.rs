@@ -16,10 +16,11 @@ const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
 
 /// Fits the stiffness of a seat to the sag of a body that rests on several seats.
 ///
-/// The column `load` holds the mass that was set down on the seats, and `sag` the deflection under it. The optional
-/// column `angle` holds the angle between the contact normal and the vertical, such as that of a cradle.
-/// `seats` is the number of seats that share the load, so `sag = load g / (seats k cos² angle)`.
-/// The interval is that of the slope of sag over load, through zero, by Student's t.
+/// The column `load` holds the mass that was placed on the body, and `sag` the deflection under that mass.
+/// The optional column `angle` holds the angle between the contact normal and the vertical, for example in a
+/// cradle. `seats` is the number of seats that share the load, so `sag = load g / (seats k cos² angle)`. The
+/// interval follows from that of the slope of sag against load, for a line through the origin, by Student's t
+/// distribution.
 ///
 /// # Errors
 /// If the table lacks a column, has fewer than two rows, or the sag does not grow with the load.
@@ -70,8 +71,8 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
         let variance = found.center_variance + found.center * found.center * found.slope_variance;
         if hollow.abs() > student_quantile(0.95, found.freedom) * variance.sqrt() {
             warnings.push(format!(
-                "the line through the readings has a sag of {} mm at zero load, as if seats did not touch at first: apply a light \
-                 load first, and measure both load and sag from there",
+                "the line through the readings has a sag of {} mm at zero load, as if the seats did not touch \
+                 at first: apply a light load first, and measure both load and sag from there",
                 short(1e3 * hollow)
             ));
         }
@@ -86,7 +87,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     let depths: Vec<f64> = sag.iter().map(|sag| 1e3 * sag).collect();
     let forces: Vec<f64> = press.iter().map(|force| 1e-3 * force).collect();
     Ok(Calibration {
-        title: format!("sag test {}: sag in proportion to load", table.file()),
+        title: format!("sag test {}: sag proportional to load", table.file()),
         facts: vec![
             ("rows".to_owned(), load.len().to_string()),
             ("seats that share the load".to_owned(), seats.to_string()),
@@ -108,7 +109,7 @@ fn picture(sag: Vec<f64>, force: Vec<f64>, give: f64) -> Figure {
     let fit = curve("sag in proportion to load", span(&force), |force| 1e6 * give * force);
     let series = vec![fit, measured("measured", force, sag, 1)];
     let caption = "Sag test: sag against the force on one seat, and the least-squares line through the origin, whose \
-                   slope is one over the stiffness.";
+                   slope is the reciprocal of the stiffness.";
     figure(
         "sag-test",
         caption,

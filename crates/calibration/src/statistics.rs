@@ -1,8 +1,9 @@
-//! Means and regression lines with their intervals.
+//! Means and regression lines, with their 95 % intervals.
 
 use barrelstack_fragility::student_quantile;
 
-/// Returns the mean of at least two values, and half the width of its 95 % interval by Student's t.
+/// Returns the mean of at least two values and half the width of its 95 % interval, by Student's t
+/// distribution.
 pub fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -14,7 +15,7 @@ pub fn mean(values: &[f64]) -> (f64, f64) {
 /// Least-squares line `y = intercept + slope x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// `y` at `x = 0`.
+    /// Value of `y` at `x = 0`.
     pub intercept: f64,
     /// Change of `y` per unit of `x`.
     pub slope: f64,
@@ -30,7 +31,7 @@ pub struct Line {
     pub freedom: usize,
 }
 
-/// Fits the line through at least three points with different `x`.
+/// Fits the least-squares line through at least three points with different `x`.
 pub fn line(x: &[f64], y: &[f64]) -> Option<Line> {
     let count = x.len().min(y.len());
     if count < 3 {

@@ -1,4 +1,4 @@
-//! Stiffness `k` from a press test: penetration against force.
+//! Stiffness `k` from a press test, in which the penetration is measured against the force.
 
 use barrelstack::scenario::Dimension;
 use barrelstack_fragility::student_quantile;
@@ -9,16 +9,16 @@ use super::result::{quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// Difference of the information criteria above which Hertz's law is suggested: the worse of two models
-/// that differ by ten has essentially no support (Burnham and Anderson 2002).
+/// Difference of the information criteria above which Hertz's law is suggested. Of two models that differ by
+/// ten, the worse has essentially no support (Burnham and Anderson 2002).
 const CLEARLY: f64 = 10.0;
 
 /// Fits `F = k (δ − δ₀)` to a press test with the columns `penetration` and `force`.
 ///
-/// δ₀ is the seating offset: the reading at which the surfaces first touch.
-/// The scatter is attributed to the force, equally in every row.
-/// `nodes` is the number of contact nodes that share the force; `k` is that of one.
-/// `interface` is the name of the interface in the lines for a scenario, such as "barrel-rack".
+/// δ₀ is the seating offset: the reading at which the surfaces first touch. The scatter is attributed to the
+/// force, with the same variance in every row. `nodes` is the number of contact nodes that share the force;
+/// `k` is the stiffness of one node. `interface` is the name of the interface in the lines for a scenario,
+/// such as "barrel-rack".
 ///
 /// # Errors
 /// If the table lacks a column, has fewer than three rows, or its force does not grow with penetration.
@@ -37,8 +37,8 @@ pub fn stiffness(
     let (slope, t) = (found.slope, student_quantile(0.95, found.freedom));
     if slope <= 0.0 {
         return Err(table.unsuited(format!(
-            "the force decreases with penetration ({} N/m): keep only the rows of the loading, and state both \
-             as positive into the surface",
+            "the force decreases with penetration ({} N/m): keep only the rows of the loading, and state force \
+             and penetration as positive into the surface",
             short(slope)
         )).into());
     }
@@ -71,7 +71,7 @@ pub fn stiffness(
         && difference > CLEARLY
     {
         warnings.push(format!(
-            "force grows as penetration to the power 1.5 rather than in proportion (the information \
+            "force grows as penetration to the power 1.5 rather than proportionally (the information \
              criterion is lower by {difference:.0}): the straight line is valid between these loads only; \
              law = \"hertz\" with stiffness = {} fits better",
             quoted(hertz / f64::from(nodes), Dimension::HERTZ_STIFFNESS)
@@ -92,7 +92,7 @@ pub fn stiffness(
         quoted(per_node, Dimension::STIFFNESS)
     );
     Ok(Calibration {
-        title: format!("press test {}: force in proportion to penetration", table.file()),
+        title: format!("press test {}: force proportional to penetration", table.file()),
         estimates: vec![stiffness, seating],
         figures: vec![picture(&penetration, &force, slope, offset)],
         facts,
@@ -117,11 +117,13 @@ fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figur
     figure("press-test", caption, axes, series)
 }
 
-/// Returns `k` (N/m^1.5) of `F = k (δ − δ₀)^1.5`, and the amount by which its information criterion (Akaike 1974) is
-/// lower than that of the straight line; both laws have two parameters.
+/// Returns `k` (N/m^1.5) of Hertz's law `F = k (δ − δ₀)^1.5`, and the amount by which the information
+/// criterion (Akaike 1974) of this law is lower than that of the straight line. Both laws have two
+/// parameters.
 ///
-/// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched: on a grid over the span of
-/// the readings to either side of the first one, then finer around the best.
+/// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched. The first grid extends to either
+/// side of the first reading by the span of the readings; each further grid is finer and centered on the best
+/// value so far.
 fn hertz(penetration: &[f64], force: &[f64], line_squares: f64) -> Option<(f64, f64)> {
     let low = penetration.iter().copied().fold(f64::INFINITY, f64::min);
     let high = penetration.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -13,18 +13,18 @@ use super::result::quoted;
 use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// Natural logarithm of the largest factor on the stiffness of the scenario that is tried.
+/// Natural logarithm of the largest factor by which the stiffness in the scenario is multiplied or divided in
+/// the search.
 const WIDEST: f64 = 7.0;
 
-/// Number of bisection steps of that logarithm.
+/// Number of bisection steps in the logarithm of the factor.
 const HALVINGS: u32 = 24;
 
 /// Fits the stiffness of all seats of a stack to the period of its sway.
 ///
-/// The table has the column `period`, with one row per tap.
-/// `scenario` is the stack that was tapped, in the plane in which it swayed; the stiffnesses of its seats keep their
-/// ratios.
-/// The interval is that of the mean period by Student's t.
+/// The table has the column `period`, with one row per tap. `scenario` is the stack that was tapped, in the
+/// plane in which it swayed; the stiffnesses of its seats keep their ratios. The interval is that of the mean
+/// period, by Student's t distribution.
 ///
 /// # Errors
 /// If the table lacks its column or has fewer than two rows, the scenario is not a stack of linear laws in one plane, or
@@ -33,7 +33,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).ok_or_else(|| {
         refuse(
-            "a tap test needs a stack in one plane, that in which it swayed: set stack.view to \"transverse\" or \
+            "a tap test needs a stack in the one plane in which it swayed: set stack.view to \"transverse\" or \
              \"longitudinal\"",
         )
     })?;
@@ -53,7 +53,8 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let own = seats.iter().map(|(name, law)| {
         stiffness(law).ok_or_else(|| {
             refuse(&format!(
-                "a tap test needs linear laws with constants per seat or per node; that of interface.{name} is different"
+                "a tap test needs linear laws with constants per seat or per node; the law of interface.{name} \
+                 is of another kind"
             ))
         })
     });
@@ -108,8 +109,8 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     })
 }
 
-/// Returns the factor on the stiffness of all seats at which the stack sways with a period (s); `None` if no factor
-/// within the range gives that period.
+/// Returns the factor by which the stiffness of all seats is to be multiplied so that the stack sways with a
+/// period (s); `None` if no factor within the range gives that period.
 fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateError> {
     let slower = |log: f64| -> Result<bool, CalibrateError> {
         let mut changed = scenario.clone();
@@ -141,7 +142,8 @@ fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateErro
     Ok(Some(math::exp(0.5 * (soft + stiff))))
 }
 
-/// Returns the stiffness (N/m) of a linear law with constants per seat or per node; `None` for other laws.
+/// Returns the stiffness (N/m) of a linear law whose constants are per seat or per node; `None` for other
+/// laws.
 fn stiffness(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { stiffness, .. } | NormalLaw::KelvinVoigt { stiffness, .. }) =
         law.normal
@@ -151,12 +153,12 @@ fn stiffness(law: &Interface) -> Option<f64> {
     (law.basis != Basis::Length).then_some(stiffness)
 }
 
-/// Returns the name of the basis, per seat or per node, of a law.
+/// Returns the name of the basis of a law, which is per seat or per node.
 fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }
 
-/// Returns the damping (N·s/m) of a linear law; `None` if the law states a restitution instead.
+/// Returns the damping (N·s/m) of a linear law; `None` for a law that states a restitution instead.
 fn damping(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { damping, .. } | NormalLaw::KelvinVoigt { damping, .. }) = law.normal
     else {

@@ -7,7 +7,8 @@
 //!                                        └─▶ Decision ─▶ page (HTML, Markdown), JSON
 //! ```
 //!
-//! Every fit is shown with the raw fractions. Where the data support no fit, the reason is given instead.
+//! Every fitted curve is shown together with the raw fractions. Where the data support no fit, the reason is
+//! given instead.
 
 mod cases;
 mod curve;
@@ -65,17 +66,18 @@ pub struct Request {
 pub struct Decision {
     /// Cases with a verdict.
     pub cases: Cases,
-    /// Fragility curve of each limit state against the measure of the study; the first limit state is the loss of the
-    /// first seat.
+    /// Fragility curve of each limit state against the intensity measure of the study. The first limit state
+    /// is the loss of the first seat.
     pub curves: Vec<LimitCurve>,
-    /// Cumulative incidence of each collapse mode against the measure of the study, the most frequent mode first.
+    /// Cumulative incidence of each collapse mode against the intensity measure of the study, the most
+    /// frequent mode first.
     pub modes: Vec<ModeIncidence>,
     /// Comparison of all intensity measures, the best predictor of collapse first.
     pub measures: Vec<MeasureRow>,
     /// Barrels and wine lost at each level, or the reason why they are unknown.
     pub losses: Result<Losses, String>,
-    /// Sobol' indices of the varied quantities for collapse and for the demands; empty for other designs than
-    /// "saltelli".
+    /// Sobol' indices of the varied quantities, for collapse and for the demands; empty for designs other
+    /// than "saltelli".
     pub sensitivities: Vec<Sensitivity>,
     /// Effects of the varied factors on collapse, the largest first.
     pub effects: Vec<Effect>,
@@ -88,7 +90,7 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> DecisionDocument {
         DecisionDocument::of(self)
     }
@@ -103,15 +105,15 @@ pub enum DecisionError {
          `error` of its table"
     )]
     NoCases {
-        /// Number of rows of the table.
+        /// Number of rows of the table, each of which is a case.
         rows: usize,
     },
-    /// The table lacks a column that the table of a study has.
+    /// The table lacks a column that every table of a study has.
     #[error(
         "the table of the study has no column `{0}`; it was written by another version of the program"
     )]
     Column(&'static str),
-    /// A cell does not hold a list of numbers as its column requires.
+    /// A cell does not hold a list of numbers, although its column requires one.
     #[error(
         "the column `{column}` of the table of the study has a cell \"{found}\" where numbers separated by semicolons \
          are expected; run the chunk of that row again"
@@ -130,12 +132,12 @@ pub enum DecisionError {
     Study(#[from] StudyError),
 }
 
-/// Accumulator of the inputs of a decision, fed with the rows of a study in parts, so that a table of a million cases
-/// need not be in memory.
+/// Accumulator for the inputs of a decision. The rows of a study are added in parts, so that a table of a
+/// million cases need not be held in memory.
 struct Gathering {
     made: Provenance,
     cases: cases::Reading,
-    /// Values of the factors, one column each.
+    /// Values of the factors, one column for each factor.
     factors: Vec<Column>,
     results: indices::Results,
 }
@@ -160,7 +162,8 @@ impl Gathering {
         self.cases.add(table)
     }
 
-    /// Computes the decision after all rows were added; `made` is their provenance with the final number of rows.
+    /// Computes the decision after all rows were added; `made` is the provenance of the study with the final
+    /// number of rows.
     fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
         let cases = self.cases.finish()?;
         let effects = sensitivity::effects(&self.factors, made, &cases);
@@ -200,11 +203,11 @@ impl Gathering {
 
 /// Computes the decision of a study whose table is in memory.
 ///
-/// Resampling starts from the seed of the study, so that the same study gives the same page.
+/// Random resampling starts from the seed of the study, so that the same study always gives the same page.
 ///
 /// # Errors
-/// If the table is not that of a study, no case has a verdict, or the hazard curve is for another measure than the
-/// study.
+/// If the table is not that of a study, no case has a verdict, or the hazard curve is for an intensity
+/// measure other than that of the study.
 pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, DecisionError> {
     let mut gathering = Gathering::new(&collected.provenance)?;
     gathering.add(&collected.table)?;
@@ -213,10 +216,10 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
 
 /// Computes the decision of the study in a folder, finished or not, and returns it with the provenance of its rows.
 ///
-/// The table is read in parts, so that it need not fit into memory.
+/// The table is read in parts, so that it need not be held in memory.
 ///
 /// # Errors
-/// As [`decide`] and [`read_shards`].
+/// As for [`decide`] and [`read_shards`].
 pub fn decide_folder(
     folder: &Path,
     request: &Request,

@@ -1,8 +1,8 @@
 //! Safe heights: probability of collapse of stacks by height, direction and strength of shaking.
 //!
-//! Stacks of two levels and more on one kind of rack are shaken by the bundled record of South Napa, by synthetic
-//! motions and by the user's own records. All are scaled to the same levels of peak ground velocity, and friction is
-//! drawn for each run.
+//! Stacks of two or more levels on one kind of rack are shaken by the bundled record of South Napa, by
+//! synthetic motions and by the user's own records. All motions are scaled to the same levels of peak ground
+//! velocity. Friction is drawn at random for each run.
 
 mod field;
 mod json;
@@ -28,7 +28,7 @@ pub use json::HeightsDocument;
 pub use plan::{HIGHEST, LOWEST, VELOCITIES};
 pub(crate) use plan::{quoted, synthetic};
 
-/// Request for a study of heights.
+/// Inputs of a study of heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// Name of the rack in the catalog.
@@ -78,8 +78,8 @@ pub struct Height {
     pub by_acceleration: LimitCurve,
     /// Mean share of the barrels that fall, for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
-    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the friction and the
-    /// seats of the catalog; `None` if it bears 1 g.
+    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the
+    /// friction and the seats of the catalog; `None` if the stack stands even at 1 g.
     pub static_margin: Option<f64>,
 }
 
@@ -88,7 +88,8 @@ pub struct Height {
 pub struct AtLevel {
     /// Number of runs and of collapses.
     pub stripe: Stripe,
-    /// Bounds of the probability of collapse; each holds with 95 % confidence (Clopper and Pearson).
+    /// Bounds of the probability of collapse; each is a one-sided bound with 95 % confidence (Clopper and
+    /// Pearson).
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
@@ -117,7 +118,7 @@ impl Height {
     }
 }
 
-/// Run of a stack under the bundled record, unscaled.
+/// Run of a stack under the unscaled bundled record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AsRecorded {
     /// Number of levels of the stack.
@@ -139,15 +140,15 @@ pub struct AsRecorded {
 /// Results of a study of heights.
 #[derive(Clone, Debug)]
 pub struct Heights {
-    /// Request for the study.
+    /// Inputs of the study.
     pub request: Request,
     /// Results of every height in every direction.
     pub heights: Vec<Height>,
-    /// Runs under the bundled record, unscaled.
+    /// Runs under the unscaled bundled record.
     pub recorded: Vec<AsRecorded>,
     /// Number of motions under which every stack was run.
     pub motions: usize,
-    /// Number of all runs.
+    /// Total number of runs.
     pub runs: usize,
     /// Number of runs without a verdict.
     pub left_out: usize,
@@ -162,12 +163,13 @@ pub struct Heights {
 }
 
 impl Heights {
-    /// Returns the results of stacks of a height in a direction; `None` if they were not run.
+    /// Returns the results of stacks with a number of levels in a direction; `None` if such stacks were not
+    /// run.
     pub fn of(&self, levels: u32, view: View) -> Option<&Height> {
         self.heights.iter().find(|height| height.levels == levels && height.view == view)
     }
 
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> HeightsDocument {
         HeightsDocument::of(self)
     }
@@ -198,8 +200,8 @@ pub enum HeightsError {
 
 /// Runs the studies of every height in both directions and evaluates them.
 ///
-/// The studies are stored in folders below `folder`, from which an interrupted run resumes.
-/// `report` receives the number of finished runs and the total, and may cancel.
+/// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
+/// receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
 /// If the rack, the barrel or the height is unknown, a record cannot be read, or a folder cannot be written.

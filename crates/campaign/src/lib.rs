@@ -14,7 +14,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Study`] runs in memory ([`Study::table`]) or in a folder that many processes share ([`Study::run`]).
+//! A [`Study`] runs in memory ([`Study::table`]) or in a folder that several processes can share
+//! ([`Study::run`]).
 
 // Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -1,10 +1,10 @@
 //! Ranking of protections of a stack by benefit and cost.
 //!
-//! A protection is a lower stack, another rack, a device, or a pair of these.
-//! All protections are run under the same motions with the same quantiles of friction, so that they differ by their effect
-//! and not by sampling.
-//! The first round tries all protections; later rounds try only the contenders, under further motions.
-//! Each round of a protection in one direction is a study in its own folder, from which an interrupted ranking resumes.
+//! A protection is a lower stack, another rack, a device, or a pair of these. All protections are run under
+//! the same motions and with the same quantiles of friction, so that their results differ by their effects
+//! and not by sampling. The first round tries all protections; later rounds try only the contenders, under
+//! further motions. Each round of a protection in one direction is a study in its own folder, so that an
+//! interrupted ranking resumes from there.
 
 mod json;
 mod options;
@@ -38,15 +38,15 @@ use search::{Search, Trial};
 /// Default levels of peak ground velocity (m/s).
 pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
 
-/// Default levels of peak ground velocity (m/s) if a hazard curve weights them.
+/// Default levels of peak ground velocity (m/s) if a hazard curve determines the weights of the levels.
 const SITE_VELOCITIES: [f64; 4] = [0.15, 0.30, 0.60, 1.20];
 
-/// Levels of shaking, and their weights.
+/// Levels of shaking and their weights.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shaking {
     /// Levels of peak ground velocity (m/s), equally weighted.
     Levels(Vec<f64>),
-    /// Hazard curve of a site, for peak ground velocity, which weights the levels.
+    /// Hazard curve of a site for peak ground velocity, from which the weights of the levels follow.
     Site(SiteHazard),
 }
 
@@ -67,22 +67,22 @@ impl Shaking {
     }
 }
 
-/// Request for a ranking.
+/// Inputs of a ranking.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// Scenario of the stack.
     pub scenario: Scenario,
-    /// Levels of shaking, or hazard of the site.
+    /// Levels of shaking, or the hazard curve of the site.
     pub shaking: Shaking,
-    /// Files of records that replace the bundled record and the synthetic motions.
+    /// Record files that replace the bundled record and the synthetic motions.
     pub records: Vec<PathBuf>,
-    /// Folder of such files.
+    /// Folder of record files, which replace the bundled record and the synthetic motions.
     pub folder: Option<PathBuf>,
-    /// Number of motions of a round if no records are given.
+    /// Number of motions in each round if no records are given.
     pub motions: u32,
     /// Number of rounds.
     pub rounds: u32,
-    /// Largest cost (US$) of a protection of one stack; the middle of its range of cost counts.
+    /// Maximum cost (US$) of a protection of one stack; the midpoint of its cost range must not exceed it.
     pub budget: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u32,
@@ -93,16 +93,20 @@ pub struct Request {
 pub struct Ranked {
     /// Protection to which the results belong.
     pub protection: Protection,
-    /// Probability of collapse, averaged over the levels of shaking; for a site, the number of collapses per year.
+    /// Probability of collapse, averaged over the levels of shaking; for a site, the mean number of collapses
+    /// per year.
     pub collapse: Estimate,
-    /// Number of barrels that fall, averaged over the levels of shaking; for a site, per year.
+    /// Number of barrels that fall, averaged over the levels of shaking; for a site, the mean number per
+    /// year.
     pub fallen: Estimate,
-    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a site, per year.
+    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a
+    /// site, the mean number per year.
     pub burst: Estimate,
-    /// Reduction of fallen barrels compared with the stack as it is, under the same motions; `None` for the stack as it is.
+    /// Reduction of the number of fallen barrels compared with the unprotected stack, under the same motions;
+    /// `None` for the unprotected stack.
     pub saved: Option<Estimate>,
-    /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since the best of
-    /// many is reported.
+    /// The reduction in `saved`, with an interval that holds for all tried protections simultaneously, since
+    /// the best of many protections is reported.
     pub saved_together: Option<Estimate>,
     /// Direction of shaking in which more barrels fall.
     pub direction: View,
@@ -116,15 +120,16 @@ pub struct Ranked {
     pub fallen_at_rest: usize,
     /// Last round in which the protection was run, counted from 1.
     pub round: u32,
-    /// `true` if the protection is on the Pareto front: no other that was run in all rounds costs at most as much and loses
-    /// fewer barrels.
+    /// `true` if the protection is on the Pareto front: no other protection that was run in all rounds costs
+    /// at most as much and loses fewer barrels.
     pub on_front: bool,
-    /// Worst state of maintenance, and the number of barrels that fall in it; `None` if not tried.
+    /// Description of the worst state of maintenance, and the number of barrels that fall in it; `None` if no
+    /// such state was tried.
     pub worn: Option<(String, Estimate)>,
 }
 
 impl Ranked {
-    /// Returns the middle of the range of cost for one stack (US$).
+    /// Returns the midpoint of the cost range for one stack (US$).
     pub fn cost(&self) -> f64 {
         middle(&self.protection)
     }
@@ -133,34 +138,35 @@ impl Ranked {
 /// Ranking of all protections of a stack.
 #[derive(Clone, Debug)]
 pub struct Ranking {
-    /// Request for the ranking.
+    /// Inputs of the ranking.
     pub request: Request,
-    /// Results of every protection that was tried, sorted by last round (the latest first) and then by the mean number of
-    /// fallen barrels.
+    /// Results of every protection that was tried. They are sorted by last round (the latest first), and then
+    /// by the mean number of fallen barrels.
     pub all: Vec<Ranked>,
-    /// Names of the protections that were not tried, with the reasons.
+    /// Names of the protections that were not tried, each with the reason.
     pub not_tried: Vec<(String, String)>,
-    /// Number of all runs.
+    /// Total number of runs.
     pub runs: usize,
     /// Report page.
     pub document: Document,
 }
 
 impl Ranking {
-    /// Returns the results of the stack as it is.
+    /// Returns the results of the unprotected stack.
     pub fn as_it_is(&self) -> Option<&Ranked> {
         self.all.iter().find(|one| one.protection.kind == Kind::AsItIs)
     }
 
-    /// Returns the number of protections that were tried, not counting the stack as it is.
+    /// Returns the number of protections that were tried, excluding the unprotected stack.
     pub fn tries(&self) -> usize {
         self.all.len().saturating_sub(1)
     }
 
-    /// Returns the protection that saves most barrels for its cost; `None` if none helps significantly.
+    /// Returns the protection that saves most barrels for its cost; `None` if no protection helps
+    /// significantly.
     ///
-    /// Only protections that were run in all rounds are considered, and a saving counts as significant by the interval
-    /// that holds for all tried protections simultaneously.
+    /// Only protections that were run in all rounds are considered, and a saving is significant if the
+    /// interval that holds for all tried protections simultaneously excludes zero.
     pub fn best(&self) -> Option<&Ranked> {
         let last = self.all.iter().map(|one| one.round).max();
         let worth = |one: &Ranked| one.saved.map_or(0.0, |saved| saved.mean / one.cost());
@@ -171,13 +177,13 @@ impl Ranking {
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> ProtectDocument {
         ProtectDocument::of(self)
     }
 
-    /// Runs the stack as it is and with the best protection under the motion of the scenario, and shows both runs side by
-    /// side on the page.
+    /// Runs the stack unprotected and with the best protection under the motion of the scenario, and shows
+    /// both runs side by side on the page.
     ///
     /// Returns `true` if both runs finished.
     ///
@@ -217,12 +223,12 @@ pub enum ProtectError {
         "\"{0}\" is a free scene, but protections are for stacks of barrels on racks: use the scenario of a stack"
     )]
     NoStack(String),
-    /// The hazard curve is for another measure than peak ground velocity.
+    /// The hazard curve is for an intensity measure other than peak ground velocity.
     #[error(
         "the hazard curve in {file} is for {measure}, but motions are scaled by peak ground velocity; give a hazard curve for pgv"
     )]
     Hazard {
-        /// Name of the file.
+        /// Name of the file of the hazard curve.
         file: String,
         /// Intensity measure of the hazard curve.
         measure: String,
@@ -257,7 +263,7 @@ pub struct Reached {
 
 /// Tries all protections of a stack and ranks them.
 ///
-/// The studies are stored in folders below `folder`, from which an interrupted ranking resumes.
+/// The studies are stored in folders below `folder`, so that an interrupted ranking resumes from there.
 /// `report` is called with the progress from several threads, and may cancel.
 ///
 /// # Errors
@@ -320,7 +326,7 @@ pub fn protect(
     Ok(ranking)
 }
 
-/// Returns the indices of the open trials that continue in the next round.
+/// Returns the indices of the trials that continue in the next round, among the trials `open`.
 fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
         let trial = &trials[*at];
@@ -332,7 +338,7 @@ fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     kept.into_iter().map(|at| open[at]).collect()
 }
 
-/// Returns the two protections of each kind with which fewest barrels fall.
+/// Returns, for each kind of protection, the two with which the fewest barrels fall.
 fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Vec<&'a Protection> {
     let fallen =
         |trial: &Trial| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
@@ -347,7 +353,7 @@ fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Ve
     best
 }
 
-/// Returns all pairs of the given protections that can be combined.
+/// Returns all pairs of the given protections that can be combined on a stack.
 fn pairs(base: &Scenario, of: &[&Protection]) -> Vec<Protection> {
     let all = of.iter().enumerate();
     all.flat_map(|(at, one)| {
@@ -389,7 +395,8 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked 
     }
 }
 
-/// Marks the Pareto front of cost and fallen barrels among the protections that were run in all rounds.
+/// Marks the protections on the Pareto front of cost and fallen barrels, among those that were run in all
+/// rounds.
 fn mark_front(all: &mut [Ranked]) {
     let last = all.iter().map(|one| one.round).max();
     let mut finalists: Vec<&mut Ranked> =

@@ -1,9 +1,9 @@
 //! RockScore: a number that compares racks and devices, by a protocol that never changes.
 //!
-//! Stacks of one height on the scored rack, with its devices, are shaken across and along the barrels by fixed motions
-//! at fixed levels of peak ground velocity, in new condition and in every worn state.
-//! The score is the peak ground velocity (cm/s, rounded down) at which one stack in ten collapses, in the weakest state
-//! and direction.
+//! Stacks of one height, built with the scored rack and devices, are shaken across and along the barrels by
+//! fixed motions at fixed levels of peak ground velocity. They are shaken in new condition and in every worn
+//! state. The score is the peak ground velocity (cm/s, rounded down) at which one stack in ten collapses, in
+//! the weakest state and direction.
 
 mod json;
 mod page;
@@ -34,15 +34,17 @@ const LEVEL: f64 = 0.95;
 /// Peak ground velocity (m/s) at which one stack in ten collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
-    /// Velocity from the fitted curve, with its 95 % interval if the records determine one.
+    /// The velocity is that of the fitted curve, with its 95 % interval if the records determine an interval.
     Fitted(f64, Option<Interval>),
-    /// Levels between which the share of collapse exceeds one in ten; the lower one counts.
+    /// The share of collapse exceeds one in ten between these two levels. The lower level counts for the
+    /// score.
     ///
-    /// Used if there is no fitted curve, because stacks both collapse and stand at one level at most.
+    /// Used if no curve can be fitted because there is at most one level at which some stacks collapse and
+    /// others stand.
     Between(f64, f64),
-    /// The velocity is above this level, the highest.
+    /// The velocity is above this level, the highest of the protocol.
     Above(f64),
-    /// The velocity is below this level, the lowest.
+    /// The velocity is below this level, the lowest of the protocol.
     Below(f64),
 }
 
@@ -73,7 +75,8 @@ impl Capacity {
         })
     }
 
-    /// Returns the levels (m/s) between which the share of collapse exceeds `chance`; `stripes` are in ascending order.
+    /// Returns the two levels (m/s) between which the share of collapse exceeds `chance`; `stripes` are in
+    /// ascending order of intensity.
     fn between(stripes: &[Stripe], chance: f64) -> Self {
         let above = stripes.partition_point(|stripe| stripe.fraction() <= chance);
         match (stripes[..above].last(), stripes.get(above)) {
@@ -83,12 +86,12 @@ impl Capacity {
         }
     }
 
-    /// Returns the 95 % interval, if there is one.
+    /// Returns the 95 % interval of the velocity, if there is one.
     pub(crate) fn interval(self) -> Option<Interval> {
         if let Self::Fitted(_, interval) = self { interval } else { None }
     }
 
-    /// Returns the velocity (m/s) that counts for the score; 0 if it is below the lowest level.
+    /// Returns the velocity (m/s) from which the score is computed; 0 if it is below the lowest level.
     pub fn velocity(self) -> f64 {
         match self {
             Self::Fitted(at, _) | Self::Between(at, _) | Self::Above(at) => at,
@@ -104,9 +107,9 @@ pub struct Scored {
     pub state: State,
     /// Direction of shaking.
     pub view: View,
-    /// Velocity at which one stack in ten collapses.
+    /// Peak ground velocity at which one stack in ten collapses.
     pub capacity: Capacity,
-    /// Fragility of collapse, with the share at each level.
+    /// Fragility curve of collapse, with the share of collapse at each level.
     pub curve: LimitCurve,
     /// Number of runs.
     pub runs: usize,
@@ -117,8 +120,8 @@ pub struct Scored {
 }
 
 impl Scored {
-    /// Returns the numbers of runs and collapses at a level (m/s) of the protocol; `None` if no run at that level has a
-    /// verdict.
+    /// Returns the numbers of runs and of collapses at a level (m/s) of the protocol; `None` if no run at
+    /// that level has a verdict.
     pub fn at(&self, velocity: f64) -> Option<Stripe> {
         // Motions were scaled to levels that were rounded when written as text.
         let same = |stripe: &&Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-6;
@@ -129,7 +132,7 @@ impl Scored {
 /// Score sheet of a rack and its devices.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Scored scenario, with the number of levels of the protocol.
+    /// The scored scenario, with the number of levels that the protocol requires.
     pub scenario: Scenario,
     /// Protocol of the score.
     pub protocol: Protocol,
@@ -140,7 +143,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Returns the result of the weakest state and direction.
+    /// Returns the result for the weakest state and direction.
     pub fn weakest(&self) -> Option<&Scored> {
         let by = |a: &&Scored, b: &&Scored| a.capacity.velocity().total_cmp(&b.capacity.velocity());
         self.rows.iter().min_by(by)
@@ -157,7 +160,7 @@ impl Sheet {
         self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
     }
 
-    /// Returns the numbers for programs, in SI units.
+    /// Returns the results as a document for programs, in SI units.
     pub fn to_document(&self) -> ScoreDocument {
         ScoreDocument::of(self)
     }
@@ -193,7 +196,7 @@ pub enum ScoreError {
     #[error(transparent)]
     Decision(#[from] DecisionError),
     /// The runs do not determine a score.
-    #[error("no score for the state \"{state}\" when shaken {direction}")]
+    #[error("no score for stacks in the state \"{state}\" when shaken {direction}")]
     Curve {
         /// Name of the state.
         state: String,
@@ -207,8 +210,8 @@ pub enum ScoreError {
 
 /// Scores the rack and the devices of a scenario.
 ///
-/// The studies are stored in folders below `folder`, from which an interrupted run resumes.
-/// `report` receives the number of finished runs and the total, and may cancel.
+/// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
+/// receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
 /// If the scenario has no stack, a state cannot be built, or a folder cannot be written.

@@ -6,10 +6,11 @@
 //!                                                  StudyTable: one row a case ─▶ CSV, Parquet
 //! ```
 //!
-//! A study is a deterministic list of chunks of cases, and each chunk is run as a whole.
-//! The file of its rows (the shard) gets its name only when it is complete and on the disk, so that every shard is a
-//! finished chunk. An interrupted study resumes from its shards, on one machine or on many.
-//! Random draws for a case depend on the seed of the study and on the identity of the case, not on the number of cases.
+//! A study is a deterministic list of chunks of cases, and each chunk is run as a whole. The rows of a chunk
+//! are stored in a file, the shard. A shard gets its final name only when it is complete and on the disk, so
+//! that every shard stands for a finished chunk. An interrupted study resumes from its shards, on one machine
+//! or on many. Random draws for a case depend on the seed of the study and on the identity of the case, not
+//! on the number of cases.
 //!
 //! ```no_run
 //! use std::ops::ControlFlow;
@@ -76,7 +77,7 @@ use motions::Motion;
 use plan::{Chunks, Sizes};
 use setting::Setting;
 
-/// Study: factors that are varied, motions, and the design of the cases.
+/// Study: the varied factors, the motions, and the design of the cases.
 ///
 /// ```
 /// use barrelstack_campaign::Study;
@@ -87,7 +88,7 @@ use setting::Setting;
 /// ```
 #[derive(Debug)]
 pub struct Study {
-    /// Title, in one line.
+    /// Title: one line.
     pub title: String,
     /// Seed of all random draws.
     pub seed: u64,
@@ -96,24 +97,25 @@ pub struct Study {
     /// Text of the study file.
     text: String,
     template: Template,
-    /// Files of the motion of the base scenario that are held in memory.
+    /// Files for the motion of the base scenario whose contents are held in memory.
     held: Vec<FileRef>,
     factors: Vec<Factor>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
     /// `true` if some cases simulate the stack in space.
     in_space: bool,
-    /// Levels of intensity that are crossed with motions and factors; a single `None` without levels.
+    /// Levels of intensity that are combined with every motion and every set of factors; a single `None` if
+    /// there are no levels.
     levels: Vec<Option<f64>>,
-    /// Number of cases of each chunk; in an incremental dynamic analysis, of hunts.
+    /// Number of cases in each chunk; for an incremental dynamic analysis, number of hunts.
     chunk: Sizes,
     cases: Cases,
     chunks: Chunks,
-    /// Fingerprint of the study, the records and the version of the program.
+    /// Fingerprint of the study file, the records and the version of the program.
     hash: u64,
 }
 
-/// Factor: fields of the scenario that are varied together.
+/// Factor: one or several fields of the scenario that are varied together.
 #[derive(Clone, Debug)]
 struct Factor {
     /// Name of the column of the factor.
@@ -123,11 +125,11 @@ struct Factor {
     variation: Variation,
     /// Specification of the column of the factor.
     column: ColumnSpec,
-    /// Value in the base scenario, if the field has one there.
+    /// Value in the base scenario, if the base scenario states the field.
     base: Option<Value>,
-    /// `true` if values may differ in the bodies and contacts of the model.
+    /// `true` if models for different values of the factor may have different bodies or contacts.
     structural: bool,
-    /// `true` if the stack is simulated in space for one of the values.
+    /// `true` if at least one of the values makes the stack be simulated in space.
     in_space: bool,
 }
 
@@ -139,7 +141,8 @@ enum Variation {
 }
 
 impl Factor {
-    /// Returns the listed values, which are crossed with those of other factors; `None` for a distribution.
+    /// Returns the listed values, which are combined with those of all other factors; `None` for a
+    /// distribution.
     fn crossed(&self) -> Option<&[Setting]> {
         match &self.variation {
             Variation::Values(values) => Some(values),
@@ -160,18 +163,18 @@ struct Intensity {
 enum Levels {
     List(Vec<f64>),
     Distribution(Distribution),
-    /// Levels that an incremental dynamic analysis finds.
+    /// The levels are found by an incremental dynamic analysis.
     Hunted,
 }
 
-/// Returns the schema (JSON Schema 2020-12) of a study file, for completion and validation in editors.
+/// Returns the schema (JSON Schema 2020-12) of a study file, which editors use for completion and validation.
 pub fn json_schema() -> serde_json::Value {
     barrelstack_input::schema::of_file("barrelstack study", &STUDY)
 }
 
-/// Returns a reference of every table and field of a study file in Markdown.
+/// Returns a reference manual in Markdown, with every table and field of a study file.
 ///
-/// The fields of `[base]` are those of a scenario file and are not listed.
+/// The fields of `[base]` are not listed, since they are those of a scenario file.
 pub fn reference() -> String {
     let fields = barrelstack_input::reference::of_tables(
         &STUDY,
@@ -182,13 +185,13 @@ pub fn reference() -> String {
 }
 
 impl Study {
-    /// Returns the fingerprint of the study: its text, the scenarios it extends, the bytes of its records, and the
-    /// version of the program.
+    /// Returns the fingerprint of the study. It depends on the study file, the scenarios that the file
+    /// extends, the bytes of its records, and the version of the program.
     pub fn hash(&self) -> u64 {
         self.hash
     }
 
-    /// Returns the number of cases; for an adaptive design, the maximum.
+    /// Returns the number of cases; for an adaptive design, the maximum number.
     pub fn cases(&self) -> u64 {
         let runs = if let Design::Ida(hunt) = &self.design { hunt.runs } else { 1 };
         self.cases.count(self).saturating_mul(u64::from(runs))

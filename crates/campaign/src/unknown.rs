@@ -1,13 +1,14 @@
 //! Unmeasured parameters of a stack (friction, stiffness, damping) as factors of a study.
 //!
-//! Medians and scatter are those of `[imperfections]`. Variants of a run, studies of heights, rankings of protections and
-//! scores all use the same ones for a stack.
+//! The medians and the scatter of these factors are those of `[imperfections]`. Variants of a run, studies of
+//! heights, rankings of protections and scores all use the same factors for a stack.
 
 use std::fmt::Write as _;
 
 use crate::scenario::{Imperfection, Scenario, Scene, Setting};
 
-/// Interfaces of seats, each with the interface of fallen bodies of the same materials, if any.
+/// Interfaces of seats. Each is paired with the interface of fallen bodies that has the same materials, if
+/// there is one.
 const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-ground", Some("fallen-rack-ground")),
     ("barrel-rack", Some("fallen-barrel-rack")),
@@ -20,10 +21,11 @@ fn toml(value: &str) -> String {
     if bare { value.to_owned() } else { format!("\"{value}\"") }
 }
 
-/// Returns the tables `[[factor]]` of a scenario, for friction, stiffness and damping of its seats about the stated
-/// values.
+/// Returns the `[[factor]]` tables of a scenario, which vary the friction, stiffness and damping of its seats
+/// around the stated values.
 ///
-/// The text is empty for a free scene, and for a scenario whose variants differ in positions and masses only.
+/// The text is empty for a free scene, and for a scenario in which variants differ in positions and masses
+/// only.
 pub(crate) fn factors(scenario: &Scenario) -> String {
     let mut text = String::new();
     let Scene::Stack { stack, imperfections: spread, .. } = &scenario.scene else { return text };

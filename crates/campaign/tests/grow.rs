@@ -85,7 +85,7 @@ fn what_every_case_depends_on_may_not_change_and_the_refusal_names_it() {
         ("to = 0.6", "to = 0.7", "a [[factor]] has changed"),
         ("levels = 2", "levels = 1", "the scenario in [base] has changed"),
         ("chunk = 20", "chunk = 10", "[design] has changed"),
-        ("seed = 7", "seed = 8", "its seed is 7, and that of this study is 8"),
+        ("seed = 7", "seed = 8", "its seed is 7, and the seed of this study is 8"),
         ("1 g", "2 g", "the motion"),
     ] {
         let reason = refused(&first.replace(from, to));

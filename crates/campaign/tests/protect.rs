@@ -83,7 +83,8 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
     // The headline states what the motions prove for the recommended stack, or for the stack as it is.
     let headline = &found.document.verdict.headline;
     assert!(
-        headline.contains("(95 %)") && headline.contains(" motions") || found.best().is_none(),
+        headline.contains("(95 % confidence)") && headline.contains(" motions")
+            || found.best().is_none(),
         "{headline}"
     );
 
@@ -160,7 +161,8 @@ fn a_stack_that_stands_as_it_is_is_said_to_with_what_the_motions_can_prove() {
     let request = Request { shaking: weak, budget: Some(0.0), rounds: 1, ..request() };
     let headline = ranking(&request, folder.path()).unwrap().document.verdict.headline;
     assert!(headline.contains(" stands as it is: no barrel falls"), "{headline}");
-    let bound = headline.split("it never collapses: at most ").nth(1);
-    let percent = bound.and_then(|rest| rest.split(" % (95 %)").next()?.parse::<f64>().ok());
+    let bound = headline.split("it never collapses; the upper bound is ").nth(1);
+    let percent =
+        bound.and_then(|rest| rest.split(" % (95 % confidence)").next()?.parse::<f64>().ok());
     assert!(percent.is_some_and(|percent| (20.0..=100.0).contains(&percent)), "{headline}");
 }

@@ -63,7 +63,7 @@ fn what_no_shaking_of_a_protocol_brings_down_has_its_strongest_as_score_at_least
     let sheet = scored(&demo(&[]), &brief(&[0.02, 0.05]), folder.path()).unwrap();
     assert!(sheet.rows.iter().all(|row| row.capacity == Capacity::Above(0.05)));
     assert_eq!(sheet.score(), 5);
-    assert!(sheet.document.verdict.headline.contains("RockScore 5 at least"));
+    assert!(sheet.document.verdict.headline.contains("RockScore of at least 5"));
 }
 
 #[cfg(unix)]

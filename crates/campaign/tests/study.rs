@@ -358,7 +358,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
     .unwrap_err()
     .to_string();
-    assert!(message.contains("its seed is 7, and that of this study is 8"), "{message}");
+    assert!(message.contains("its seed is 7, and the seed of this study is 8"), "{message}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
     // An earlier version had another layout, without a fingerprint.

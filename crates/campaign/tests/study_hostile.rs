@@ -109,7 +109,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         2,
         "[[factor]]\nfield = \"interface.rack-ground.friction.coefficient\"\ndistribution = { kind = \"normal\", mean = 0.4, deviation = 0.1, least = 3.0 } # HERE\n",
-        &["leave nothing of the distribution"],
+        &["no value of the distribution lies between"],
     ),
     (
         2,

@@ -11,16 +11,17 @@ use crate::proportion::Interval;
 pub struct Replicates {
     /// Curve fitted to the original data.
     pub fitted: Lognormal,
-    /// Curve of each resampled data set that determines one, in the order of sampling.
+    /// Curves fitted to those resampled data sets that determine a curve, in the order of sampling.
     pub curves: Vec<Lognormal>,
     /// Number of resampled data sets that determine no curve ([`FitError`]).
     ///
-    /// They are excluded from every interval; if they are more than a few percent, the intervals are too narrow.
+    /// These data sets are excluded from every interval. If they are more than a few percent of all, the
+    /// intervals are too narrow.
     pub refused: usize,
 }
 
 impl Replicates {
-    /// Returns the interval of a function of the curve from bias-corrected percentiles (Efron 1987).
+    /// Returns the interval of a function of the curve, by bias-corrected percentiles (Efron 1987).
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let mut values: Vec<f64> = self.curves.iter().map(&of).collect();
         values.sort_by(f64::total_cmp);
@@ -52,7 +53,8 @@ impl Replicates {
     }
 }
 
-/// Returns the normal quantile of the fraction of sorted values that lie below a value, with ties counted half.
+/// Returns the normal quantile of the fraction of sorted values that lie below a value. Values equal to the
+/// given value count as one half.
 fn bias(ascending: &[f64], value: f64) -> f64 {
     let below = ascending.partition_point(|x| *x < value);
     let same = ascending[below..].partition_point(|x| *x <= value);
@@ -61,12 +63,12 @@ fn bias(ascending: &[f64], value: f64) -> f64 {
     normal_quantile(share.clamp(1.0 / (n + 1.0), n / (n + 1.0)))
 }
 
-/// Draws the number of failures among `cases`, each of which fails with the probability `chance`.
+/// Draws the number of failures among `cases` cases, each of which fails with the probability `chance`.
 pub(crate) fn binomial(cases: u32, chance: f64, uniform: &mut impl FnMut() -> f64) -> u32 {
     (0..cases).map(|_| u32::from(uniform() < chance)).sum()
 }
 
-/// Draws failure counts at the intensities and with the numbers of cases of `stripes`.
+/// Draws failure counts for the intensities and the numbers of cases of `stripes`.
 pub(crate) fn drawn(
     stripes: &[Stripe],
     chance: impl Fn(usize) -> f64,
@@ -82,7 +84,7 @@ pub(crate) fn drawn(
 /// The method assumes that cases are independent and follow the curve.
 ///
 /// # Errors
-/// As [`fit`] for the original data, or if fewer than half of the samples determine a curve.
+/// As for [`fit`] of the original data, or if fewer than half of the samples determine a curve.
 pub fn simulate(
     stripes: &[Stripe],
     dispersion: Dispersion,

@@ -5,14 +5,14 @@ use crate::math::{exp, ln, normal, normal_quantile};
 /// Lognormal fragility curve: the probability of failure at an intensity `x` is `Φ(ln(x/θ)/β)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lognormal {
-    /// Median capacity `θ`: the intensity at which half of the cases fail, in the unit of the intensities.
+    /// Median capacity `θ`: the intensity at which half of the cases fail.
     pub median: f64,
     /// Dispersion `β`: the standard deviation of the logarithm of the capacity.
     pub dispersion: f64,
 }
 
 impl Lognormal {
-    /// Returns the probability of failure at an intensity; 0 at and below zero.
+    /// Returns the probability of failure at an intensity; 0 if the intensity is not positive.
     pub fn probability(&self, intensity: f64) -> f64 {
         if intensity <= 0.0 {
             return 0.0;

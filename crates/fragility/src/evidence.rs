@@ -1,22 +1,22 @@
-//! Observations of capacities, to which fragility curves are fitted.
+//! Observed capacities, to which fragility curves are fitted.
 
 use crate::fit::FitError;
 
-/// Knowledge of the capacity of one case: the intensity at which it begins to fail.
+/// Knowledge of the capacity of a case, that is, of the intensity at which the case begins to fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
     /// The capacity is this intensity.
     At(f64),
-    /// The case failed at this intensity: its capacity is at or below it.
+    /// The case failed at this intensity, so that its capacity is at or below this intensity.
     Below(f64),
-    /// The case stood at this intensity: its capacity is above it.
+    /// The case stood at this intensity, so that its capacity is above this intensity.
     Above(f64),
-    /// The case stood at the first intensity and failed at the second, higher one.
+    /// The case stood at the first intensity and failed at the second, which is higher.
     Between(f64, f64),
 }
 
 impl Capacity {
-    /// Returns the lowest and the highest possible capacity; 0 and infinity if unbounded.
+    /// Returns the lowest and the highest possible capacity, which are 0 and infinity if there is no bound.
     pub fn bounds(self) -> (f64, f64) {
         match self {
             Self::At(x) => (x, x),
@@ -27,50 +27,50 @@ impl Capacity {
     }
 }
 
-/// Observation of a capacity, made in one case or in several.
+/// Observation of a capacity, made in one or several cases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
     /// Observed capacity.
     pub capacity: Capacity,
     /// Number of cases with this observation.
     pub weight: f64,
-    /// Group of dependent cases, such as the index of their record; [`leave_one_out`](crate::leave_one_out) omits one
-    /// group at a time. Other methods ignore the group.
+    /// Group of dependent cases, for example the index of their record.
+    /// [`leave_one_out`](crate::leave_one_out) omits one group at a time; other methods ignore the group.
     pub group: usize,
 }
 
 impl Evidence {
-    /// Creates the evidence of one case of a group that failed or stood at an intensity.
+    /// Creates the evidence of one case that failed or stood at an intensity.
     pub fn case(intensity: f64, failed: bool, group: usize) -> Self {
         let capacity = if failed { Capacity::Below(intensity) } else { Capacity::Above(intensity) };
         Self { capacity, weight: 1.0, group }
     }
 
-    /// Creates the evidence of one case of a group with a capacity.
+    /// Creates the evidence of one case with a known or bounded capacity.
     pub fn capacity(capacity: Capacity, group: usize) -> Self {
         Self { capacity, weight: 1.0, group }
     }
 }
 
-/// Number of cases and of failures at one intensity.
+/// Numbers of cases and of failures at one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripe {
     /// Intensity, in the unit of the intensity measure.
     pub intensity: f64,
-    /// Number of cases run.
+    /// Number of cases that were run.
     pub cases: u32,
     /// Number of failures.
     pub failures: u32,
 }
 
 impl Stripe {
-    /// Returns the fraction of cases that failed; NaN without cases.
+    /// Returns the fraction of cases that failed; NaN if there are no cases.
     pub fn fraction(&self) -> f64 {
         f64::from(self.failures) / f64::from(self.cases)
     }
 }
 
-/// Converts failure counts to evidence, in which each stripe is a separate group.
+/// Converts failure counts to evidence. Each stripe is a separate group.
 pub fn evidence(stripes: &[Stripe]) -> Vec<Evidence> {
     let mut all = Vec::with_capacity(2 * stripes.len());
     for (group, stripe) in stripes.iter().enumerate() {
@@ -107,7 +107,8 @@ pub fn stripes(cases: impl IntoIterator<Item = (f64, bool)>) -> Vec<Stripe> {
     found
 }
 
-/// Checks that every intensity is positive and finite, every bracket is in ascending order and every weight is positive.
+/// Checks that every intensity is positive and finite, that every pair of bounds is in ascending order, and
+/// that every weight is positive.
 pub(crate) fn check(all: &[Evidence]) -> Result<(), FitError> {
     if all.is_empty() {
         return Err(FitError::Empty);
@@ -129,7 +130,7 @@ pub(crate) fn check(all: &[Evidence]) -> Result<(), FitError> {
             }
         }
         if matches!(item.capacity, Capacity::Between(..)) && low >= high {
-            return bad(index, "a bracket whose first intensity is the lower", low);
+            return bad(index, "a bracket whose first intensity is the lower one", low);
         }
     }
     Ok(())

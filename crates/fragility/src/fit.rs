@@ -1,4 +1,4 @@
-//! Maximum-likelihood fit of a lognormal curve.
+//! Maximum-likelihood fit of a lognormal fragility curve.
 
 use crate::Stripe;
 use crate::curve::Lognormal;
@@ -7,12 +7,13 @@ use crate::likelihood::{Known, Likelihood, Score, Top, covariance};
 use crate::math::{exp, ln, ln_choose, normal_quantile};
 use crate::proportion::Interval;
 
-/// Whether a fit determines the dispersion or takes a given one.
+/// Treatment of the dispersion in a fit: it is fitted, or it is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dispersion {
     /// The dispersion is fitted together with the median.
     Free,
-    /// The dispersion `β > 0` is given, such as from similar structures, because the data cannot determine it.
+    /// The dispersion `β > 0` is given, for example from similar structures, because the data cannot
+    /// determine it.
     Fixed(f64),
 }
 
@@ -25,22 +26,22 @@ pub enum FitError {
     /// A number is not valid as an intensity or a count.
     #[error("observation {}: expected {expected}, found {found}", index + 1)]
     Invalid {
-        /// Index in the evidence, from 0.
+        /// Index of the observation in the evidence, counted from 0.
         index: usize,
         /// Expected value.
         expected: &'static str,
-        /// Value found.
+        /// Value that was found.
         found: f64,
     },
-    /// A given dispersion is not a positive number.
+    /// The given dispersion is not a positive number.
     #[error("expected a positive, finite dispersion, found {0}")]
     BadDispersion(f64),
-    /// A confidence level is not between 0 and 1.
+    /// The confidence level is not between 0 and 1.
     #[error("expected a confidence level between 0 and 1, found {0}")]
     BadLevel(f64),
     /// Every case stood.
     #[error(
-        "no case failed up to an intensity of {largest}: the median lies above, and no curve can be \
+        "no case failed up to an intensity of {largest}: the median is higher, and no curve can be \
          fitted; add cases of higher intensity"
     )]
     NothingFailed {
@@ -49,22 +50,22 @@ pub enum FitError {
     },
     /// Every case failed.
     #[error(
-        "every case failed down to an intensity of {smallest}: the median lies below, and no curve \
+        "every case failed down to an intensity of {smallest}: the median is lower, and no curve \
          can be fitted; add cases of lower intensity"
     )]
     EverythingFailed {
         /// Lowest intensity of all cases.
         smallest: f64,
     },
-    /// Failures and survivals overlap in at most one intensity.
+    /// The intensities of failures and of survivals overlap in at most one intensity.
     #[error(
-        "no case survived above {above} and none failed below {below}, so the dispersion cannot be \
-         found; add cases around these intensities, or give the dispersion"
+        "no case survived above {above} and none failed below {below}, so the dispersion cannot be determined; add \
+         cases around these intensities, or give the dispersion"
     )]
     Separated {
-        /// Highest intensity of a survival.
+        /// Highest intensity at which a case survived.
         above: f64,
-        /// Lowest intensity of a failure.
+        /// Lowest intensity at which a case failed.
         below: f64,
     },
     /// Failure does not become likelier as intensity increases.
@@ -85,7 +86,7 @@ pub enum FitError {
          the dispersion"
     )]
     Unstable {
-        /// Number of resampled data sets with a curve.
+        /// Number of resampled data sets that determine a curve.
         usable: usize,
         /// Number of resampled data sets.
         replicates: usize,
@@ -103,32 +104,35 @@ pub struct Fit {
     pub dispersion_error: f64,
     /// Covariance of `ln θ` and `ln β`.
     pub covariance: f64,
-    /// Logarithm of the likelihood, without binomial coefficients (see [`Fit::ln_likelihood_of`]).
+    /// Logarithm of the likelihood without binomial coefficients; see [`Fit::ln_likelihood_of`].
     pub ln_likelihood: f64,
     /// Number of fitted parameters: 1 or 2.
     pub parameters: usize,
 }
 
 impl Fit {
-    /// Returns the log-likelihood of counts, with their binomial coefficients (Baker 2015, eq. 9).
+    /// Returns the log-likelihood of failure counts, including binomial coefficients (Baker 2015, eq. 9).
     pub fn ln_likelihood_of(&self, stripes: &[Stripe]) -> f64 {
         let coefficients: f64 =
             stripes.iter().map(|s| ln_choose(s.cases, s.failures.min(s.cases))).sum();
         self.ln_likelihood + coefficients
     }
 
-    /// Returns the interval of the median at a confidence level, from its standard error.
+    /// Returns the interval of the median at a confidence level. It follows from the standard error of the
+    /// median.
     pub fn median_interval(&self, level: f64) -> Interval {
         around(self.curve.median, self.median_error, level)
     }
 
-    /// Returns the interval of the dispersion at a confidence level, from its standard error.
+    /// Returns the interval of the dispersion at a confidence level. It follows from the standard error of
+    /// the dispersion.
     pub fn dispersion_interval(&self, level: f64) -> Interval {
         around(self.curve.dispersion, self.dispersion_error, level)
     }
 }
 
-/// Returns the interval from `value / exp(z error)` to `value exp(z error)`, where `z` is the normal quantile of `level`.
+/// Returns the interval from `value / exp(z error)` to `value exp(z error)`, where `z` is the normal quantile
+/// for the confidence level.
 fn around(value: f64, error: f64, level: f64) -> Interval {
     let reach = exp(-normal_quantile(0.5 * (1.0 - level)) * error);
     Interval { low: value / reach, high: value * reach }
@@ -136,10 +140,11 @@ fn around(value: f64, error: f64, level: f64) -> Interval {
 
 /// Fits a lognormal curve to evidence by maximum likelihood.
 ///
-/// The likelihood of an observation is the probability (or, for an exact capacity, the density) of its capacity.
-/// For failure counts the fit is that of Baker (2015). For exact capacities it is a normal distribution fitted to their
-/// logarithms, with a variance divided by `n`; [`moments`] divides by `n − 1`.
-/// Standard errors follow from the observed information and assume independent cases.
+/// The likelihood of an observation is the probability (or, for an exact capacity, the density) of its
+/// capacity. For failure counts the fit is that of Baker (2015). For exact capacities the result is the
+/// normal distribution that is fitted to their logarithms; its variance is the sum of squares divided by `n`,
+/// whereas [`moments`] divides by `n − 1`. Standard errors follow from the observed information matrix and
+/// assume independent cases.
 ///
 /// # Errors
 /// A [`FitError`] if the evidence does not determine a curve.
@@ -187,7 +192,7 @@ fn fixed(evidence: &[Evidence], beta: f64) -> Result<Fit, FitError> {
     })
 }
 
-/// Maximizes the likelihood over intercept `a = −ln θ/β` and slope `b = 1/β`.
+/// Maximizes the likelihood over the intercept `a = −ln θ/β` and the slope `b = 1/β`.
 pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     let start = [-middle(evidence), 1.0];
     // The start is β = 1 about the mean logarithm, wide enough for any data.
@@ -202,17 +207,17 @@ pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     }
 }
 
-/// Returns the likelihood as a function of `(a, b)` in `z = a + b ln x`.
+/// Returns the likelihood as a function of `a` and `b`, where `z = a + b ln x`.
 fn free_likelihood(evidence: &[Evidence]) -> Likelihood<2> {
     likelihood(evidence, Some(1), 0.0, |u| Score { offset: 0.0, row: [1.0, u] })
 }
 
-/// Returns the likelihood as a function of `a` in `z = a + ln x/β`.
+/// Returns the likelihood as a function of `a`, where `z = a + ln x/β` and `β` is given.
 pub(crate) fn fixed_likelihood(evidence: &[Evidence], beta: f64) -> Likelihood<1> {
     likelihood(evidence, None, -ln(beta), |u| Score { offset: u / beta, row: [1.0] })
 }
 
-/// Returns the likelihood of evidence, where `score` returns `z` for `ln x`.
+/// Returns the likelihood of evidence; the function `score` gives `z` as a function of `ln x`.
 ///
 /// `ln_slope` is the logarithm of the slope `1/β` if the slope is not a parameter.
 pub(crate) fn likelihood<const N: usize>(
@@ -247,11 +252,11 @@ fn middle(evidence: &[Evidence]) -> f64 {
     sum / weight
 }
 
-/// Checks that the likelihood has a maximum at a positive, finite dispersion.
+/// Checks that the likelihood has its maximum at a positive, finite dispersion.
 ///
-/// There is no maximum if a single capacity agrees with all evidence, since the dispersion then tends to zero. There
-/// is none either if the likelihood decreases from `b = 1/β = 0` on, since failure then becomes less likely with
-/// intensity. Both criteria are exact, because the likelihood is concave.
+/// There is no such maximum if a single capacity agrees with all evidence, since the dispersion then tends to
+/// zero. Nor is there one if the likelihood decreases from `b = 1/β = 0` on, since failure then becomes less
+/// likely with intensity. Both criteria are exact, because the likelihood is concave.
 fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitError> {
     let (mut above, mut below) = (0.0_f64, f64::INFINITY);
     let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
@@ -304,10 +309,11 @@ fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitErr
 
 /// Estimates median and dispersion of exact capacities by the method of moments.
 ///
-/// `ln θ` is the mean of the logarithms and `β` their sample standard deviation, with `n − 1` (Baker 2015, eqs. 2 and 3).
+/// `ln θ` is the mean of the logarithms of the capacities, and `β` is their sample standard deviation with
+/// the divisor `n − 1` (Baker 2015, eqs. 2 and 3).
 ///
 /// # Errors
-/// If there are fewer than two different capacities, or one is not a positive number.
+/// If there are fewer than two different capacities, or if a capacity is not a positive number.
 pub fn moments(capacities: &[f64]) -> Result<Lognormal, FitError> {
     let all: Vec<Evidence> =
         capacities.iter().map(|x| Evidence::capacity(Capacity::At(*x), 0)).collect();

@@ -9,20 +9,23 @@ use crate::math::{chi_square_above, exp, ln, normal, normal_quantile};
 /// Result of a goodness-of-fit test of failure counts against a fitted curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goodness {
-    /// Deviance: twice the log-likelihood ratio of the observed fractions to the curve, over all stripes.
+    /// Deviance: twice the log-likelihood ratio between the observed fractions and the curve, over all
+    /// stripes.
     pub deviance: f64,
-    /// Pearson's statistic: sum over the pooled groups of squared residuals divided by their binomial variance.
+    /// Pearson's statistic: sum over the pooled groups of the squared residual divided by its binomial
+    /// variance.
     pub pearson: f64,
-    /// Number of groups, after pooling neighbors until each expects at least one failure and one survival.
+    /// Number of groups. Neighboring stripes are pooled until every group has at least one expected failure
+    /// and one expected survival.
     pub groups: usize,
-    /// Degrees of freedom: groups minus fitted parameters.
+    /// Degrees of freedom: number of groups minus number of fitted parameters.
     pub freedom: usize,
-    /// Probability of a `pearson` at least as large if the curve is true. Without degrees of freedom it is 1, and the test
-    /// says nothing.
+    /// p-value: the probability of a statistic `pearson` at least as large as this one if the curve is true.
+    /// Without degrees of freedom it is 1, and the test has no meaning.
     pub p: f64,
 }
 
-/// Returns twice the log-likelihood ratio of the observed fractions to given probabilities.
+/// Returns twice the log-likelihood ratio between the observed fractions and given probabilities.
 pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64 {
     // x ln(x/y), which is zero at x = 0.
     let part = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * ln(x / y) };
@@ -38,18 +41,20 @@ pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64
 
 /// Computes Pearson's test of failure counts against a fitted curve, and the deviance.
 ///
-/// Neighboring stripes are pooled into groups (Hosmer and Lemeshow 1980).
-/// Cases must be independent: counts that reuse the same records at every level scatter less
-/// than binomially, and the test is then too lenient.
+/// Neighboring stripes are pooled into groups (Hosmer and Lemeshow 1980). Cases must be independent. If the
+/// same records are used at every level, counts scatter less than binomial counts, and the test is too
+/// lenient.
 pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
     let mut sorted = stripes.to_vec();
     sorted.sort_by(|a, b| a.intensity.total_cmp(&b.intensity));
     goodness_in_bins(&sorted.iter().map(|stripe| vec![*stripe]).collect::<Vec<_>>(), found)
 }
 
-/// Computes [`goodness`] over bins that hold cases of different intensities, in ascending order.
+/// Computes [`goodness`] for bins in which cases have different intensities. The cases of a bin are stripes
+/// in ascending order of intensity.
 ///
-/// The expected number of failures in a bin is the sum over its cases, since the curve is not straight within the bin.
+/// The expected number of failures in a bin is the sum of the probabilities of its cases, since the curve is
+/// not straight within the bin.
 pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     let chance = |s: &Stripe| found.curve.probability(s.intensity);
     // Cases, failures, expected failures, variance.
@@ -85,12 +90,14 @@ pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     }
 }
 
-/// Estimates the probability of a deviance at least as large if the fitted curve is true, by simulation.
+/// Estimates by simulation the probability of a deviance at least as large as the observed one if the fitted
+/// curve is true.
 ///
-/// Counts are sampled from the curve, and each sample is fitted. The result is valid for small counts, where χ² is not.
+/// Counts are sampled from the curve, and a curve is fitted to each sample. The result is valid even for
+/// small counts, for which the χ² approximation is not.
 ///
 /// # Errors
-/// As [`fit`], or if fewer than half of the samples determine a curve.
+/// As for [`fit`], or if fewer than half of the samples determine a curve.
 pub fn goodness_by_simulation(
     stripes: &[Stripe],
     dispersion: Dispersion,
@@ -120,18 +127,19 @@ pub fn goodness_by_simulation(
 /// Result of a test that capacities are lognormal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normality {
-    /// Largest distance between the empirical distribution of the capacities and the fitted one (Lilliefors 1967).
+    /// Largest distance between the empirical distribution function of the capacities and the fitted one
+    /// (Lilliefors 1967).
     pub distance: f64,
-    /// Probability of a distance at least as large if capacities are lognormal.
+    /// p-value: the probability of a distance at least as large as this one if capacities are lognormal.
     pub p: f64,
 }
 
 /// Computes Lilliefors's test that exact capacities are lognormal with unknown median and dispersion.
 ///
-/// The distribution of the distance does not depend on median and dispersion and is simulated.
+/// The distribution of the distance does not depend on the median and the dispersion; it is simulated.
 ///
 /// # Errors
-/// As [`moments`].
+/// As for [`moments`].
 pub fn normality(
     capacities: &[f64],
     replicates: usize,

@@ -1,4 +1,4 @@
-//! Seismic hazard of a site, and its integration with fragility or loss.
+//! Seismic hazard of a site, and its integration with a fragility curve or with losses.
 
 use crate::math::{exp, ln};
 
@@ -11,11 +11,11 @@ pub enum HazardError {
     /// A number is not valid as an intensity or a rate.
     #[error("row {}: expected {what} that is a positive, finite number, found {found}", row + 1)]
     Invalid {
-        /// Index of the row, from 0.
+        /// Index of the row, counted from 0.
         row: usize,
         /// Name of the invalid quantity.
         what: &'static str,
-        /// Value found.
+        /// Value that was found.
         found: f64,
     },
     /// Intensities are not in ascending order.
@@ -24,11 +24,11 @@ pub enum HazardError {
         row + 1
     )]
     Unsorted {
-        /// Index of the row, from 0.
+        /// Index of the row, counted from 0.
         row: usize,
         /// Intensity of the previous row.
         before: f64,
-        /// Value found.
+        /// Value that was found.
         found: f64,
     },
     /// Rates increase with intensity.
@@ -38,34 +38,35 @@ pub enum HazardError {
         row + 1
     )]
     Rising {
-        /// Index of the row, from 0.
+        /// Index of the row, counted from 0.
         row: usize,
         /// Rate of the previous row.
         before: f64,
-        /// Value found.
+        /// Value that was found.
         found: f64,
     },
 }
 
 /// Seismic hazard curve of a site: the annual rate at which each intensity is exceeded.
 ///
-/// Between rows `ln λ`, with the rate `λ`, is linear in the logarithm `ln x` of the intensity. The table is not
-/// extrapolated: shaking weaker than the first row is taken to have no effect, and shaking stronger than the last row
-/// makes the result a pair of bounds ([`Rate`]).
+/// Between rows, the logarithm of the rate is linear in the logarithm of the intensity. The table is not
+/// extrapolated. Shaking weaker than the first row is assumed to have no effect. For shaking stronger than
+/// the last row, results are given as a lower and an upper bound ([`Rate`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hazard {
     rows: Vec<(f64, f64)>,
 }
 
-/// Annual rate of an event, with bounds for the effect of intensities beyond the hazard table.
+/// Annual rate of an event, as bounds that differ by the effect of shaking beyond the last row of the hazard
+/// table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// Rate (1/year) if shaking stronger than the last row has the effect of the last row.
+    /// Rate (1/year) if shaking stronger than the last row has the same effect as the last row.
     pub low: f64,
-    /// Rate (1/year) if shaking stronger than the last row has the worst effect.
+    /// Rate (1/year) if shaking stronger than the last row has the worst possible effect.
     pub high: f64,
-    /// Effect of shaking with the intensity of the first row. If it is not small, weaker and more frequent shaking
-    /// matters, and the table should begin at a lower intensity.
+    /// Effect of shaking with the intensity of the first row. If this effect is not small, weaker and more frequent
+    /// shaking matters as well, and the table should begin at a lower intensity.
     pub at_first: f64,
 }
 
@@ -80,7 +81,7 @@ pub struct Contribution {
     pub rate: f64,
 }
 
-/// Abscissas and weights of five-point Gauss–Legendre quadrature on −1 to 1.
+/// Abscissas and weights of five-point Gauss–Legendre quadrature on the interval from −1 to 1.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -89,12 +90,13 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
-/// Width of the integration intervals in `ln x`. Even a fragility curve of dispersion 0.05 is integrated to 10⁻⁹.
+/// Width of the integration intervals in `ln x`. With this width, the error is about 10⁻⁹ even for a
+/// fragility curve with the dispersion 0.05.
 const PIECE: f64 = 0.01;
 
 impl Hazard {
-    /// Creates a curve through rows of intensity and annual rate of exceedance (1/year), in ascending order of
-    /// intensity.
+    /// Creates a hazard curve from rows of intensity and annual rate of exceedance (1/year), in ascending
+    /// order of intensity.
     ///
     /// # Errors
     /// If there are fewer than two rows, a number is not positive, or the rows are not in order.
@@ -125,7 +127,7 @@ impl Hazard {
         &self.rows
     }
 
-    /// Returns the annual rate at which an intensity is exceeded; `None` outside of the table.
+    /// Returns the annual rate at which an intensity is exceeded; `None` outside the table.
     pub fn exceedance(&self, intensity: f64) -> Option<f64> {
         let after = self.rows.partition_point(|(x, _)| *x < intensity);
         let next = *self.rows.get(after)?;
@@ -137,7 +139,8 @@ impl Hazard {
         Some(before.1 * exp(exponent * ln(intensity / before.0)))
     }
 
-    /// Returns the intensity that is exceeded once in a mean return period (years); `None` outside of the table.
+    /// Returns the intensity that is exceeded once per return period (years) on average; `None` outside the
+    /// table.
     pub fn intensity(&self, return_period: f64) -> Option<f64> {
         let rate = 1.0 / return_period;
         let pair = self.rows.windows(2).find(|pair| pair[0].1 >= rate && rate >= pair[1].1)?;
@@ -148,7 +151,8 @@ impl Hazard {
         Some(x0 * exp(ln(x1 / x0) * ln(rate / r0) / ln(r1 / r0)))
     }
 
-    /// Integrates an effect, weighted by the rate density of intensity, between two intensities within the table.
+    /// Integrates an effect between two intensities within the table; the weight is the rate density of the
+    /// intensity.
     fn integral(&self, from: f64, to: f64, of: &impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for pair in self.rows.windows(2) {
@@ -180,15 +184,15 @@ impl Hazard {
         [self.rows[0], self.rows[self.rows.len() - 1]]
     }
 
-    /// Returns the annual rate of an event, such as failure, from its probability at each intensity
-    /// (Cornell and Krawinkler 2000).
+    /// Returns the annual rate of an event, such as failure. `probability` gives the probability of the event
+    /// at an intensity (Cornell and Krawinkler 2000).
     pub fn rate_of(&self, probability: impl Fn(f64) -> f64) -> Rate {
         self.expected(1.0, probability)
     }
 
     /// Returns the expected annual consequence, such as barrels lost per year.
     ///
-    /// `consequence` returns the expected value at an intensity, which never exceeds `worst`.
+    /// `consequence` returns the expected consequence at an intensity, which must not exceed `worst`.
     pub fn expected(&self, worst: f64, consequence: impl Fn(f64) -> f64) -> Rate {
         let [(first, _), (last, beyond)] = self.ends();
         let within = self.integral(first, last, &consequence);
@@ -199,7 +203,8 @@ impl Hazard {
         }
     }
 
-    /// Deaggregates the rate into its parts between the given intensities; parts outside of the table are omitted.
+    /// Deaggregates the annual rate into the contributions of the ranges between the given intensities.
+    /// Ranges outside the table are omitted.
     pub fn contributions(
         &self,
         edges: &[f64],
@@ -214,7 +219,7 @@ impl Hazard {
     }
 }
 
-/// Returns the probability of at least one event in a number of years, from its annual rate.
+/// Returns the probability of at least one event in a number of years, for a given annual rate of events.
 ///
 /// Events are assumed to be independent (a Poisson process).
 pub fn chance_within(years: f64, annual_rate: f64) -> f64 {

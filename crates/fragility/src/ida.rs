@@ -2,16 +2,17 @@
 
 use crate::math::quantile;
 
-/// IDA curve of one record: its runs at ascending intensities.
+/// IDA curve of one record: results of runs at ascending intensities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ida {
-    /// `(intensity, demand)` of each run in ascending order of intensity; an infinite demand means collapse.
+    /// Pairs `(intensity, demand)` of the runs, in ascending order of intensity. An infinite demand stands
+    /// for collapse.
     points: Vec<(f64, f64)>,
 }
 
 impl Ida {
-    /// Creates a curve through runs in any order; points whose intensity is not positive and finite, or
-    /// whose demand is NaN, are omitted.
+    /// Creates a curve from runs in any order. Runs are omitted if their intensity is not positive and
+    /// finite, or if their demand is NaN.
     pub fn new(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let sound = |(x, d): &(f64, f64)| x.is_finite() && *x > 0.0 && !d.is_nan();
         let mut points: Vec<(f64, f64)> = points.into_iter().filter(sound).collect();
@@ -33,10 +34,11 @@ impl Ida {
 
     /// Returns the demand at an intensity.
     ///
-    /// The demand is interpolated linearly between runs, and between zero at zero intensity and the first run. Between
-    /// a run that stood and one that collapsed, in either order, the change is placed at the geometric mean of their
-    /// intensities, and the demand of the standing run is used on its side. Above the last run the demand is infinite
-    /// if that run collapsed, since analyses end there, and `None` (unknown) if it stood.
+    /// The demand is interpolated linearly between runs, and from zero at zero intensity to the first run.
+    /// Between a run in which the structure stood and a run in which it collapsed, in either order, the
+    /// boundary is placed at the geometric mean of the two intensities. On the side of the standing run, the
+    /// demand of that run is used. Above the last run, the demand is infinite if the structure collapsed in
+    /// that run, since analyses end there. It is `None` (unknown) if the structure stood in that run.
     pub fn demand(&self, intensity: f64) -> Option<f64> {
         let after = self.points.partition_point(|(x, _)| *x < intensity);
         let before = after.checked_sub(1).map_or((0.0, 0.0), |i| self.points[i]);
@@ -60,11 +62,11 @@ impl Ida {
         })
     }
 
-    /// Returns the demand below which a fraction `share` of the records stays at an intensity.
+    /// Returns the fractile `share` of the demands of all records at an intensity.
     ///
-    /// The demand is infinite if too many records have collapsed, and `None` if the demand of any record is unknown, so
-    /// that no record is silently excluded. A record that collapses at a lower intensity but stands at this one counts
-    /// as standing.
+    /// The fractile is infinite if the structure collapses under too many of the records. It is `None` if the
+    /// demand of any record is unknown, so that no record is silently excluded. A structure that collapses
+    /// under a record at a lower intensity but stands at the given intensity counts as standing.
     pub fn fractile(all: &[Self], intensity: f64, share: f64) -> Option<f64> {
         let mut demands =
             all.iter().map(|ida| ida.demand(intensity)).collect::<Option<Vec<_>>>()?;

@@ -1,42 +1,45 @@
-//! Variance-based sensitivity indices: the influence of each input, alone and in interaction with others.
+//! Variance-based sensitivity indices: the influence of each input alone and including its interactions with
+//! other inputs.
 
 use crate::math::{exp, student_quantile};
 use crate::proportion::{Interval, unobserved};
 
-/// Smallest number of blocks for which an interval is computed.
+/// Minimum number of blocks for which an interval is computed.
 pub const FEWEST_BLOCKS: usize = 16;
 
 /// Sensitivity indices of one input, with intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Index {
-    /// First-order index: the fraction of the variance that vanishes if the input is known (Sobol' 1993), clamped to 0 to 1.
+    /// First-order index: the fraction of the variance that vanishes if the input is known (Sobol' 1993),
+    /// clamped to the range from 0 to 1.
     pub first: f64,
-    /// Interval of the first-order index; 0 to 1 with fewer than [`FEWEST_BLOCKS`] blocks.
+    /// Interval of the first-order index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
     pub first_interval: Interval,
-    /// Total index: the fraction of the variance that remains if all other inputs are known, interactions included;
-    /// clamped to 0 to 1.
+    /// Total index: the fraction of the variance that remains if all other inputs are known, which includes
+    /// interactions. It is clamped to the range from 0 to 1.
     pub total: f64,
-    /// Interval of the total index; 0 to 1 with fewer than [`FEWEST_BLOCKS`] blocks.
+    /// Interval of the total index; 0 to 1 if there are fewer than [`FEWEST_BLOCKS`] blocks.
     pub total_interval: Interval,
 }
 
-/// Computes first and total indices of every input from blocks `[f(A), f(B), f(A with input 1 of B), …]`.
+/// Computes the first-order and the total index of every input from blocks `[f(A), f(B), f(A with input 1 of
+/// B), …]`.
 ///
 /// ```text
 /// first  = mean(f(B) (f(AᵢB) − f(A))) / V        Saltelli et al. 2010, table 2 (b)
 /// total  = mean((f(A) − f(AᵢB))²) / 2V           Jansen 1999
 /// ```
 ///
-/// `V` is the variance over all `f(A)` and `f(B)`, and results are centered on their mean.
-/// Intervals come from the delete-one jackknife of the blocks and Student's t, with one degree of freedom fewer than
-/// there are blocks. That of the total index is the wider of those on the linear and the logarithmic scale.
-/// If an input changes the result in at most half of the blocks, its changes are rare events. The interval then also
-/// covers the index that would follow if changes that the blocks may have missed were as large as the range of results.
-/// Bounds are clamped to 0 to 1.
-/// In simulations with 16 to 256 blocks, the coverage is at least 89 % for binary results, counts and continuous results
-/// (`tests/claims.rs`).
+/// `V` is the variance of all `f(A)` and `f(B)`. All results are centered on the mean of these. Intervals
+/// come from the delete-one jackknife over blocks and from Student's t distribution, with the number of
+/// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on
+/// the logarithmic scale, and the wider one is returned. If an input changes the result in at most half of
+/// the blocks, its changes are rare events. The interval then also covers the index that would result if the
+/// changes that the blocks may have missed were as large as the range of results. Bounds are clamped to the range
+/// from 0 to 1. In simulations with 16 to 256 blocks, the coverage is at least 89 % for binary results, counts and
+/// continuous results (`tests/claims.rs`).
 ///
-/// Returns `None` for fewer than two blocks, blocks of different length, and constant results.
+/// Returns `None` for fewer than two blocks, for blocks of different lengths, and for constant results.
 pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
     let inputs = blocks.first()?.len().checked_sub(2).filter(|inputs| *inputs > 0)?;
     if blocks.len() < 2 || blocks.iter().any(|block| block.len() != inputs + 2) {
@@ -108,25 +111,27 @@ const FIRST: usize = 0;
 /// Position of the total index in a pair of indices.
 const TOTAL: usize = 1;
 
-/// Sums of centered results over blocks, from which a block can be removed again.
+/// Sums of centered results over blocks. A block can also be removed from the sums.
 #[derive(Clone)]
 struct Sums {
     count: f64,
     /// Sum of `f(A)` and `f(B)`.
     results: f64,
-    /// Sum of their squares.
+    /// Sum of the squares of `f(A)` and `f(B)`.
     squares: f64,
-    /// For every input, the sums of `f(AᵢB) − f(A)`, of its product with `f(B)`, and of its square.
+    /// For every input, the sum of `f(AᵢB) − f(A)`, the sum of its product with `f(B)`, and the sum of its
+    /// square.
     inputs: Vec<[f64; 3]>,
 }
 
 impl Sums {
-    /// Creates sums of zero, for no blocks.
+    /// Creates sums over no blocks, all of which are zero.
     fn empty(inputs: usize) -> Self {
         Self { count: 0.0, results: 0.0, squares: 0.0, inputs: vec![[0.0; 3]; inputs] }
     }
 
-    /// Adds a block, with its results centered on `middle`; `sign` is 1 to add it and −1 to remove it.
+    /// Adds or removes a block, whose results are centered on `middle`; `sign` is 1 to add the block and −1
+    /// to remove it.
     fn add(&mut self, block: &[f64], middle: f64, sign: f64) {
         let (a, b) = (block[0] - middle, block[1] - middle);
         self.count += sign;
@@ -140,7 +145,7 @@ impl Sums {
         }
     }
 
-    /// Returns the variance of the results; `None` if rounding alone explains it.
+    /// Returns the variance of the results; `None` if rounding errors alone explain it.
     fn variance(&self, middle: f64) -> Option<f64> {
         let mean = self.results / (2.0 * self.count);
         let variance = (self.squares - mean * self.results) / (2.0 * self.count - 1.0);
@@ -148,7 +153,7 @@ impl Sums {
         (variance > rounding && variance > 0.0).then_some(variance)
     }
 
-    /// Returns first and total index of every input; `None` for constant results.
+    /// Returns the first-order and the total index of every input; `None` for constant results.
     fn indices(&self, middle: f64) -> Option<Vec<[f64; 2]>> {
         let (variance, n) = (self.variance(middle)?, self.count);
         let mean = self.results / (2.0 * n);

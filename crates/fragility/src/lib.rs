@@ -1,8 +1,8 @@
 //! Fragility statistics: the probability of failure as a function of shaking intensity.
 //!
-//! The crate fits lognormal fragility curves to observed capacities, quantifies their uncertainty, tests
-//! the fit against the data, and integrates curves with the hazard of a site. It does not depend on the
-//! kind of structure or of failure.
+//! The crate fits lognormal fragility curves to observed capacities, quantifies their uncertainty, tests the
+//! fit against the data, and integrates fragility curves with the hazard curve of a site. It can be used for
+//! any kind of structure and any kind of failure.
 //!
 //! # From counts to a rate
 //!
@@ -25,21 +25,21 @@
 //!
 //! # Evidence
 //!
-//! All fits maximize the same likelihood. Every observation states that a capacity is *at* an
-//! intensity, *below* it (the case failed there), *above* it (it stood there) or *between* two. This covers
-//! failure counts at fixed intensities, capacities from incremental dynamic analysis, bracketed capacities and
-//! records that never fail up to the largest intensity.
+//! All fits maximize the same likelihood. Every observation states that a capacity is *at* an intensity,
+//! *below* an intensity (at which the case failed), *above* an intensity (at which the case stood) or
+//! *between* two intensities. This covers failure counts at fixed intensities, capacities from incremental
+//! dynamic analysis, bracketed capacities, and records under which nothing fails up to the largest intensity.
 //!
 //! # Data without a curve
 //!
 //! Data that do not determine a curve give a [`FitError`] with the reason: nothing failed, all failed,
-//! failures and survivals do not overlap, or failure does not become likelier with intensity.
-//! No penalty, prior or clipping turns such data into a plausible number.
+//! failures and survivals do not overlap, or failure does not become likelier with intensity. No penalty,
+//! prior or clipping is used to turn such data into a plausible number.
 //!
 //! # Random numbers
 //!
-//! Functions that resample take uniform random numbers from the caller (`FnMut() -> f64`), who chooses the generator
-//! and the seed.
+//! Functions that resample data take uniform random numbers from the caller (`FnMut() -> f64`). The caller
+//! chooses the generator and the seed.
 
 // Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

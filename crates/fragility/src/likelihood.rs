@@ -1,12 +1,12 @@
-//! Likelihood of evidence, with its derivatives and its maximization.
+//! Likelihood of evidence: its value, its derivatives and its maximization.
 //!
-//! With `z = offset + row · p` linear in the parameters, every kind of evidence has a likelihood
-//! whose logarithm is concave in `p` (Olsen 1978 for exact and censored values; probit for failures
-//! and survivals), so that damped Newton steps find the only maximum.
+//! The score `z = offset + row · p` is linear in the parameters `p`. The log-likelihood of every kind of
+//! evidence is therefore concave in `p` (Olsen 1978 for exact and censored values; probit for failures and
+//! survivals), and damped Newton steps find its only maximum.
 
 use crate::math::{LN_ROOT_TAU, ln, ln_normal, mills, normal_between, normal_density};
 
-/// Normal score `z` as a linear function of the parameters.
+/// Normal score `z`, as a linear function of the parameters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Score<const N: usize> {
     pub offset: f64,
@@ -22,7 +22,8 @@ impl<const N: usize> Score<N> {
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Known<const N: usize> {
-    /// `Z = z`; the second value is `ln ∂z/∂x` in the density, without the slope if that is a parameter.
+    /// `Z = z`. The second value is the contribution of `ln ∂z/∂x` to the log-density; it omits the slope if
+    /// the slope is a parameter.
     At(Score<N>, f64),
     /// `Z` is at most `z`.
     Below(Score<N>),
@@ -36,11 +37,11 @@ pub(crate) enum Known<const N: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct Likelihood<const N: usize> {
     pub terms: Vec<(Known<N>, f64)>,
-    /// Index of the parameter that is the slope `1/β`, if any.
+    /// Index of the parameter that is the slope `1/β`; `None` if the slope is not a parameter.
     pub slope: Option<usize>,
 }
 
-/// Value, gradient and matrix of second derivatives of a log-likelihood at one point.
+/// Value, gradient and Hessian of a log-likelihood at one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shape<const N: usize> {
     pub value: f64,
@@ -51,7 +52,8 @@ pub(crate) struct Shape<const N: usize> {
 impl<const N: usize> Shape<N> {
     const ZERO: Self = Self { value: 0.0, gradient: [0.0; N], curvature: [[0.0; N]; N] };
 
-    /// Adds the derivatives of a term with respect to the parameters, from its first and second derivative by `z`.
+    /// Adds the derivatives of a term with respect to the parameters, from its first and second derivatives
+    /// with respect to `z`.
     fn push(&mut self, score: &Score<N>, first: f64, second: f64) {
         for i in 0..N {
             self.gradient[i] += first * score.row[i];
@@ -69,14 +71,14 @@ pub(crate) struct Top<const N: usize> {
     pub shape: Shape<N>,
 }
 
-/// Gradient, in standard errors, below which it counts as zero.
+/// Magnitude of the gradient, in standard errors, below which the gradient counts as zero.
 const FLAT: f64 = 1e-9;
 
-/// Largest number of Newton steps; usually five to ten suffice.
+/// Maximum number of Newton steps; usually five to ten suffice.
 const STEPS: usize = 200;
 
 impl<const N: usize> Likelihood<N> {
-    /// Returns one term with its derivatives.
+    /// Returns the log-likelihood of one observation with its derivatives.
     pub(crate) fn term(&self, known: &Known<N>, weight: f64, p: &[f64; N]) -> Shape<N> {
         let mut shape = Shape::ZERO;
         match known {
@@ -128,7 +130,7 @@ impl<const N: usize> Likelihood<N> {
         shape
     }
 
-    /// Returns the sum of all terms with its derivatives.
+    /// Returns the log-likelihood of all observations with its derivatives.
     pub(crate) fn shape(&self, p: &[f64; N]) -> Shape<N> {
         let mut sum = Shape::ZERO;
         for (known, weight) in &self.terms {
@@ -144,7 +146,8 @@ impl<const N: usize> Likelihood<N> {
         sum
     }
 
-    /// Maximizes the likelihood from a start at which it is finite; `None` if there is no maximum.
+    /// Maximizes the likelihood from a starting point at which it is finite; returns `None` if there is no
+    /// maximum.
     pub(crate) fn top(&self, start: [f64; N]) -> Option<Top<N>> {
         let mut parameters = start;
         let mut shape = self.shape(&parameters);
@@ -189,7 +192,8 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Solves `A x = b` for a symmetric, positive definite `A` (Cholesky); `None` if `A` is not positive definite.
+/// Solves `A x = b` for a symmetric, positive definite `A` by Cholesky factorization; returns `None` if `A`
+/// is not positive definite.
 pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
     for j in 0..N {
         for k in 0..j {

@@ -1,4 +1,5 @@
-//! Transcendental functions that are bit-identical on every platform, and probability distributions built on them.
+//! Transcendental functions that are bit-identical on every platform, and probability distributions based on
+//! them.
 
 use special::{Beta, Gamma};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -14,11 +15,11 @@ pub(crate) fn exp(x: f64) -> f64 {
 /// `ln √(2π)`.
 pub(crate) const LN_ROOT_TAU: f64 = 0.918_938_533_204_672_7;
 
-/// Score below which `Φ` is evaluated by its asymptotic series, since `erfc` underflows at −37.5.
+/// Score below which `Φ` is evaluated by an asymptotic series, since `erfc` underflows at −37.5.
 const DEEP: f64 = -30.0;
 
-/// Returns the asymptotic series `1 − 1/z² + 3/z⁴ − …` of `−z Φ(z)/φ(z)` for `z` far below zero (Abramowitz and
-/// Stegun 1964, 26.2.12); its error at −30 is 2·10⁻¹⁴.
+/// Returns the asymptotic series `1 − 1/z² + 3/z⁴ − …` of `−z Φ(z)/φ(z)` for very negative `z` (Abramowitz
+/// and Stegun 1964, 26.2.12). At `z = −30` its error is 2·10⁻¹⁴.
 fn deep_series(z: f64) -> f64 {
     let t = 1.0 / (z * z);
     1.0 - t * (1.0 - t * (3.0 - t * (15.0 - t * (105.0 - t * 945.0))))
@@ -29,7 +30,7 @@ pub fn normal_density(z: f64) -> f64 {
     exp(-0.5 * z * z - LN_ROOT_TAU)
 }
 
-/// Returns the standard normal distribution `Φ(z)`, accurate in the lower tail.
+/// Returns the standard normal distribution function `Φ(z)`, which is accurate even in the lower tail.
 pub fn normal(z: f64) -> f64 {
     0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
 }
@@ -55,10 +56,11 @@ pub(crate) fn normal_between(low: f64, high: f64) -> f64 {
     if low > 0.0 { normal(-low) - normal(-high) } else { normal(high) - normal(low) }
 }
 
-/// Returns the `z` at which `Φ(z)` equals a probability; infinite at 0 and 1, NaN outside.
+/// Returns the `z` at which `Φ(z)` equals a probability; infinite for the probabilities 0 and 1, and NaN
+/// outside the range from 0 to 1.
 ///
-/// A rough start (Abramowitz and Stegun 1964, 26.2.23) is refined by Halley's method on `ln Φ` of
-/// the smaller tail, which keeps all digits down to the smallest probability.
+/// A rough initial value (Abramowitz and Stegun 1964, 26.2.23) is refined by Halley's method on `ln Φ` of the
+/// smaller tail, which keeps all digits down to the smallest probability.
 pub fn normal_quantile(probability: f64) -> f64 {
     if probability.is_nan() || !(0.0..=1.0).contains(&probability) {
         return f64::NAN;
@@ -84,7 +86,8 @@ pub fn normal_quantile(probability: f64) -> f64 {
     z
 }
 
-/// Returns the probability that χ² with `freedom` degrees of freedom is at least `value`; 1 if `freedom` is 0.
+/// Returns the probability that a χ² variable with `freedom` degrees of freedom is at least `value`; 1 if
+/// `freedom` is 0.
 pub fn chi_square_above(value: f64, freedom: usize) -> f64 {
     if freedom == 0 || value <= 0.0 {
         return 1.0;
@@ -101,7 +104,8 @@ pub(crate) fn chi_square_quantile_one(probability: f64) -> f64 {
     z * z
 }
 
-/// Returns the probability that Student's `|T|` with `freedom` degrees of freedom is at least `|t|`.
+/// Returns the probability that `|T|` is at least `|t|`, where `T` has Student's t distribution with
+/// `freedom` degrees of freedom.
 pub fn student_beyond(t: f64, freedom: usize) -> f64 {
     if freedom == 0 || t.is_nan() {
         return 1.0;
@@ -111,10 +115,11 @@ pub fn student_beyond(t: f64, freedom: usize) -> f64 {
     x.inc_beta(p, q, p.ln_beta(q))
 }
 
-/// Returns the `t` such that Student's `T` lies within `−t` to `t` with a probability; infinite if `freedom` is 0.
+/// Returns the `t` for which `T` lies between `−t` and `t` with a given probability, where `T` has Student's
+/// t distribution; infinite if `freedom` is 0.
 ///
-/// It is computed from the incomplete beta function. Above 1000 degrees of freedom, where that function is slow and
-/// loses digits, the asymptotic series is used (Abramowitz and Stegun 1964, 26.7.5).
+/// The quantile is computed from the incomplete beta function. Above 1000 degrees of freedom, that function
+/// is slow and loses digits, so the asymptotic series is used instead (Abramowitz and Stegun 1964, 26.7.5).
 pub fn student_quantile(probability: f64, freedom: usize) -> f64 {
     if freedom == 0 {
         return f64::INFINITY;
@@ -145,8 +150,8 @@ pub(crate) fn ln_choose(n: u32, k: u32) -> f64 {
     ln_factorial(n) - ln_factorial(k) - ln_factorial(n - k)
 }
 
-/// Returns the quantile of sorted values by linear interpolation between order statistics (Hyndman and
-/// Fan 1996, type 7); infinite values are allowed.
+/// Returns a quantile of sorted values, interpolated linearly between order statistics (Hyndman and Fan 1996,
+/// type 7). Infinite values are allowed.
 ///
 /// # Panics
 /// If there are no values.

@@ -1,4 +1,4 @@
-//! Efficiency and sufficiency of an intensity measure.
+//! Efficiency and sufficiency of intensity measures.
 
 use crate::Evidence;
 use crate::fit::{Dispersion, Fit, FitError, fit};
@@ -8,25 +8,29 @@ use crate::math::{chi_square_above, ln, student_beyond};
 /// Fit of failures to one intensity measure, with its efficiency and sufficiency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Fragility curve in terms of this measure; the more efficient the measure, the smaller the dispersion.
+    /// Fragility curve in terms of this measure. The more efficient the measure is, the smaller is the
+    /// dispersion.
     pub fit: Fit,
-    /// Probability that a failed case had a higher intensity than a standing one (area under the ROC curve): 0.5 if the
-    /// measure does not discriminate, 1 if it does so perfectly.
+    /// Concordance: the probability that a failed case had a higher intensity than a standing case (area
+    /// under the ROC curve). It is 0.5 if the measure does not discriminate and 1 if it discriminates
+    /// perfectly.
     pub concordance: f64,
-    /// p-value of the sufficiency test: the probability of an improvement at least as large by a second measure that
-    /// has no further information. It is small if the first measure is not sufficient; `None` if the second measure
-    /// follows from the first.
+    /// p-value of the sufficiency test: the probability that a second quantity without further information
+    /// would improve the fit at least as much as the tested quantity does. A small value means that the first
+    /// measure is not sufficient. `None` if the second quantity follows from the first measure.
     pub sufficiency: Option<f64>,
 }
 
-/// Fits failures against an intensity measure, alone and together with a second quantity.
+/// Fits failures against an intensity measure alone, and against this measure together with a second
+/// quantity.
 ///
-/// `cases` are `(intensity, failed)`, and `second` is another quantity of each case, such as another
-/// measure or the duration. Sufficiency is the likelihood-ratio test of the second in a probit
-/// regression on the logarithms of both, which assumes independent cases.
+/// `cases` holds pairs `(intensity, failed)`, and `second` holds another quantity of each case, such as
+/// another measure or the duration. Sufficiency is tested by a likelihood ratio: a probit regression on the
+/// logarithms of both quantities is compared with that on the measure alone. The test assumes independent
+/// cases.
 ///
 /// # Errors
-/// As [`fit`].
+/// As for [`fit`].
 pub fn failure_against(
     cases: &[(f64, bool)],
     second: Option<&[f64]>,
@@ -60,7 +64,7 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
     Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))
 }
 
-/// Returns the standardized residuals of the linear regression of `y` on `x`; `None` if they vanish.
+/// Returns the standardized residuals of the linear regression of `y` on `x`; `None` if all residuals vanish.
 fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
     let line = Line::through(x, y)?;
     let rest: Vec<f64> = x.iter().zip(y).map(|(x, y)| y - line.at(*x)).collect();
@@ -68,7 +72,8 @@ fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
     (scale > 1e-9).then(|| rest.iter().map(|r| r / scale).collect())
 }
 
-/// Returns the fraction of pairs of a failed and a standing case in which the failed one has the higher intensity.
+/// Returns, among all pairs of a failed and a standing case, the fraction in which the failed case has the
+/// higher intensity.
 fn concordance(cases: &[(f64, bool)]) -> f64 {
     let mut sorted = cases.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -92,13 +97,13 @@ fn concordance(cases: &[(f64, bool)]) -> f64 {
 pub struct Demanded {
     /// Slope `b` of the regression.
     pub slope: f64,
-    /// Standard deviation of `ε`: small for an efficient measure (Luco and Cornell 2007).
+    /// Standard deviation of `ε`, which is small for an efficient measure (Luco and Cornell 2007).
     pub dispersion: f64,
-    /// Proficiency `dispersion/b`: the scatter in terms of intensity, which also penalizes measures on which the
-    /// demand depends only weakly (Padgett et al. 2008).
+    /// Proficiency `dispersion/b`: the scatter expressed in terms of intensity. It also penalizes measures on
+    /// which the demand depends only weakly (Padgett et al. 2008).
     pub proficiency: f64,
-    /// p-value of the sufficiency test: the probability of a dependence at least as strong of `ε` on a second quantity if
-    /// there is none in truth.
+    /// p-value of the sufficiency test: the probability that `ε` seems to depend at least as strongly on a
+    /// second quantity if there is no such dependence.
     pub sufficiency: Option<f64>,
     /// Number of cases.
     pub cases: usize,
@@ -106,8 +111,8 @@ pub struct Demanded {
 
 /// Regresses the demands of standing cases on an intensity measure, and the residuals on a second quantity.
 ///
-/// Each case is `(intensity, demand)`, both positive. Returns `None` for fewer than three cases, for equal intensities
-/// and for numbers that are not positive.
+/// Each case is a pair `(intensity, demand)` of positive numbers. Returns `None` for fewer than three cases,
+/// if all intensities are equal, and if a number is not positive.
 pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<Demanded> {
     let sound = |x: f64| x.is_finite() && x > 0.0;
     if cases.len() < 3 || !cases.iter().all(|(x, d)| sound(*x) && sound(*d)) {

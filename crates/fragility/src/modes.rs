@@ -10,20 +10,21 @@ use crate::math::{ln, normal};
 /// s₂(x) = (1 − s₁(x)) Φ(a₂ + b₂ ln x)          share of the remaining failures, and so on
 /// ```
 ///
-/// The last mode has the remaining failures, so that shares add up to one. A share times the probability of failure is
-/// the cumulative incidence of the mode (Kalbfleisch and Prentice 2002, chapter 8). It may decrease where another mode
-/// takes over, and the incidences of all modes add up to the probability of failure.
+/// The last mode takes all remaining failures, so that the shares add up to one. The share of a mode
+/// multiplied by the probability of failure is the cumulative incidence of the mode (Kalbfleisch and Prentice
+/// 2002, chapter 8). The cumulative incidence may decrease where another mode takes over. The incidences of
+/// all modes add up to the probability of failure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shares {
-    /// `a` and `b` of every mode but the last.
+    /// Coefficients `a` and `b` of every mode except the last.
     splits: Vec<[f64; 2]>,
 }
 
 impl Shares {
     /// Fits the shares of the modes to failures by maximum likelihood.
     ///
-    /// Each failure is `(intensity, mode)`, with modes numbered from 0. Returns `None` if the failures do not determine
-    /// the shares, such as if an intensity separates two modes completely.
+    /// Each failure is a pair `(intensity, mode)`; modes are numbered from 0. Returns `None` if the failures
+    /// do not determine the shares, for example if two modes occur only on different sides of some intensity.
     pub fn fit(failures: &[(f64, usize)], modes: usize) -> Option<Self> {
         let mut splits = Vec::new();
         for mode in 0..modes.checked_sub(1)? {

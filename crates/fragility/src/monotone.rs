@@ -1,4 +1,4 @@
-//! Test of the assumption of every fragility curve that failure becomes likelier with intensity.
+//! Test of an assumption of every fragility curve: that failure becomes likelier with intensity.
 
 use std::collections::BTreeMap;
 
@@ -9,38 +9,41 @@ use crate::goodness::deviance;
 /// Range of intensities over which the observed fraction of failures decreases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fall {
-    /// Stripe with the higher fraction, at the lower intensity.
+    /// Stripe at the lower intensity, which has the higher fraction of failures.
     pub from: Stripe,
-    /// Stripe with the lower fraction, at the higher intensity.
+    /// Stripe at the higher intensity, which has the lower fraction of failures.
     pub to: Stripe,
-    /// p-value: the probability of a decrease at least as significant if failure never becomes less likely with intensity,
-    /// for independent cases.
+    /// p-value for independent cases: the probability of a decrease at least as significant as this one if
+    /// failure never becomes less likely with intensity.
     pub p: f64,
 }
 
-/// Observed fractions of failures compared with the best-fitting nondecreasing probabilities.
+/// Comparison of the observed fractions of failures with the best-fitting nondecreasing probabilities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Monotony {
     /// Failure counts, in ascending order of intensity.
     pub stripes: Vec<Stripe>,
-    /// Nondecreasing probabilities of maximum likelihood (Ayer et al. 1955), one per stripe.
+    /// Nondecreasing probabilities that maximize the likelihood, one for each stripe (Ayer et al. 1955).
     pub isotonic: Vec<f64>,
-    /// Deviance: twice the log-likelihood ratio of the observed fractions to the nondecreasing probabilities.
+    /// Deviance: twice the log-likelihood ratio between the observed fractions and the nondecreasing
+    /// probabilities.
     pub deviance: f64,
-    /// p-value: the probability of a `deviance` at least as large if failure never becomes less likely with intensity.
+    /// p-value: the probability of a `deviance` at least as large as this one if failure never becomes less
+    /// likely with intensity.
     pub p: f64,
-    /// All decreases of the fractions, significant or not: one per range in which the nondecreasing probability is constant.
+    /// All decreases of the fractions, whether significant or not. There is one for each range in which the
+    /// nondecreasing probability is constant.
     pub falls: Vec<Fall>,
 }
 
 impl Monotony {
-    /// Returns the decreases that are significant at a level, such as 0.05.
+    /// Returns the decreases that are significant at a level of significance, such as 0.05.
     pub fn significant(&self, level: f64) -> impl Iterator<Item = &Fall> {
         self.falls.iter().filter(move |fall| fall.p < level)
     }
 }
 
-/// Adjacent stripes that share one nondecreasing probability.
+/// Adjacent stripes that have the same nondecreasing probability.
 struct Pool {
     first: usize,
     last: usize,
@@ -54,7 +57,7 @@ impl Pool {
     }
 }
 
-/// Pools neighboring stripes whose fractions decrease until none do.
+/// Pools neighboring stripes until no pool has a lower fraction of failures than the pool before it.
 fn pools(stripes: &[Stripe]) -> Vec<Pool> {
     let mut pools: Vec<Pool> = vec![];
     for (i, stripe) in stripes.iter().enumerate() {
@@ -74,7 +77,8 @@ fn pools(stripes: &[Stripe]) -> Vec<Pool> {
     pools
 }
 
-/// Returns the pools, the isotonic probabilities and the deviance of each pool, zero for single stripes.
+/// Returns the pools, the isotonic probability of each stripe, and the deviance of each pool, which is zero
+/// for single stripes.
 fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
     let pools = pools(stripes);
     let mut chances = Vec::with_capacity(stripes.len());
@@ -92,10 +96,11 @@ fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
 
 /// Tests whether the fraction of failures decreases with intensity.
 ///
-/// The statistic is the likelihood ratio of the observed fractions to the isotonic (nondecreasing) probabilities. Its
-/// distribution is simulated from these probabilities. Stripes without cases are ignored.
-/// Each pool of stripes with one isotonic probability is a range in which fractions decrease. The `p` of a pool compares
-/// its part of the deviance with the largest part of any pool in each sample, which corrects for multiple comparisons.
+/// The statistic is the likelihood ratio between the observed fractions and the isotonic (nondecreasing)
+/// probabilities. Its distribution is simulated: failure counts are drawn with these probabilities. Stripes
+/// without cases are ignored. Each pool of several stripes with the same isotonic probability is a range in
+/// which fractions decrease. The `p` of a pool compares the deviance of the pool with the largest deviance of
+/// any pool in each simulated sample. This corrects for multiple comparisons.
 pub fn monotony(
     stripes: &[Stripe],
     replicates: usize,
@@ -132,9 +137,10 @@ pub fn monotony(
     Monotony { stripes: sorted, isotonic: chances, deviance: observed, p, falls }
 }
 
-/// Returns the pair of stripes between which the fraction decreases most, the one of lower intensity first.
+/// Returns the two stripes between which the fraction decreases most; the stripe of lower intensity comes
+/// first.
 ///
-/// Of several such pairs, the closest is returned.
+/// If there are several such pairs, the one with the closest stripes is returned.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {
@@ -162,9 +168,10 @@ pub struct Returned {
     pub stood: f64,
 }
 
-/// Returns the groups, such as records, that failed at one intensity and stood at a higher one.
+/// Returns the groups of cases, such as those of one record, that failed at one intensity and stood at a
+/// higher one.
 ///
-/// Each case is `(group, intensity, failed)`. No statistics are involved.
+/// Each case is a triple `(group, intensity, failed)`. No statistical test is made.
 pub fn returns(cases: impl IntoIterator<Item = (usize, f64, bool)>) -> Vec<Returned> {
     let mut bounds: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for (group, intensity, failed) in cases {

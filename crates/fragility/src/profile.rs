@@ -1,8 +1,9 @@
 //! Profile-likelihood confidence intervals.
 //!
-//! The interval of a quantity holds all values at which the log-likelihood, maximized over the other
-//! parameters, lies below its maximum by at most half the quantile of χ² with one degree of freedom
-//! (Wilks 1938). Estimates need not be normal, and intervals of probabilities stay within 0 to 1.
+//! For each value of a quantity, the log-likelihood is maximized over the other parameters. The interval
+//! contains all values for which this log-likelihood is below the overall maximum by at most half the
+//! quantile of χ² with one degree of freedom (Wilks 1938). Estimates need not be normally distributed, and
+//! intervals of probabilities remain between 0 and 1.
 
 use crate::evidence::Evidence;
 use crate::fit::{Dispersion, FitError, fit, likelihood};
@@ -10,10 +11,11 @@ use crate::likelihood::{Likelihood, Score};
 use crate::math::{chi_square_quantile_one, exp, ln, normal};
 use crate::proportion::Interval;
 
-/// Magnitude of a score beyond which the probability counts as 0 or 1: `Φ(−38)` is near the smallest representable number.
+/// Magnitude of a normal score beyond which the probability counts as 0 or 1. `Φ(−38)` is close to the
+/// smallest representable number.
 const CERTAIN: f64 = 38.0;
 
-/// Profile likelihood: the likelihood of evidence with a prescribed score at `ln x = place`.
+/// Profile likelihood: the likelihood of evidence if the score at `ln x = place` is prescribed.
 struct Profile<'a> {
     evidence: &'a [Evidence],
     dispersion: Dispersion,
@@ -42,7 +44,8 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// Returns the log-likelihood by which a score at `ln x = place` lies outside of the interval; negative inside.
+    /// Returns by how much the log-likelihood of a score at `ln x = place` falls short of the bound of the
+    /// interval; negative for scores inside the interval.
     fn excess(&self, place: f64, score: f64) -> f64 {
         let highest = match self.dispersion {
             Dispersion::Free => {
@@ -64,7 +67,7 @@ impl<'a> Profile<'a> {
     }
 }
 
-/// Returns the largest log-likelihood over slopes that are not negative.
+/// Returns the largest log-likelihood for slopes that are not negative.
 fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     match of.top([start]) {
         Some(top) if top.parameters[0] >= 0.0 => top.shape.value,
@@ -73,9 +76,10 @@ fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     }
 }
 
-/// Returns the zero of `excess` between `from`, where it is negative, and `limit`; `limit` if there is none.
+/// Returns the zero of `excess` between `from`, where `excess` is negative, and `limit`; returns `limit` if
+/// there is no zero.
 ///
-/// The zero is bracketed by steps that double, and then found by bisection.
+/// The zero is bracketed with steps of doubling length and then found by bisection.
 fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
     let beyond = |x: f64| if step > 0.0 { x >= limit } else { x <= limit };
     let (mut inside, mut stride) = (from, step);
@@ -109,7 +113,7 @@ fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
 /// Returns the interval of the probability of failure at each intensity.
 ///
 /// # Errors
-/// As [`fit`], or for a level outside 0 to 1.
+/// As for [`fit`], or if the level is not between 0 and 1.
 pub fn profile_band(
     evidence: &[Evidence],
     dispersion: Dispersion,
@@ -136,10 +140,11 @@ pub fn profile_band(
     Ok(band)
 }
 
-/// Returns the interval of the median; a bound is 0 or infinite if the data do not bound it.
+/// Returns the interval of the median. If the data do not bound it, the lower bound is 0 or the upper bound
+/// is infinite.
 ///
 /// # Errors
-/// As [`fit`], or for a level outside 0 to 1.
+/// As for [`fit`], or if the level is not between 0 and 1.
 pub fn profile_median(
     evidence: &[Evidence],
     dispersion: Dispersion,

@@ -18,7 +18,7 @@ impl Interval {
     }
 }
 
-/// Returns the score interval of a proportion (Wilson 1927); 0 to 1 without cases.
+/// Returns the score interval of a proportion (Wilson 1927); 0 to 1 if there are no cases.
 ///
 /// The interval is short, and its coverage is close to the level on average.
 pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
@@ -37,9 +37,9 @@ pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// Returns the exact interval of a proportion (Clopper and Pearson 1934); 0 to 1 without cases.
+/// Returns the exact interval of a proportion (Clopper and Pearson 1934); 0 to 1 if there are no cases.
 ///
-/// The coverage is never below the level.
+/// The coverage is never below `level`.
 pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     let tail = 0.5 * (1.0 - level);
     let (k, n) = (f64::from(failures), f64::from(cases));
@@ -49,14 +49,16 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// Returns the largest proportion of a population that a sample of `count` observations may miss entirely.
+/// Returns the largest proportion of a population that a sample of `count` observations may plausibly miss.
 ///
-/// With that proportion, the probability that no observation shows it is one tail of an interval of `level`.
+/// For that proportion, the probability that no observation belongs to it equals one tail of an interval of
+/// the confidence `level`.
 pub fn unobserved(count: usize, level: f64) -> f64 {
     if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
 }
 
-/// Returns the one-sided upper confidence bound of a proportion (Clopper and Pearson 1934); 1 without cases.
+/// Returns the one-sided upper confidence bound of a proportion (Clopper and Pearson 1934); 1 if there are no
+/// cases.
 ///
 /// The coverage is never below `probability`.
 pub fn at_most(failures: u32, cases: u32, probability: f64) -> f64 {
@@ -93,7 +95,8 @@ mod tests {
         assert_eq!(wilson(0, 0, 0.95), Interval { low: 0.0, high: 1.0 });
     }
 
-    /// Returns the probability of at least `k` failures of `n`.
+    /// Returns the probability of at least `k` failures in `n` cases, each of which fails with the
+    /// probability `p`.
     fn at_least(k: u32, n: u32, p: f64) -> f64 {
         (k..=n)
             .map(|j| {

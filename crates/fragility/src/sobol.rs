@@ -2,14 +2,14 @@
 //!
 //! The direction numbers are those of Joe and Kuo (2008).
 
-/// Largest number of dimensions without padding.
+/// Maximum number of dimensions without padding.
 pub const DIMENSIONS: usize = 21;
 
-/// Number of cells into which every coordinate is divided.
+/// Number of cells into which the range of every coordinate is divided.
 const CELLS: f64 = 4_294_967_296.0;
 
-/// Degree and coefficients of a primitive polynomial, and the initial direction numbers, from the second dimension on:
-/// the first lines of `new-joe-kuo-6.21201`.
+/// For each dimension from the second on: degree and coefficients of a primitive polynomial, and the initial
+/// direction numbers. These are the first lines of `new-joe-kuo-6.21201`.
 const TABLE: [(u32, u32, &[u32]); DIMENSIONS - 1] = [
     (1, 0, &[1]),
     (2, 1, &[1, 3]),
@@ -33,7 +33,7 @@ const TABLE: [(u32, u32, &[u32]); DIMENSIONS - 1] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// Returns the 32 direction numbers of a dimension; dimensions count from 0.
+/// Returns the 32 direction numbers of a dimension; dimensions are counted from 0.
 fn directions(dimension: usize) -> [u32; 32] {
     let mut v = [0_u32; 32];
     let Some(row) = dimension.checked_sub(1) else {
@@ -59,7 +59,7 @@ fn directions(dimension: usize) -> [u32; 32] {
     v
 }
 
-/// One dimension of the Sobol' sequence.
+/// One dimension of the Sobol' sequence, with a digital shift.
 #[derive(Clone, Debug)]
 pub struct Axis {
     directions: [u32; 32],
@@ -67,7 +67,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Creates a dimension, counted from 0, with a digital shift that preserves the nets (Owen 1995).
+    /// Creates a dimension, counted from 0, with a digital shift, which preserves the net property (Owen
+    /// 1995).
     pub fn new(dimension: usize, shift: u32) -> Self {
         Self { directions: directions(dimension), shift }
     }
@@ -79,20 +80,21 @@ impl Axis {
             .fold(self.shift, |digits, bit| digits ^ self.directions[bit])
     }
 
-    /// Returns the coordinate of a point, counted from 0 in the order of Antonov and Saleev.
+    /// Returns one coordinate of a point; points are counted from 0 in the order of Antonov and Saleev.
     ///
-    /// The coordinate is the middle of a cell of width 2⁻³².
+    /// The coordinate is the center of a cell of width 2⁻³².
     pub fn at(&self, point: u32) -> f64 {
         (f64::from(self.digits(point)) + 0.5) / CELLS
     }
 }
 
-/// Returns the coordinate of a point, counted from 0, in any dimension.
+/// Returns one coordinate of a point; points and dimensions are counted from 0, and the number of dimensions
+/// is unlimited.
 ///
-/// Dimensions are divided into groups of [`DIMENSIONS`]. Every group takes its points in an order of its own, and every
-/// dimension scrambles its digits (Owen 1995, by the hash of Burley 2020), so that each group is a Sobol' net and
-/// groups are independent of each other.
-/// Of the first 2ᵐ points, one lies in each of 2ᵐ equal parts of every dimension.
+/// Dimensions are divided into groups of [`DIMENSIONS`]. Every group uses the points in a different order,
+/// and in every dimension the digits are scrambled (Owen 1995, with the hash of Burley 2020). Each group is
+/// therefore a Sobol' net, and groups are independent of each other. If a dimension is divided into 2ᵐ equal
+/// parts, each part contains one of the first 2ᵐ points.
 pub fn padded(dimension: usize, point: u32, seed: u64) -> f64 {
     let group = (dimension / DIMENSIONS) as u64;
     let order = mixed(seed ^ mixed(2 * group + 1).rotate_left(32));
@@ -102,7 +104,7 @@ pub fn padded(dimension: usize, point: u32, seed: u64) -> f64 {
     (f64::from(nested(axis.digits(nested(point, order)), digits)) + 0.5) / CELLS
 }
 
-/// Returns a hash of a seed (`SplitMix64` of Steele, Lea and Flood 2014).
+/// Returns the hash of a seed (`SplitMix64` by Steele, Lea and Flood 2014).
 fn mixed(seed: u64) -> u64 {
     let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -110,7 +112,7 @@ fn mixed(seed: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Scrambles digits: each is flipped or not depending on the digits before it and a seed.
+/// Scrambles binary digits: a seed and the digits before a digit determine whether the digit is flipped.
 fn nested(digits: u32, seed: u32) -> u32 {
     // In the reversed word a digit depends on those below it, as in sums and products.
     let mut x = digits.reverse_bits().wrapping_add(seed);
@@ -147,7 +149,7 @@ mod tests {
         assert_ne!(padded(3, 5, 7), padded(3, 5, 8));
     }
 
-    /// Returns the coordinate as a cell index, without the half cell of the midpoint.
+    /// Returns the index of the cell whose center is the coordinate of a point.
     fn cell(dimension: usize, point: u32) -> f64 {
         Axis::new(dimension, 0).at(point) - 0.5 / 4_294_967_296.0
     }

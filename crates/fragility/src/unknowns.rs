@@ -1,45 +1,47 @@
-//! Share of failures as a function of constants that nobody has measured.
+//! Share of failures as a function of constants that have not been measured.
 
 use crate::math::{exp, ln, normal, normal_quantile, quantile};
 use crate::proportion::Interval;
 use crate::sobol;
 
-/// Fewest trials to which a [`Conditional`] share is fitted.
+/// Minimum number of trials to which a [`Conditional`] share is fitted.
 pub const FEWEST_TRIALS: usize = 16;
 
-/// Discarded and kept samples of the posterior distribution.
+/// Number of discarded samples and number of kept samples of the posterior distribution.
 const SAMPLES: [usize; 2] = [400, 3000];
 
-/// Degrees of freedom and scale of Student's t, the prior distribution of every coefficient but the first.
+/// Degrees of freedom and scale of Student's t distribution, which is the prior distribution of every
+/// coefficient except the first.
 ///
-/// With a scale of 0.6 a typical constant moves the share from 16 to 84 % over ±1.6 of its standard deviations; the heavy tail
-/// permits a constant that decides alone.
+/// With a scale of 0.6, the share changes from 16 to 84 % when a typical constant changes from −1.6 to +1.6
+/// of its standard deviations. The heavy tail of the distribution permits a single constant to decide the
+/// result.
 const PRIOR: [f64; 2] = [3.0, 0.6];
 
-/// Standard deviation of the normal prior distribution of the first coefficient.
+/// Standard deviation of the first coefficient in its prior distribution, which is normal.
 const PRIOR_MIDDLE: f64 = 2.5;
 
-/// One trial under drawn constants.
+/// One trial: a run with randomly drawn constants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// Standard normal deviates of the unknown constants.
+    /// Values of the unknown constants, as standard normal deviates.
     pub deviates: Vec<f64>,
-    /// Half of the trials to which this one belongs, where halves differ on purpose, such as in their component of the
-    /// motion.
+    /// `true` if the trial belongs to the second half of the trials. The halves may differ on purpose, for
+    /// example in the component of the motion.
     pub second_half: bool,
-    /// `true` if it failed.
+    /// `true` if the structure failed in the trial.
     pub failed: bool,
 }
 
-/// Share of failures under given constants, with the uncertainty of a finite number of trials: samples of the posterior
-/// distribution of a probit regression.
+/// Share of failures for given constants. The uncertainty due to a finite number of trials is represented by
+/// samples of the posterior distribution of a probit regression.
 ///
 /// ```text
 /// share(z) = ½ [Φ(b + g + Σ aⱼ zⱼ) + Φ(b − g + Σ aⱼ zⱼ)]
 /// ```
 ///
-/// `z` are the standard normal deviates of the constants, and `±g` distinguishes the halves of the trials.
-/// The posterior distribution is sampled as by Albert and Chib 1993.
+/// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the trials.
+/// The posterior distribution is sampled by the method of Albert and Chib (1993).
 #[derive(Clone, Debug)]
 pub struct Conditional {
     /// Coefficients `b`, `g`, `a₁`, … of each sample.
@@ -50,20 +52,22 @@ pub struct Conditional {
 /// Influence of one constant on the share of failures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Influence {
-    /// Share of failures with the constant at its 5 % fractile and at its 95 % fractile, averaged over all others.
+    /// Shares of failures with the constant at its 5 % fractile and at its 95 % fractile, each averaged over
+    /// all other constants.
     pub shares: [f64; 2],
-    /// Interval of the difference of these, the second less the first.
+    /// Interval of the difference of the two shares: the second minus the first.
     pub difference: Interval,
-    /// Fraction of the variance of the share that is left if all other constants are known, including interactions.
+    /// Total index: the fraction of the variance of the share that remains if all other constants are known,
+    /// including interactions.
     pub total: f64,
-    /// Width of the range of the share that is left on average if this constant is known exactly.
+    /// Mean width of the range of the share that remains if this constant is known exactly.
     pub width_if_known: f64,
 }
 
-/// Fits the share of failures as a function of the unknown constants; `None` for fewer than [`FEWEST_TRIALS`] trials,
-/// without constants, or if trials differ in the number of their constants.
+/// Fits the share of failures as a function of the unknown constants. Returns `None` if there are fewer than
+/// [`FEWEST_TRIALS`] trials, if there are no constants, or if trials differ in the number of their constants.
 ///
-/// `uniform` returns random numbers from 0, inclusive, to 1.
+/// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
 pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
     // Logarithms of it are finite.
     let mut uniform = || 1.0 - uniform();
@@ -129,20 +133,22 @@ pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option
 }
 
 impl Conditional {
-    /// Returns the range of the share that the unknown constants leave: a fraction `level` of the posterior
-    /// distribution of the share under constants drawn from their own distributions, rounded outward to hundredths.
+    /// Returns the range in which the share lies with the probability `level`, given that the constants are
+    /// unknown. The constants are drawn from their own distributions, and the share from its posterior
+    /// distribution. The ends are rounded outward to hundredths.
     pub fn range(&self, level: f64) -> Interval {
         let Interval { low, high } = self.range_given(level, None);
         Interval { low: (100.0 * low).floor() / 100.0, high: (100.0 * high).ceil() / 100.0 }
     }
 
-    /// Returns the share with all constants at their medians, as the mean of the posterior distribution.
+    /// Returns the posterior mean of the share with all constants at their medians.
     pub fn at_medians(&self) -> f64 {
         let none = vec![0.0; self.unknowns];
         mean(self.samples.iter().map(|sample| share(sample, &none)))
     }
 
-    /// Returns the influence of every constant; the differences of shares have intervals at the given level.
+    /// Returns the influence of every constant. The intervals of the differences of shares have the given
+    /// confidence level.
     pub fn influences(&self, level: f64) -> Vec<Influence> {
         let totals = self.totals();
         let of = |(unknown, total): (usize, f64)| {
@@ -164,14 +170,16 @@ impl Conditional {
         totals.into_iter().enumerate().map(of).collect()
     }
 
-    /// Returns the mean share with one constant at a deviate and all others unknown, and its interval.
+    /// Returns the mean share, and its interval, with one constant fixed at a given deviate and all other
+    /// constants unknown.
     pub fn at(&self, unknown: usize, deviate: f64, level: f64) -> (f64, Interval) {
         let mut shares = self.shares_at(unknown, normal(deviate));
         shares.sort_by(f64::total_cmp);
         (mean(shares.iter().copied()), ends(&shares, level))
     }
 
-    /// Returns the share in every sample with one constant at a fractile, averaged over all others.
+    /// Returns the share in every posterior sample with one constant at a fractile, averaged over all other
+    /// constants.
     fn shares_at(&self, unknown: usize, fractile: f64) -> Vec<f64> {
         let deviate = normal_quantile(fractile);
         let of = |sample: &Vec<f64>| {
@@ -200,7 +208,7 @@ impl Conditional {
         ends(&shares, level)
     }
 
-    /// Returns the total indices of the mean share (Jansen 1999).
+    /// Returns the total index of every constant for the posterior mean of the share (Jansen 1999).
     fn totals(&self) -> Vec<f64> {
         const POINTS: u32 = 128;
         let thinned = self.samples.len().div_ceil(64);
@@ -255,7 +263,7 @@ fn deviate(uniform: &mut impl FnMut() -> f64) -> f64 {
     (-2.0 * ln(uniform())).sqrt() * libm::cos(std::f64::consts::TAU * uniform())
 }
 
-/// Draws a standard normal deviate above a bound (Robert 1995).
+/// Draws a standard normal deviate that exceeds a bound (Robert 1995).
 fn above(bound: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
     if bound < 0.5 {
         loop {
@@ -274,7 +282,8 @@ fn above(bound: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
     }
 }
 
-/// Draws from the normal distribution of a precision `P` and of the mean `P⁻¹ s`, by Cholesky's factor of `P`.
+/// Draws from the normal distribution with the precision matrix `P` and the mean `P⁻¹ s`, by Cholesky
+/// factorization of `P`.
 fn sampled(
     mut precision: Vec<Vec<f64>>,
     sums: &[f64],

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-/// Period (s) below which the correlation model uses another formula.
+/// Period (s) below which the correlation model uses a different formula.
 const SHORT: f64 = 0.109;
 
-/// Returns the correlation of the residuals of ln Sa at two periods (s), for one horizontal direction.
+/// Returns the correlation between the residuals of ln Sa at two periods (s), for one horizontal component.
 ///
 /// The model is that of Baker and Jayaram (2008, Earthquake Spectra 24:299-317), valid from 0.01 to 10 s.
 pub fn spectral_correlation(one: f64, other: f64) -> f64 {

@@ -1,43 +1,47 @@
-//! Greedy selection: one record for each simulated spectrum, then exchanges while they improve the set.
+//! Greedy selection: one record for each simulated spectrum, followed by exchanges as long as they improve
+//! the set.
 
 use barrelstack_motion::{MotionError, Random};
 
 use crate::target::SelectionTarget;
 
-/// Number of trials: each selects a set of records for other simulated spectra, and the best set is kept.
+/// Number of trials. Each trial selects a set of records for different simulated spectra; the best set is
+/// kept.
 const TRIALS: usize = 5;
-/// Weight of the error of the standard deviation, relative to that of the mean.
+/// Weight of the error of the standard deviation, relative to the weight of the error of the mean.
 const SPREAD_WEIGHT: f64 = 2.0;
-/// Weight of the error of the standard deviation for a target without spread, which no set of records can reach.
+/// Weight of the error of the standard deviation for a target without spread, which no set of records can
+/// match exactly.
 const NO_SPREAD_WEIGHT: f64 = 0.1;
-/// Largest number of rounds of exchanges; they end earlier when no exchange reduces the error.
+/// Maximum number of rounds of exchanges. Rounds end earlier if no exchange reduces the error.
 const ROUNDS: usize = 20;
 
-/// A record available for selection.
+/// A record that is available for selection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// Name of the record in messages.
     pub name: String,
-    /// Pseudo-accelerations (m/s²) at the target's periods.
+    /// Pseudo-accelerations (m/s²) of the record at the periods of the target.
     pub spectrum: Vec<f64>,
-    /// Group of the record, such as its earthquake; at most [`Choosing::most_of_group`] records of one group are selected.
+    /// Group of the record, such as its earthquake. At most [`Choosing::most_of_group`] records of one group
+    /// are selected.
     pub group: String,
 }
 
-/// Settings of a selection: size of the set and limits.
+/// Settings of a selection: size of the set, and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choosing {
-    /// Number of records to select, at least 2.
+    /// Number of records to select, which must be at least 2.
     pub count: usize,
-    /// Smallest and largest scale factor of a record.
+    /// Minimum and maximum scale factor of a record.
     pub scale: [f64; 2],
-    /// Largest number of candidates of one group; `None` for no limit.
+    /// Maximum number of selected records from one group; `None` for no limit.
     pub most_of_group: Option<usize>,
     /// Seed of the simulated spectra.
     pub seed: u64,
 }
 
-/// Selected record with its scale factor.
+/// A selected record with its scale factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
     /// Index of the record among the candidates.
@@ -46,30 +50,30 @@ pub struct Chosen {
     pub scale: f64,
 }
 
-/// Selected set of records and its fit to the target.
+/// Selected set of records, and how well it matches the target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
     /// Selected records, in the order of the candidates.
     pub chosen: Vec<Chosen>,
-    /// Mean of ln Sa of the set at each period.
+    /// Mean of ln Sa over the set, at each period.
     pub mean: Vec<f64>,
-    /// Standard deviation of ln Sa of the set, with `n − 1`.
+    /// Standard deviation of ln Sa over the set, at each period, with the divisor `n − 1`.
     pub deviation: Vec<f64>,
-    /// Number of candidates that reach the mean of the target with a scale factor within the limits.
+    /// Number of candidates that match the mean of the target with a scale factor within the limits.
     pub eligible: usize,
-    /// Number of rounds of exchanges that were made.
+    /// Number of rounds of exchanges.
     pub rounds: usize,
 }
 
 impl Selection {
-    /// Returns the largest relative error of the median over the periods.
+    /// Returns the maximum over all periods of the relative error of the median.
     pub fn median_error(&self, target: &SelectionTarget) -> f64 {
         let errors = self.mean.iter().zip(target.mean());
         errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
     }
 
-    /// Returns the largest relative error of the standard deviation over the periods at which the target has a spread;
-    /// the largest absolute error if the target has no spread.
+    /// Returns the maximum relative error of the standard deviation, over the periods at which the target has
+    /// a spread. If the target has no spread, returns the maximum absolute error.
     pub fn deviation_error(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let pairs = self.deviation.iter().zip(target.deviation());
@@ -80,8 +84,8 @@ impl Selection {
         })
     }
 
-    /// Returns the error by which sets are compared, in which an error of the median counts twice as much as one of the
-    /// standard deviation.
+    /// Returns the error by which sets are compared. An error of the median counts twice as much as an error
+    /// of the standard deviation.
     fn worst(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let deviation = if spread { 0.5 * self.deviation_error(target) } else { 0.0 };
@@ -92,16 +96,16 @@ impl Selection {
 /// Standard deviation of ln Sa below which a relative error is meaningless.
 const SMALLEST: f64 = 0.01;
 
-/// Selects records whose spectra have the target's mean and spread (Jayaram, Lin and Baker 2011,
-/// Earthquake Spectra 27:797-815).
+/// Selects records whose spectra together have the mean and the spread of the target (Jayaram, Lin and Baker
+/// 2011, Earthquake Spectra 27:797-815).
 ///
-/// If the target is conditional, every record is scaled to the target at the condition's period; otherwise to the mean
-/// of ln Sa of its simulated spectrum.
-/// The same target, candidates and settings always give the same set; of equally good candidates the first is taken.
+/// If the target is conditional, every record is scaled to the target at the period of the condition.
+/// Otherwise every record is scaled to the mean over the periods of ln Sa of its simulated spectrum. The same
+/// target, candidates and settings always give the same set; of equally good candidates, the first is chosen.
 ///
 /// # Errors
-/// If the settings are out of range, a candidate has another number of periods than the target, or too few
-/// candidates lie within the limits.
+/// If the settings are out of range, if the number of periods of a candidate differs from that of the target,
+/// or if too few candidates lie within the limits.
 pub fn select(
     target: &SelectionTarget,
     candidates: &[Candidate],
@@ -163,7 +167,7 @@ fn check(
         MotionError::require(
             values.len() == periods,
             format!("spectrum of {name}"),
-            format!("{periods} accelerations, one to a period of the target"),
+            format!("{periods} accelerations, one for each period of the target"),
             values.len(),
         )?;
         if let Some(k) = values.iter().position(|sa| sa.is_nan() || *sa <= 0.0) {
@@ -177,23 +181,24 @@ fn check(
     Ok(())
 }
 
-/// Candidate before scaling.
+/// A candidate before scaling.
 struct Row {
     candidate: usize,
     /// ln Sa at each period.
     spectrum: Vec<f64>,
-    /// Level that scaling matches to the target: ln Sa at the condition's period, or the mean of ln Sa.
+    /// Level that is scaled to the target: ln Sa at the period of the condition, or the mean of ln Sa over
+    /// the periods.
     level: f64,
     group: usize,
 }
 
-/// All candidates before scaling, with the limits of scaling.
+/// All candidates before scaling, and the limits of scaling.
 struct Pool {
     rows: Vec<Row>,
     groups: usize,
-    /// Index of the condition's period.
+    /// Index of the period of the condition; `None` if the target is not conditional.
     given: Option<usize>,
-    /// Logarithms of the smallest and the largest scale factor.
+    /// Logarithms of the minimum and the maximum scale factor.
     limits: [f64; 2],
     most: usize,
 }
@@ -229,13 +234,15 @@ impl Pool {
         (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
     }
 
-    /// Returns the number of candidates that reach the target's mean with a scale factor within the limits.
+    /// Returns the number of candidates that match the mean of the target with a scale factor within the
+    /// limits.
     fn eligible(&self, target: &SelectionTarget) -> usize {
         let level = self.level(target.mean());
         (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()
     }
 
-    /// Returns the candidate with the smallest squared distance from a spectrum among those that may join the set.
+    /// Returns, among the candidates that may join the set, the one with the smallest squared distance from a
+    /// spectrum.
     fn nearest(&self, spectrum: &[f64], level: f64, set: &Set<'_>) -> Option<usize> {
         let mut best = (f64::INFINITY, None);
         for (k, row) in self.rows.iter().enumerate() {
@@ -253,17 +260,19 @@ impl Pool {
     }
 }
 
-/// Set of records during selection, with the sums from which its moments follow.
+/// Set of records during selection, with the sums from which its mean and standard deviation are computed.
 struct Set<'a> {
     target: &'a SelectionTarget,
-    /// Rows of the pool, each with the level to which it is scaled.
+    /// Members of the set: for each, the index of a row of the pool, and the level to which the row is
+    /// scaled.
     members: Vec<(usize, f64)>,
-    /// Sum over the members of ln Sa minus the target's mean, at each period; the difference preserves digits.
+    /// Sum over the members of ln Sa minus the mean of the target, at each period. The mean is subtracted to
+    /// preserve digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.
     weight: f64,
-    /// `true` to minimize the largest error rather than the sum of squares.
+    /// `true` to minimize the largest error rather than the sum of squared errors.
     largest: bool,
 }
 
@@ -289,7 +298,7 @@ impl<'a> Set<'a> {
         }
     }
 
-    /// `true` if a row may join the set, given that the member at `leaving` leaves it.
+    /// `true` if a row may join the set when the member at the index `leaving` leaves it.
     fn takes(&self, pool: &Pool, row: usize, leaving: Option<usize>) -> bool {
         let group = pool.rows[row].group;
         let mut same = 0;
@@ -305,10 +314,11 @@ impl<'a> Set<'a> {
         same < pool.most
     }
 
-    /// Returns the error that exchanges minimize: the weighted sum of squared errors of mean and standard deviation.
+    /// Returns the error that exchanges minimize: the weighted sum of the squared errors of mean and standard
+    /// deviation.
     ///
-    /// To minimize the largest error, it is the sum of their eighth powers, with the standard deviation relative to the
-    /// target.
+    /// To minimize the largest error, the function returns the sum of the eighth powers of these errors, in
+    /// which the error of the standard deviation is relative to that of the target.
     fn error(&self) -> f64 {
         (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
     }
@@ -325,8 +335,8 @@ impl<'a> Set<'a> {
         eighth_power(100.0 * mean) + eighth_power(spread)
     }
 
-    /// Exchanges each member for the candidate that lowers the error most, until no exchange helps or [`ROUNDS`] are made;
-    /// returns the number of rounds.
+    /// Exchanges each member for the candidate that reduces the error most. Stops when no exchange reduces
+    /// the error or after [`ROUNDS`] rounds; returns the number of rounds.
     fn improve(&mut self, pool: &Pool) -> usize {
         for round in 1..=ROUNDS {
             let mut changed = false;
@@ -356,7 +366,8 @@ impl<'a> Set<'a> {
         ROUNDS
     }
 
-    /// Returns the error of the set with one more spectrum; the sum stops early once it exceeds `limit`.
+    /// Returns the error of the set with an additional spectrum. The sum over the periods stops as soon as it
+    /// exceeds `limit`.
     fn error_with(&self, spectrum: &[f64], shift: f64, limit: f64) -> f64 {
         let mut error = 0.0;
         for (k, (value, mean)) in spectrum.iter().zip(self.target.mean()).enumerate() {
@@ -380,7 +391,7 @@ impl<'a> Set<'a> {
         Selection { chosen, mean, deviation, eligible: pool.eligible(self.target), rounds }
     }
 
-    /// Returns mean and standard deviation of ln Sa at each period.
+    /// Returns the mean and the standard deviation of ln Sa over the set, at each period.
     fn moments(&self) -> (Vec<f64>, Vec<f64>) {
         let of = |(sum, squares): (&f64, &f64)| self.moments_of(*sum, *squares);
         let (mut mean, spread): (Vec<f64>, _) = self.sums.iter().zip(&self.squares).map(of).unzip();
@@ -390,7 +401,7 @@ impl<'a> Set<'a> {
         (mean, spread)
     }
 
-    /// Returns mean and standard deviation, with `n − 1`, from sums over the whole set.
+    /// Returns the mean and the standard deviation, with the divisor `n − 1`, from sums over the whole set.
     fn moments_of(&self, sum: f64, squares: f64) -> (f64, f64) {
         let n = self.members.len() as f64;
         let mean = sum / n;

@@ -1,4 +1,4 @@
-//! Selection of ground-motion records whose spectra match a target mean and spread.
+//! Selection of ground-motion records whose spectra together match a target mean and spread.
 //!
 //! ```
 //! use barrelstack_selection::{Candidate, Choosing, Condition, SelectionTarget, select};

@@ -1,46 +1,47 @@
-//! Target of a selection: mean and spread of ln Sa, optionally conditional on Sa at one period.
+//! Target of a selection: mean and spread of ln Sa, optionally conditional on the value of Sa at one period.
 
 use barrelstack_motion::{MotionError, Random, TargetSpectrum};
 
 use crate::correlation::spectral_correlation;
 
-/// Periods (s) at which a code spectrum is matched.
+/// Periods (s) at which records are matched to a code spectrum.
 pub const PERIODS: [f64; 22] = [
     0.05, 0.075, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0, 1.25, 1.5, 2.0,
     2.5, 3.0, 4.0, 5.0, 7.5,
 ];
 
-/// Condition of a conditional spectrum: the spectral acceleration at one period.
+/// Condition of a conditional spectrum: a spectral acceleration at one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Period (s); must be one of the target's periods.
+    /// Period (s), which must be one of the periods of the target.
     pub period: f64,
-    /// Pseudo-acceleration at the period (m/s²).
+    /// Pseudo-acceleration (m/s²) at the period.
     pub acceleration: f64,
 }
 
 impl Condition {
-    /// Creates a condition whose ln Sa lies `epsilon` standard deviations above that of the median Sa (m/s²).
+    /// Creates a condition in which ln Sa is `epsilon` standard deviations above the logarithm of the median
+    /// (m/s²).
     pub fn at_epsilon(period: f64, median: f64, deviation: f64, epsilon: f64) -> Self {
         Self { period, acceleration: median * libm::exp(deviation * epsilon) }
     }
 }
 
-/// Mean, standard deviation and covariance of the logarithm of spectral accelerations at a list of periods.
+/// Mean, standard deviation and covariance of ln Sa at a list of periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelectionTarget {
     periods: Vec<f64>,
-    /// Mean of ln Sa, Sa in m/s².
+    /// Mean of ln Sa at each period; Sa is in m/s².
     mean: Vec<f64>,
     deviation: Vec<f64>,
-    /// Covariance of ln Sa, row by row.
+    /// Covariance matrix of ln Sa, row by row.
     covariance: Vec<f64>,
     condition: Option<Condition>,
 }
 
 impl SelectionTarget {
-    /// Creates a target from the medians (m/s²) and standard deviations of ln Sa of a ground-motion model at ascending
-    /// periods (s).
+    /// Creates a target from the medians of Sa (m/s²) and the standard deviations of ln Sa that a
+    /// ground-motion model gives at ascending periods (s).
     ///
     /// With a condition, the target is the conditional spectrum (Baker 2011, Journal of Structural Engineering
     /// 137:322-331):
@@ -52,8 +53,8 @@ impl SelectionTarget {
     /// ```
     ///
     /// # Errors
-    /// If there are fewer than two periods, they do not ascend, a number is out of range, or the
-    /// condition's period is not among them.
+    /// If there are fewer than two periods, if they are not in ascending order, if a number is out of range,
+    /// or if the period of the condition is not among them.
     pub fn new(
         periods: &[f64],
         median: &[f64],
@@ -84,7 +85,7 @@ impl SelectionTarget {
             MotionError::require_positive("given acceleration (m/s2)", given.acceleration)?;
             let at = periods.iter().position(|t| *t == given.period).ok_or_else(|| {
                 let listed: Vec<String> = periods.iter().map(f64::to_string).collect();
-                let expected = format!("one of the target's, {}", listed.join(", "));
+                let expected = format!("one of the periods of the target, {}", listed.join(", "));
                 MotionError::parameter("period of the condition (s)", expected, given.period)
             })?;
             MotionError::require_positive("standard deviation at the condition", deviation[at])?;
@@ -106,10 +107,10 @@ impl SelectionTarget {
         Ok(Self { periods: periods.to_vec(), mean, deviation, covariance, condition })
     }
 
-    /// Creates a target that has the values of a spectrum and no spread.
+    /// Creates a target without spread whose values are those of a spectrum.
     ///
     /// # Errors
-    /// As [`SelectionTarget::new`].
+    /// As for [`SelectionTarget::new`].
     pub fn of_spectrum(spectrum: &TargetSpectrum, periods: &[f64]) -> Result<Self, MotionError> {
         spectrum.check()?;
         let median: Vec<f64> = periods.iter().map(|t| spectrum.acceleration(*t)).collect();
@@ -121,7 +122,7 @@ impl SelectionTarget {
         &self.periods
     }
 
-    /// Returns the mean of ln Sa at each period, Sa in m/s².
+    /// Returns the mean of ln Sa at each period; Sa is in m/s².
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
@@ -131,13 +132,13 @@ impl SelectionTarget {
         &self.deviation
     }
 
-    /// Returns the condition and the index of its period.
+    /// Returns the condition and the index of its period; `None` if the target is not conditional.
     pub fn condition(&self) -> Option<(usize, Condition)> {
         let given = self.condition?;
         Some((self.periods.iter().position(|t| *t == given.period)?, given))
     }
 
-    /// Draws spectra (ln Sa) from the target's normal distribution.
+    /// Draws spectra (ln Sa) from the normal distribution of the target.
     pub(super) fn draw(&self, count: usize, random: &mut Random) -> Vec<Vec<f64>> {
         let n = self.periods.len();
         let root = self.cholesky();
@@ -149,10 +150,10 @@ impl SelectionTarget {
         (0..count).map(|_| one(random)).collect()
     }
 
-    /// Returns the lower triangular Cholesky factor `L` of the covariance, which is `L Lᵀ`.
+    /// Returns the lower triangular Cholesky factor `L` of the covariance matrix `L Lᵀ`.
     ///
-    /// The column of the condition's period, and of a period that depends on those before, is zero. Published
-    /// correlations are rounded, so small negative pivots occur.
+    /// The columns of the period of the condition, and of any period that is determined by those before it,
+    /// are zero. Published correlations are rounded, so small negative pivots occur.
     fn cholesky(&self) -> Vec<f64> {
         let n = self.periods.len();
         let mut root = vec![0.0; n * n];

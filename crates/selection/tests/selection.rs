@@ -208,7 +208,7 @@ fn what_cannot_be_chosen_is_refused_with_the_numbers() {
     assert_eq!(
         message,
         format!(
-            "spectrum of record 7: expected {n} accelerations, one to a period of the target, found {found}"
+            "spectrum of record 7: expected {n} accelerations, one for each period of the target, found {found}"
         )
     );
     let given = Some(Condition { period: 0.31, acceleration: 1.0 });
@@ -217,6 +217,6 @@ fn what_cannot_be_chosen_is_refused_with_the_numbers() {
         message
             .unwrap_err()
             .to_string()
-            .contains("expected one of the target's, 0.1, 1, found 0.31")
+            .contains("expected one of the periods of the target, 0.1, 1, found 0.31")
     );
 }

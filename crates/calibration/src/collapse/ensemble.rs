@@ -1,4 +1,4 @@
-//! Simulated collapses, reduced to the quantities that an observer records.
+//! Simulated collapses, reduced to the quantities that an observer of a test records.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,14 +10,15 @@ use barrelstack_motion::Random;
 
 use super::observed::{Mode, Time};
 
-/// What an observer could record of a simulated case: mode and times of the events.
+/// Course of a simulated case, as an observer of a test could record it: the mode of collapse and the times
+/// of the events.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Course {
     /// Mode of collapse, or that the stack stands.
     pub(super) mode: Mode,
     /// Time at which the first body left its seat.
     pub(super) loss: Time,
-    /// Name of each barrel and the time at which it had fallen, in the order of the bodies.
+    /// Name of each barrel and the time at which it had fallen; the barrels are in the order of the bodies.
     pub(super) falls: Vec<(String, Time)>,
 }
 
@@ -47,7 +48,8 @@ impl Course {
         fallen.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// Returns the time at which a barrel had fallen; `None` if there is no such barrel.
+    /// Returns the time at which the barrel with the name `barrel` had fallen; `None` if there is no such
+    /// barrel.
     pub(super) fn fall(&self, barrel: &str) -> Option<Time> {
         self.falls.iter().find(|(name, _)| name == barrel).map(|(_, time)| *time)
     }
@@ -55,7 +57,8 @@ impl Course {
 
 /// Simulates all cases on all cores and returns their courses in order; `None` for a case that cannot be simulated.
 ///
-/// `done` is called repeatedly with the number of completed cases and may cancel the rest; the result is then `None`.
+/// `done` is called repeatedly with the number of completed cases and may cancel the remaining ones; the
+/// function then returns `None`.
 pub(super) fn simulate(
     cases: Vec<Prepared>,
     lanes: Option<Width>,
@@ -68,7 +71,8 @@ pub(super) fn simulate(
     Some(results.iter().map(Course::of).collect())
 }
 
-/// Returns a scenario with random offsets of every rack and barrel, since no two stacks are built alike.
+/// Returns a copy of the scenario with random offsets of every rack and barrel, since no two stacks are built
+/// alike.
 ///
 /// The offsets are normally distributed with the standard deviation `scatter` (m).
 pub(super) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> Scenario {

@@ -7,17 +7,18 @@ use barrelstack_dynamics::math;
 use super::ensemble::Course;
 use super::observed::{Observed, Time};
 
-/// Errors of observations relative to the course of a correct simulation.
+/// Assumed errors of observations, compared with the course of a correct simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// Standard deviation (s) of a time read from a video.
     pub reading: f64,
-    /// Increase of that standard deviation (s) per second after the first loss of seat.
+    /// Increase of the standard deviation of a time (s) for every second after the first loss of seat.
     ///
     /// The course of a collapse departs more and more from that of any model: in a stack of eight barrels, falls two
     /// seconds after the loss of seat shift by half a second when one contact parameter changes by 10 %.
     pub growth: f64,
-    /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that is not modeled.
+    /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that the model
+    /// does not contain.
     pub other: f64,
 }
 
@@ -30,10 +31,10 @@ impl Default for Errors {
 impl Errors {
     /// Returns the log-likelihood of an observation.
     ///
-    /// With ε = `other`, a mode or barrel has the probability 1 − ε if it agrees with the simulated one, else ε. An
-    /// observed time t has, given the simulated time s, the density
-    /// (1 − ε) N(t; s, σ²) + ε/T, with σ = reading + growth · (time since the loss of seat) and T the
-    /// duration of observation.
+    /// Let ε = `other`. An observed mode or barrel has the probability 1 − ε if it agrees with the simulated
+    /// one, and ε otherwise. For a simulated time s, an observed time t has the probability density (1 − ε)
+    /// N(t; s, σ²) + ε/T, where σ = reading + growth · (time since the loss of seat) and T is the duration of
+    /// the observation.
     pub(super) fn log_likelihood(&self, observed: &Observed, course: &Course) -> f64 {
         let label = |same: bool| math::log(if same { 1.0 - self.other } else { self.other });
         let mut sum = observed.mode.map_or(0.0, |mode| label(mode == course.mode));

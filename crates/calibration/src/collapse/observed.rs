@@ -1,4 +1,4 @@
-//! Observations of collapses: one row per test, from a video or from notes.
+//! Observations of collapses from videos or notes: one row per test.
 
 use barrelstack::outcome::CollapseMode;
 use barrelstack::scenario::Dimension;
@@ -12,16 +12,16 @@ const STANDS: &str = "stands";
 /// Suffix after the name of a barrel in the header of its column.
 const FELL: &str = " fell";
 
-/// Columns that do not belong to a barrel.
+/// Columns that do not refer to a single barrel.
 const COLUMNS: [&str; 6] =
     ["scenario", "mode", "first barrel", "loss of seat", "first fall", "until"];
 
 /// Time of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Time {
-    /// It happened at this time (s).
+    /// The event happened at this time (s).
     At(f64),
-    /// It did not happen before the end of the observation.
+    /// The event did not happen before the end of the observation.
     Never,
 }
 
@@ -37,7 +37,7 @@ pub(super) enum Mode {
 /// Observations of one test; `None` for a quantity that was not observed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Observed {
-    /// Scenario of the test, if the file names one.
+    /// Scenario of the test, if the row names one.
     pub(super) scenario: Option<String>,
     /// Mode of collapse, or that the stack stood.
     pub(super) mode: Option<Mode>,
@@ -49,14 +49,15 @@ pub(super) struct Observed {
     pub(super) first_fall: Option<Time>,
     /// Names of barrels, and the times at which they had fallen.
     pub(super) falls: Vec<(String, Time)>,
-    /// Duration of observation (s), from the start of the motion.
+    /// End of the observation (s), counted from the start of the motion.
     pub(super) until: f64,
 }
 
 impl Observed {
-    /// Reads every row of a table, and returns the tests with warnings.
+    /// Reads every row of a table, and returns the tests and warnings.
     ///
-    /// Where a row states no end of the observation, the end is its last time plus `margin` (s).
+    /// If a row does not state the end of the observation, the end is the last time in the row plus `margin`
+    /// (s).
     pub(super) fn read(
         table: &Table,
         margin: f64,
@@ -109,7 +110,7 @@ impl Observed {
         self.first_fall.is_some() || self.first_barrel.is_some()
     }
 
-    /// Returns every observed time with the name of its column.
+    /// Returns every observed time together with the name of its column.
     fn times(&self) -> impl Iterator<Item = (String, Time)> + '_ {
         let own = [("loss of seat", self.loss), ("first fall", self.first_fall)];
         let own = own.into_iter().filter_map(|(name, time)| Some((name.to_owned(), time?)));
@@ -150,7 +151,7 @@ impl Observed {
             || self.times().any(|(_, time)| time == Time::Never)
             || last == 0.0;
         if open {
-            let remedy = "it is needed where something stands, or no time is given";
+            let remedy = "state it, since something still stood or no time is given";
             return Err(table
                 .at(row, "until", "how long the test was observed", "nothing", remedy)
                 .into());
@@ -160,7 +161,8 @@ impl Observed {
     }
 }
 
-/// Returns the times of a column; `None` for each empty cell, and for all rows if there is no such column.
+/// Returns the times in a column, with `None` for every empty cell; if there is no such column, all times are
+/// `None`.
 fn times(table: &Table, name: &str) -> Result<Vec<Option<Time>>, CalibrateError> {
     if !table.has(name) {
         return Ok(vec![None; table.count()]);

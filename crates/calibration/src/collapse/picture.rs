@@ -8,7 +8,7 @@ use super::sampler::Posterior;
 use super::{Trial, alike};
 use crate::figures::measured;
 
-/// Quantiles of the posterior weight between which a bar shows the simulated times.
+/// Quantiles of the simulated times at the two ends of a bar; the times are weighted by the posterior.
 const MIDDLE: [f64; 2] = [0.05, 0.95];
 
 /// Draws the posterior weight of the observed modes, and the times of the observed events.
@@ -23,7 +23,7 @@ pub(super) fn pictures(
         .collect()
 }
 
-/// Returns the courses of the test at index `at`.
+/// Returns the courses of the test with the index `at`.
 fn of<'a>(
     courses: &'a [Option<Course>],
     at: usize,
@@ -83,12 +83,13 @@ fn times(
             row(&format!("{barrel} fell"), *time, &|course| course.fall(barrel));
         }
     }
-    let caption = "Observed times of the events, and bars for their simulated times: the central 90 % of the posterior weight of \
-                   the simulations in which the event happens. A row without a bar: it happens in none.";
+    let caption = "Observed times of the events. Bars show the simulated times: the central 90 % of the posterior \
+                   weight of the simulations in which the event happens. A row has no bar if the event happens in \
+                   none of them.";
     rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(observed))
 }
 
-/// Returns the quantiles [`MIDDLE`] of values with weights; NaN if the weights are zero.
+/// Returns the quantiles [`MIDDLE`] of weighted values; NaN if all weights are zero.
 fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
     weighed.sort_by(|one, other| one.0.total_cmp(&other.0));
     let all: f64 = weighed.iter().map(|(_, weight)| weight).sum();

@@ -1,30 +1,31 @@
 //! Adaptive multiple importance sampling of a posterior in a box.
 //!
-//! The method is that of Cornuet, Marin, Mira and Robert (2012): a first round covers the box (Latin
-//! hypercube), each further round samples around likely points, and the weight of a sample is its
-//! likelihood over the joint density of all rounds' proposals. The samples of all rounds count.
-//! A likelihood that is itself random, as that of one simulated course of a chaotic collapse, leaves
-//! the weights correct: the randomness is one more coordinate, sampled from its own distribution.
-//! It is implemented here because samplers on crates.io require gradients, or chains of thousands of
-//! steps that cannot run in parallel.
+//! The method is that of Cornuet, Marin, Mira and Robert (2012): the first round covers the box by a Latin
+//! hypercube, and each further round samples around likely points. The weight of a sample is its likelihood
+//! divided by the mixture density of the proposals of all rounds. The samples of all rounds are used. The
+//! weights are correct even if the likelihood is itself random, as for one simulated course of a chaotic
+//! collapse: the randomness acts as one more coordinate, sampled from its own distribution. The method is
+//! implemented here because samplers on crates.io require gradients, or chains of thousands of steps that
+//! cannot run in parallel.
 
 use barrelstack_dynamics::math;
 use barrelstack_motion::Random;
 
-/// Fraction of samples in the first round.
+/// Fraction of all samples that belong to the first round.
 const FIRST: f64 = 0.3;
 
 /// Number of rounds after the first.
 const ROUNDS: usize = 5;
 
-/// Fraction of a later round that is still sampled from the whole box, which bounds the weights.
+/// Fraction of the samples of a later round that are still drawn uniformly from the whole box, which bounds
+/// the weights.
 const WIDE: f64 = 0.2;
 
-/// Smallest effective number of samples of a proposal or a result. If there are fewer, the likelihood is
-/// raised to a power below one.
+/// Minimum effective number of samples, both for a proposal and for the result. If there are fewer, the
+/// likelihood is raised to a power below one.
 const FEWEST: f64 = 40.0;
 
-/// One sample: a point of the box `[−1, 1]ⁿ`, and the seed of all other random numbers of its simulation.
+/// One sample: a point of the box `[−1, 1]ⁿ`, and the seed of the random numbers of its simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draw {
     pub(super) point: Vec<f64>,
@@ -36,12 +37,13 @@ pub(super) struct Draw {
 pub(super) struct Posterior {
     pub(super) draws: Vec<Draw>,
     pub(super) weights: Vec<f64>,
-    /// Power to which the likelihood was raised to reach the smallest effective number of samples, usually one.
-    /// Below one, intervals are wider than with enough samples.
+    /// Power to which the likelihood was raised to reach the minimum effective number of samples; usually
+    /// one. If the power is below one, intervals are wider than they would be with enough samples.
     pub(super) power: f64,
 }
 
-/// Proposal of a round: normal kernels around centers, each coordinate reflected at the walls.
+/// Proposal distribution of a round: normal kernels around centers, each coordinate reflected at the walls of
+/// the box.
 struct Proposal {
     count: usize,
     centers: Vec<Vec<f64>>,
@@ -51,7 +53,7 @@ struct Proposal {
     width: Vec<f64>,
 }
 
-/// Samples the posterior of a uniform prior on the box with about `count` samples.
+/// Samples a posterior distribution, whose prior is uniform in the box, with about `count` samples.
 ///
 /// `evaluate` returns the log-likelihood of each sample of a batch, `−∞` for a likelihood of zero.
 /// Returns `None` if every sample has a likelihood of zero.
@@ -90,7 +92,7 @@ pub(super) fn sample(
     Some(Posterior { draws, weights, power })
 }
 
-/// Gives each point a seed, which depends on its index; the first point has the index `from`.
+/// Assigns a seed to each point from its index; the first point has the index `from`.
 fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     let seeded = |(at, point)| Draw {
         point,
@@ -99,7 +101,8 @@ fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     points.into_iter().enumerate().map(seeded).collect()
 }
 
-/// Returns a Latin hypercube: of each coordinate, one point lies in each of `count` equal parts of the range.
+/// Returns a Latin hypercube: every coordinate axis is divided into `count` equal parts, and each part
+/// contains one point.
 fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f64>> {
     let mut points = vec![vec![0.0; dimensions]; count];
     for at in 0..dimensions {
@@ -115,7 +118,8 @@ fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f6
     points
 }
 
-/// Returns the joint density of all rounds at every sample, relative to that of the box.
+/// Returns the density of the mixture of all rounds at every sample, relative to the uniform density of the
+/// box.
 fn densities(draws: &[Draw], first: usize, proposals: &[Proposal]) -> Vec<f64> {
     let total = draws.len() as f64;
     let density = |draw: &Draw| {
@@ -125,7 +129,7 @@ fn densities(draws: &[Draw], first: usize, proposals: &[Proposal]) -> Vec<f64> {
     draws.iter().map(density).collect()
 }
 
-/// Returns the weights of samples with the likelihood raised to a power, summing to one.
+/// Returns the weights of samples, which sum to one, with the likelihood raised to a power.
 fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if most == f64::NEG_INFINITY {
@@ -140,8 +144,8 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     Some(weights.into_iter().map(|weight| weight / sum).collect())
 }
 
-/// Returns the weights, with the likelihood raised to the largest power, at most one, that leaves enough effective
-/// samples; and that power.
+/// Returns the weights with the likelihood raised to a power, and the power: the largest up to one that
+/// leaves enough effective samples.
 fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     let whole = weights(logs, densities, 1.0)?;
     if effective(&whole) >= FEWEST {
@@ -156,7 +160,7 @@ fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     Some((weights(logs, densities, low)?, low))
 }
 
-/// Returns the effective number of samples (Kish).
+/// Returns the effective number of samples by Kish's formula.
 fn effective(weights: &[f64]) -> f64 {
     1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>()
 }
@@ -200,7 +204,7 @@ impl Proposal {
         self.centers[at].iter().zip(&self.width).map(moved).collect()
     }
 
-    /// Returns the density at a point, relative to that of the box.
+    /// Returns the density of the proposal at a point, relative to the uniform density of the box.
     fn density(&self, point: &[f64]) -> f64 {
         let total = self.cumulated.last().copied().unwrap_or(1.0);
         let kernel = |center: &Vec<f64>| -> f64 {
@@ -214,7 +218,7 @@ impl Proposal {
     }
 }
 
-/// Reflects a coordinate at the walls at ±1.
+/// Reflects a coordinate at the walls −1 and 1.
 fn mirrored(mut x: f64) -> f64 {
     // A kernel is narrower than the box, so a few reflections suffice.
     for _ in 0..16 {
@@ -229,7 +233,7 @@ fn mirrored(mut x: f64) -> f64 {
     x.clamp(-1.0, 1.0)
 }
 
-/// Returns the density of a reflected normal deviate.
+/// Returns the probability density of a normal deviate that is reflected at the walls.
 fn mirrored_normal(x: f64, center: f64, width: f64) -> f64 {
     let normal = |x: f64| {
         let off = (x - center) / width;

@@ -1,4 +1,4 @@
-//! Coverage of the intervals over a hundred campaigns.
+//! Coverage of the 95 % intervals in a hundred simulated campaigns of tests.
 #![allow(clippy::print_stdout, reason = "the coverage is shown")]
 
 use std::ops::ControlFlow;
@@ -17,7 +17,7 @@ use super::{Parameter, Prepared, Tunable};
 const ALL: [Parameter; 3] =
     [Parameter::Stiffness, Parameter::Damping, Parameter::FrictionBarrelRack];
 
-/// Returns what an observer records of a course.
+/// Returns the observations that an observer of a simulated course would record.
 fn noted(course: &Course, until: f64, errors: &Errors, random: &mut Random) -> Observed {
     let read = |time: Time, random: &mut Random| match time {
         Time::At(time) => Time::At((time + errors.reading * random.normal()).clamp(1e-3, until)),
@@ -36,8 +36,9 @@ fn noted(course: &Course, until: f64, errors: &Errors, random: &mut Random) -> O
     }
 }
 
-/// Every campaign draws its true values from the range, builds three stacks with random placements, records the
-/// outcomes, and estimates the parameters from one table of simulations that all campaigns share.
+/// Every campaign draws its true values from the range, builds three stacks with random placements, records
+/// the outcomes of these stacks, and estimates the parameters from one table of simulations that all
+/// campaigns share.
 #[test]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     const TESTS: usize = 3;

@@ -1,4 +1,4 @@
-//! Simulation of a scenario with changed constants, sampled at the times of a recording.
+//! Simulation of a scenario with changed contact constants, sampled at the times of a recording.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -12,7 +12,7 @@ use barrelstack::scenario::{Dimension, Scenario};
 use crate::parameters::{Parameter, Tunable};
 use crate::{CalibrateError, Table};
 
-/// Recorded response: times (s) and channels by name.
+/// Recorded response: the times (s), and the values of every channel by name.
 pub(super) struct Measured {
     pub(super) times: Vec<f64>,
     pub(super) channels: Vec<(String, Vec<f64>)>,
@@ -51,7 +51,7 @@ impl Measured {
         }
         if channels.is_empty() {
             return Err(table.unsuited(
-                "there is no column but the time: add channels such as `B1.1_displacement_x (m)`",
+                "there is no column besides the time: add channels such as `B1.1_displacement_x (m)`",
             ).into());
         }
         Ok(Self { times, channels })
@@ -63,7 +63,8 @@ impl Measured {
     }
 }
 
-/// Simulates a scenario with changed constants; a point holds the logarithms of the factors on them.
+/// Simulates a scenario with changed contact constants. A point holds the logarithms of the factors by which
+/// the constants are multiplied.
 pub(super) struct Simulator<'a> {
     scenario: Scenario,
     measured: &'a Measured,
@@ -150,7 +151,7 @@ impl<'a> Simulator<'a> {
         })
     }
 
-    /// Returns all channels at the recorded times; `None` if the stack cannot be simulated.
+    /// Returns the values of all channels at the recorded times; `None` if the stack cannot be simulated.
     fn channels(&self, point: &[f64]) -> Option<Vec<Vec<f64>>> {
         if self.stopped() {
             return None;
@@ -175,7 +176,7 @@ impl<'a> Simulator<'a> {
     }
 }
 
-/// Interpolates linearly between samples; beyond the last sample the value is constant.
+/// Interpolates linearly between samples; beyond the last sample the value remains constant.
 fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
     let above = times.partition_point(|sample| *sample < time);
     match (above.checked_sub(1), values.get(above)) {

@@ -12,10 +12,10 @@ use crate::outcome::CollapseMode;
 use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value, word};
 use crate::watch::Ending;
 
-/// Intensity measure of a study, with the name and unit in which it is displayed.
+/// Intensity measure, with the name and unit in which it is displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the column of the measure in the table, or of the measure of the study.
+    /// Name of the measure: the name of its column in the table, or its name in the study file.
     pub name: String,
     /// SI unit.
     pub unit: String,
@@ -88,10 +88,10 @@ impl Measure {
     }
 }
 
-/// Case with a verdict.
+/// A case that has a verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Index of the row of the case in the table.
+    /// Index of the table row of the case.
     pub row: u32,
     /// Index of the motion in [`Cases::records`].
     pub record: u32,
@@ -99,28 +99,28 @@ pub struct Case {
     pub collapsed: bool,
     /// `true` if the stack fell under its own weight, before it was shaken.
     pub fell_at_rest: bool,
-    /// Mode of collapse, as an index of [`Cases::modes`]; `None` if the stack stood.
+    /// Mode of collapse, as an index into [`Cases::modes`]; `None` if the stack stood.
     pub mode: Option<u8>,
     /// `true` if the case was simulated until nothing moved, so that all falls are known.
     pub followed: bool,
     /// Number of barrels in the stack.
     pub barrels: u32,
-    /// Height of fall (m) of each barrel that fell.
+    /// Height of fall (m) of every barrel that fell.
     pub falls: Box<[f64]>,
-    /// Largest force (N) on each fallen barrel since it fell; `None` if the study does not record forces.
+    /// Largest force (N) on each fallen barrel after it fell; `None` if the study does not record forces.
     pub forces: Option<Box<[f64]>>,
     /// Volume of wine (m³) in each fallen barrel.
     pub wines: Box<[f64]>,
     /// Volume of wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Peak drift ratio of the top while the stack stood; NaN if unknown.
+    /// Peak drift ratio of the top of the stack before any loss of seat; NaN if unknown.
     drift: f64,
-    /// Intensity (SI) in each of [`Cases::measures`]; NaN if unknown.
+    /// Intensity (SI) of the case in each measure of [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
     /// Number of the curve to which the case belongs.
     ///
-    /// A curve has the cases of one motion with the same values of all factors except those drawn for each case. In an
-    /// incremental dynamic analysis it is a hunt.
+    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each
+    /// case. In an incremental dynamic analysis a curve is one hunt.
     pub curve: u32,
 }
 
@@ -130,7 +130,7 @@ impl Case {
         self.intensities.get(measure).copied().filter(|value| !value.is_nan())
     }
 
-    /// Returns the peak drift ratio of the top while the stack stood; `None` if unknown.
+    /// Returns the peak drift ratio of the top of the stack before any loss of seat; `None` if unknown.
     pub fn drift(&self) -> Option<f64> {
         Some(self.drift).filter(|value| !value.is_nan())
     }
@@ -146,7 +146,7 @@ impl Case {
     }
 }
 
-/// Cases of a study that have a verdict, with what they have in common.
+/// Cases of a study that have a verdict, with the names, measures and settings that they share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cases {
     /// Title of the study.
@@ -159,25 +159,28 @@ pub struct Cases {
     pub measures: Vec<Measure>,
     /// Index of the measure of the study in `measures`.
     pub main: usize,
-    /// `true` if every case was scaled to a level of that measure, so that each level has a raw fraction of collapse.
+    /// `true` if every case was scaled to a level of the measure of the study, so that each level has a raw
+    /// fraction of collapse.
     pub leveled: bool,
-    /// `true` if the levels are those of hunts for collapse, which depend on earlier results.
+    /// `true` if the levels were chosen by hunts for collapse, so that they depend on earlier results.
     pub hunted: bool,
-    /// `true` if cases are samples: motion, level and factors are drawn for each case.
+    /// `true` if cases are independent samples: motion, level and factors are drawn for each case.
     pub sampled: bool,
-    /// Names of the factors that are drawn for each case of a motion.
+    /// Names of the factors that are drawn anew for each case of a motion.
     pub drawn: Vec<String>,
-    /// Counts of cases by how they ended.
+    /// Numbers of cases by the way in which they ended.
     pub endings: Endings,
-    /// Cases, shared by reference since there may be a million and subsets of them are used.
+    /// All cases. They are shared by reference, since there may be a million of them and subsets are used as
+    /// well.
     pub all: Vec<Arc<Case>>,
-    /// Number of rows without a verdict: the run failed, was not judged, or could not start.
+    /// Number of rows without a verdict, because the run failed, could not start, or gave a result that is
+    /// not judged.
     pub left_out: usize,
-    /// Seed of resampling.
+    /// Seed of the random resampling.
     pub seed: u64,
 }
 
-/// Map of names to numbers, in the order of first occurrence.
+/// Assigns consecutive numbers to names, in the order of first occurrence.
 #[derive(Default)]
 struct Numbering(BTreeMap<String, u32>);
 
@@ -191,7 +194,7 @@ impl Numbering {
         next
     }
 
-    /// Returns the names in order.
+    /// Returns the names in the order of their numbers.
     fn names(self) -> Vec<String> {
         let mut names: Vec<(String, u32)> = self.0.into_iter().collect();
         names.sort_by_key(|(_, number)| *number);
@@ -199,12 +202,12 @@ impl Numbering {
     }
 }
 
-/// Converts a number of cases, which is at most ten million.
+/// Converts a number of cases to `u32`; there are at most ten million cases.
 fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// Reader of cases from the table in parts, so that the table need not be in memory.
+/// Reader that converts a table to cases part by part, so that the table need not be held in memory.
 pub(super) struct Reading {
     cases: Cases,
     records: Numbering,
@@ -212,14 +215,14 @@ pub(super) struct Reading {
     curves: Numbering,
     /// Number of rows read so far.
     rows: usize,
-    /// Number of rows read so far that are independent samples, and therefore curves of their own.
+    /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
-    /// Number of quantities that a sensitivity design exchanges; 0 for other designs.
+    /// Number of quantities that a sensitivity design exchanges between its samples; 0 for other designs.
     varied: usize,
 }
 
 impl Reading {
-    /// Creates a reader for rows with a provenance.
+    /// Creates a reader for the rows of a study; `made` is the provenance of the rows.
     pub(super) fn new(made: &Provenance) -> Result<Self, DecisionError> {
         let measures = made.columns.iter().filter(|column| column.role == Role::Intensity);
         let mut measures: Vec<Measure> =
@@ -375,7 +378,7 @@ impl Cases {
         reading.finish()
     }
 
-    /// Returns a copy that has only the cases for which `keep` returns `true`.
+    /// Returns a copy that contains only the cases for which `keep` returns `true`.
     #[must_use]
     pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
         let mut fewer = self.clone();
@@ -388,7 +391,7 @@ impl Cases {
         self.all.iter().filter(|case| case.fell_at_rest).count()
     }
 
-    /// Returns the measure of the study.
+    /// Returns the intensity measure of the study.
     pub fn measure(&self) -> &Measure {
         &self.measures[self.main]
     }
@@ -403,17 +406,18 @@ impl Cases {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// Returns the number of curves: one for each motion and combination of the factors that are not drawn for each case.
+    /// Returns the number of curves. There is one curve for each motion and each combination of values of the
+    /// factors that are not drawn for each case.
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns words for the curves in a sentence.
+    /// Returns a noun for the curves, for use in a sentence.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"
         } else {
-            "curves of one motion and one choice of factors each"
+            "curves (one motion and one choice of factors each)"
         }
     }
 
@@ -430,9 +434,10 @@ impl Cases {
 
     /// Groups the cases by intensity, ascending.
     ///
-    /// If cases share levels, the groups are the levels of the study. Otherwise they are bins with equal numbers of
-    /// neighboring cases, and the intensity of a bin is the geometric mean over its cases. A fraction needs a few dozen
-    /// cases, and a trend is seen best in about a dozen bins.
+    /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with
+    /// equal numbers of neighboring cases, and the intensity of a bin is the geometric mean over its cases.
+    /// The limits of a few dozen cases per bin and about a dozen bins are chosen because a fraction needs
+    /// several dozen cases, and a trend is clearest in about a dozen bins.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
         let mut sorted: Vec<(f64, &Case)> = self
             .all
@@ -459,7 +464,7 @@ impl Cases {
         found
     }
 
-    /// `true` if several cases share each level of a measure.
+    /// `true` if each level of a measure is shared by several cases.
     pub fn shares_levels(&self, measure: usize) -> bool {
         if !self.leveled || self.hunted || measure != self.main {
             return false;
@@ -473,13 +478,13 @@ impl Cases {
     }
 }
 
-/// Minimum number of cases in a bin, unless there are fewer in all.
+/// Minimum number of cases in a bin, unless the study has fewer cases.
 const FEWEST_OF_BIN: usize = 24;
 
 /// Maximum number of bins.
 const MOST_BINS: usize = 16;
 
-/// Minimum mean number of samples per level for levels to be counted separately.
+/// Minimum mean number of cases per level; with fewer, levels are not counted separately.
 const FEWEST_OF_LEVEL: usize = 8;
 
 /// Formats a value of a factor.

@@ -1,4 +1,5 @@
-//! Fragility of one limit state against one measure: raw fractions, fitted curve, confidence band and tests.
+//! Fragility of one limit state against one intensity measure: raw fractions, fitted curve, confidence band
+//! and tests.
 
 use std::collections::BTreeMap;
 
@@ -15,50 +16,51 @@ use super::limit::LimitState;
 /// Confidence level of all bands.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// Number of simulated data sets in the test whether failure becomes likelier with intensity.
+/// Number of simulated data sets in the test of whether failure becomes likelier with intensity.
 const DRAWS: usize = 500;
 
 /// Method of a confidence band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
-    /// Jackknife over records; cases of one record may depend on each other.
+    /// Jackknife over records, since cases of one record may depend on each other.
     Records,
-    /// Profile likelihood of independent cases; used if all cases are of one record.
+    /// Profile likelihood of independent cases, used if all cases are of one record.
     Likelihood,
-    /// No band, since the cases without one of the records determine no curve.
+    /// No band, since without one of the records the cases determine no curve.
     None,
 }
 
-/// Fragility of one limit state against one measure.
+/// Fragility of one limit state against one intensity measure.
 #[derive(Clone, Debug)]
 pub struct LimitCurve {
     /// Limit state.
     pub limit: LimitState,
     /// Index of the measure in [`Cases::measures`].
     pub measure: usize,
-    /// Numbers of cases and failures, at levels or in bins.
+    /// Numbers of cases and failures at each level or in each bin.
     pub stripes: Vec<Stripe>,
-    /// Wilson's interval of each raw fraction.
+    /// Wilson's interval for each raw fraction.
     pub intervals: Vec<Interval>,
     /// Fitted curve, or the reason why there is none.
     pub fit: Result<Fit, FitError>,
-    /// Intensities at which the band is given.
+    /// Intensities at which the confidence band is given.
     pub grid: Vec<f64>,
-    /// 95 % confidence band at each intensity of `grid`; empty without a curve, or with [`BandKind::None`].
+    /// 95 % confidence band at each intensity of `grid`; empty if there is no curve or no band.
     pub band: Vec<Interval>,
-    /// 95 % interval of the median.
+    /// 95 % interval of the median intensity.
     pub median: Option<Interval>,
-    /// Method of the band.
+    /// Method by which the confidence band was computed.
     pub band_kind: BandKind,
-    /// Curves fitted without one record each, from which the uncertainty of derived results follows.
+    /// Curves that are each fitted without one of the records. The uncertainty of derived results follows
+    /// from them.
     pub left_out: Option<LeaveOneOut>,
-    /// Goodness of fit of the curve to the raw counts.
+    /// Goodness of fit of the fitted curve to the raw counts.
     pub goodness: Option<Goodness>,
     /// Test of the assumption that failure becomes likelier with intensity.
     pub monotony: Monotony,
     /// Curves of one motion on which the stack failed at one intensity and stood at a higher one.
     ///
-    /// Empty for samples, since each is a curve of its own.
+    /// Empty for independent samples, since each sample is a separate curve.
     pub returned: Vec<Returned>,
 }
 
@@ -122,9 +124,10 @@ impl LimitCurve {
         }
     }
 
-    /// Returns the standard errors of the logarithms of median and dispersion.
+    /// Returns the standard errors of the logarithm of the median and of the logarithm of the dispersion.
     ///
-    /// With several records they are clustered by record; with one record, cases are taken as independent.
+    /// With several records, the standard errors are clustered by record. With one record, the cases are
+    /// taken as independent.
     ///
     /// # Errors
     /// If no curve could be fitted.
@@ -136,16 +139,16 @@ impl LimitCurve {
         })
     }
 
-    /// `true` if the fraction of failures decreases significantly with intensity somewhere, which no fragility curve can
-    /// describe.
+    /// `true` if the fraction of failures decreases significantly anywhere as intensity grows, which no
+    /// fragility curve can describe.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }
 
     /// Returns the probability of failure at an intensity, interpolated between the raw fractions.
     ///
-    /// It is linear in the logarithm of the intensity between levels, constant above the highest level, and linear
-    /// between zero at zero intensity and the lowest level.
+    /// Between levels, the probability is linear in the logarithm of the intensity. Above the highest level
+    /// it is constant. Below the lowest level it decreases linearly to zero at zero intensity.
     pub fn raw(&self, intensity: f64) -> f64 {
         let points: Vec<(f64, f64)> =
             self.stripes.iter().map(|s| (s.intensity, s.fraction())).collect();
@@ -155,7 +158,7 @@ impl LimitCurve {
 
 /// Interpolates between points linearly in the logarithm of the abscissa.
 ///
-/// The value is constant above the last point, and linear between zero at zero and the first point.
+/// Above the last point, the value is constant. Below the first point, it decreases linearly to zero at zero.
 pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     let after = points.partition_point(|(x, _)| *x < at);
     match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
@@ -167,7 +170,7 @@ pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-/// Counts cases and failures, as a stripe at an intensity.
+/// Counts cases and failures, and returns them as a stripe with the intensity.
 pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> bool) -> Stripe {
     Stripe {
         intensity,
@@ -176,11 +179,11 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
     }
 }
 
-/// Returns the evidence of the cases on the capacity.
+/// Returns what the cases show about the capacity of the stack.
 ///
-/// In general each case is evidence that it failed or stood at its intensity. The levels of hunts depend on earlier
-/// results, so that counts at them would be biased; each hunt is instead one observation of a capacity between two
-/// levels.
+/// In general, each case is one observation: the stack failed or stood at the intensity of the case. The
+/// levels of hunts depend on earlier results, so that counts at these levels would be biased. Each hunt is
+/// therefore one observation of a capacity between two levels.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let measured = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
@@ -208,7 +211,8 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts hunts at eight levels: those that have failed up to a level, among those whose state at it is known.
+/// Counts hunts at eight levels. At each level, the cases are the hunts that show whether the stack fails
+/// there, and the failures are those in which it fails.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);
@@ -233,7 +237,8 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
         .collect()
 }
 
-/// Returns intensities, evenly spaced in the logarithm, from below the lowest stripe to above the highest.
+/// Returns intensities that are evenly spaced in the logarithm, from below the lowest stripe to above the
+/// highest.
 fn grid(stripes: &[Stripe]) -> Vec<f64> {
     let (Some(first), Some(last)) = (stripes.first(), stripes.last()) else { return Vec::new() };
     let (low, high) = (0.6 * first.intensity, 1.4 * last.intensity);

@@ -11,19 +11,19 @@ use super::Decision;
 use crate::scenario::quantity::plain;
 use crate::study::Provenance;
 
-/// Files for other programs, with notes on what could not be exported.
+/// Files for other programs, with notes on what could not be exported unchanged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exported {
     /// Name and text of each file.
     pub files: Vec<(&'static str, String)>,
-    /// Notes on parts that are missing or were changed, with reasons.
+    /// Notes on parts that are missing or were changed, each with a reason.
     pub notes: Vec<String>,
 }
 
 /// Reason why a study cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
-    /// The other programs do not support the intensity measure.
+    /// The other programs do not support the intensity measure of the study.
     #[error(
         "neither OpenQuake nor Pelicun supports the intensity measure {0} of this study; run the study with pga, pgv, \
          pgd or sa(T)"
@@ -34,15 +34,15 @@ pub enum ExportError {
     NoCurve(String),
 }
 
-/// Intensity measure in the names and units of the other programs.
+/// The intensity measure of a study under its names and in its units in the other programs.
 struct Foreign {
-    /// Name in `OpenQuake`.
+    /// Name of the measure in `OpenQuake`.
     imt: String,
-    /// Demand type in Pelicun.
+    /// Demand type of the measure in Pelicun.
     demand: String,
-    /// Unit in Pelicun.
+    /// Unit of the measure in Pelicun.
     unit: &'static str,
-    /// Factor from the SI unit to that unit (g, cm/s or cm).
+    /// Factor from the SI unit to the unit of the other programs (g, cm/s or cm).
     scale: f64,
 }
 
@@ -62,7 +62,8 @@ fn foreign(name: &str) -> Option<Foreign> {
     }
 }
 
-/// Exports the curves of a decision for other programs; `asset` is the name of one stack in them.
+/// Exports the curves of a decision for other programs; `asset` is the name under which these programs know
+/// one stack.
 ///
 /// # Errors
 /// If the other programs do not support the measure, or no limit state has a fitted curve.
@@ -84,7 +85,8 @@ pub fn export(
                 limits.push((name, Lognormal { median, ..fit.curve }));
                 if curve.violates_order() {
                     found.notes.push(format!(
-                        "{}: the raw fractions are not monotone, which the exported curve does not show",
+                        "{}: the raw fractions do not grow steadily with intensity, which the exported curve \
+                         does not show",
                         curve.limit.words()
                     ));
                 }
@@ -126,13 +128,15 @@ pub fn export(
     Ok(found)
 }
 
-/// Returns notes on intensities at which the curve of a more severe limit state lies above that of a less severe one.
+/// Returns a note for each pair of limit states whose curves cross, so that the more severe state is more
+/// probable than the less severe one at some intensities.
 fn crossings(limits: &[(String, Lognormal)], imls: &[f64], unit: &str) -> Vec<String> {
     let crosses = |pair: &[(String, Lognormal)]| {
         let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;
         let at = imls.iter().find(above)?;
         Some(format!(
-            "the curve of {} lies above that of {} at {} {unit}: programs that require nested limit states reject that",
+            "the curve of {} lies above that of {} at {} {unit}: programs that require nested limit states \
+             reject such curves",
             pair[1].0,
             pair[0].0,
             barrelstack_report::significant(*at, 3)
@@ -172,8 +176,8 @@ fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> St
     format!("{head}\n{row}\n")
 }
 
-/// Converts a name to a Pelicun identifier: up to 75 letters, digits and underscores, and points after the first
-/// character. Hyphens are not allowed, since they separate the parts of an identifier.
+/// Converts a name to a Pelicun identifier of up to 75 characters: letters, digits and underscores, and
+/// points after the first character.
 fn pelicun_identity(text: &str) -> String {
     let known =
         |(at, c): &(usize, char)| c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && *c == '.');

@@ -42,14 +42,14 @@ pub(crate) fn chance_axis(label: &str) -> Axis {
     Axis { range: Some([0.0, 1.0]), ..Axis::new(label, "") }
 }
 
-/// Returns the fitted curve of a limit state, if any; intensities are multiplied by `scale`.
+/// Returns the fitted curve of a limit state, if there is one; intensities are multiplied by `scale`.
 pub(crate) fn fitted(curve: &LimitCurve, scale: f64, label: &str) -> Option<Series> {
     let fit = curve.fit.as_ref().ok()?;
     let (x, y) = curve.grid.iter().map(|x| (scale * x, fit.curve.probability(*x))).unzip();
     Some(Series::new(label, x, y))
 }
 
-/// Returns the raw fractions of a limit state with their intervals.
+/// Returns the raw fractions of a limit state with their intervals; intensities are multiplied by `scale`.
 pub(crate) fn raw(curve: &LimitCurve, scale: f64, label: &str, index: usize) -> Series {
     let x: Vec<f64> = curve.stripes.iter().map(|stripe| scale * stripe.intensity).collect();
     points(
@@ -61,13 +61,13 @@ pub(crate) fn raw(curve: &LimitCurve, scale: f64, label: &str, index: usize) -> 
     )
 }
 
-/// Plots raw fractions with their intervals, the fitted curve and its band.
+/// Plots the raw fractions with their intervals, and the fitted curve with its confidence band.
 pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let range: Vec<[f64; 2]> = curve.band.iter().map(|band| [band.low, band.high]).collect();
     let label = if range.is_empty() { "fitted curve" } else { "fitted curve, 95 % band" };
     let line = fitted(curve, measure.scale, label);
     let line = line.map(|line| Series { range, style: style(0), ..line });
-    let dots = raw(curve, measure.scale, "raw fractions, 95 % interval of each", 1);
+    let dots = raw(curve, measure.scale, "raw fractions with 95 % intervals", 1);
     let series = line.into_iter().chain([dots]).collect();
     let caption = format!(
         "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, not smoothed, with Wilson's \
@@ -106,7 +106,7 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     )
 }
 
-/// Plots the cumulative incidence of each mode, and the curve of collapse in any mode.
+/// Plots the cumulative incidence of each mode, and the fragility curve of collapse in any mode.
 pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Measure) -> Figure {
     let grid = || collapse.grid.iter().map(|x| measure.shown(*x)).collect::<Vec<f64>>();
     let mut series = Vec::new();
@@ -131,10 +131,11 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     )
 }
 
-/// Maximum number of curves of single motions in a plot of incremental dynamic analysis.
+/// Maximum number of curves in a plot of incremental dynamic analysis; each curve belongs to one motion.
 const MOST_CURVES: usize = 60;
 
-/// Plots curves of incremental dynamic analysis with their fractiles; `None` if records have too few levels.
+/// Plots the curves of an incremental dynamic analysis with their fractiles; `None` if records have too few
+/// levels.
 pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     if !cases.leveled || cases.sampled {
         return None;
@@ -228,7 +229,7 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     )
 }
 
-/// Plots the numbers of barrels fallen and burst against the measure.
+/// Plots the numbers of barrels that fall and that burst against the intensity measure.
 pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     let x: Vec<f64> = losses.levels.iter().map(|loss| measure.shown(loss.intensity)).collect();
     let levels = || losses.levels.iter();
@@ -242,12 +243,12 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
             levels().map(|loss| loss.interval),
             0,
         ),
-        points("barrels that burst, range of the assumption", &x, burst(1), assumed, 1),
+        points("barrels that burst, range of the assumptions", &x, burst(1), assumed, 1),
     ];
     Figure::new(
         "losses",
         format!(
-            "Mean number of barrels, of {}, that fall and that burst. The chance that a barrel bursts is an assumption \
+            "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is an assumption \
              based on the height of its fall, with a range: see below.",
             losses.barrels
         ),
@@ -260,7 +261,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     )
 }
 
-/// Plots the contribution of each range of intensities to the annual rate of collapse.
+/// Plots the contribution of each range of intensity to the annual rate of collapse.
 pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
     let total: f64 = site.contributions.iter().map(|part| part.rate).sum();
     let (mut x, mut y) = (Vec::new(), Vec::new());

@@ -17,13 +17,13 @@ use crate::scenario::Dimension;
 pub struct SiteHazard {
     /// Name of the file.
     pub file: String,
-    /// Name of the intensity measure, which is the name of its column.
+    /// Name of the intensity measure, which is also the name of its column.
     pub measure: String,
     /// Hazard curve, with intensities in SI units and rates in 1/year.
     pub hazard: Hazard,
 }
 
-/// Intensity measures for which a hazard curve may be given, with their dimensions.
+/// Intensity measures for which a hazard curve may be given, each with its dimension.
 const MEASURES: [(&str, Dimension); 8] = [
     ("pga", Dimension::ACCELERATION),
     ("pgv", Dimension::VELOCITY),
@@ -36,10 +36,10 @@ const MEASURES: [(&str, Dimension); 8] = [
 ];
 
 impl SiteHazard {
-    /// Reads a hazard curve from a CSV file of two columns.
+    /// Reads a hazard curve from a CSV file with two columns.
     ///
-    /// The columns are the intensity with its unit, such as `pgv (cm/s)`, and `rate (1/year)`, the annual rate at which
-    /// that intensity is exceeded.
+    /// One column holds the intensity; its header states the measure and the unit, such as `pgv (cm/s)`. The
+    /// other column, `rate (1/year)`, holds the annual rate at which that intensity is exceeded.
     ///
     /// # Errors
     /// If the file cannot be read, a column or a unit is missing, or the rows are not a hazard curve.
@@ -47,10 +47,10 @@ impl SiteHazard {
         Self::of(&Table::load(path)?)
     }
 
-    /// Reads a hazard curve from a text; `file` is its name in errors.
+    /// Parses a hazard curve from text; `file` is the name of the file in error messages.
     ///
     /// # Errors
-    /// As [`SiteHazard::load`].
+    /// As for [`SiteHazard::load`].
     pub fn parse(file: &str, text: &str) -> Result<Self, TableError> {
         Self::of(&Table::parse(file, text)?)
     }
@@ -81,14 +81,14 @@ impl SiteHazard {
 pub struct LimitRate {
     /// Limit state.
     pub limit: LimitState,
-    /// Rate (1/year) from the fitted curve; `None` without a curve.
+    /// Rate (1/year) from the fitted curve; `None` if there is no curve.
     pub fitted: Option<Rate>,
-    /// 95 % interval of the rate from the fitted curve, which covers the uncertainty of the curve only.
+    /// 95 % interval of the rate from the fitted curve. It covers the uncertainty of the curve only.
     pub interval: Option<Interval>,
     /// Rate (1/year) from the raw fractions.
     pub raw: Rate,
-    /// Probability that the limit state is reached at least once in the exposure time, from the fitted curve, or from the
-    /// raw fractions if there is no curve.
+    /// Probability that the limit state is reached at least once in the exposure time. It follows from the
+    /// fitted curve, or from the raw fractions if there is no curve.
     pub chance: f64,
 }
 
@@ -97,11 +97,12 @@ pub struct LimitRate {
 pub struct Lost {
     /// Barrels that fall (1/year).
     pub fallen: Rate,
-    /// Barrels that burst (1/year), under the low, central and high assumption of breakage.
+    /// Barrels that burst (1/year), under the low, central and high assumptions of breakage.
     pub burst: [Rate; 3],
-    /// Wine that is lost (m³/year), under the same assumptions.
+    /// Wine that is lost (m³/year), under the same three assumptions.
     pub wine: [f64; 3],
-    /// Lower and upper cost (US$/year) of the barrels that burst under the central assumption, with their wine.
+    /// Lower and upper cost (US$/year) of the barrels that burst and of their wine, under the central
+    /// assumption.
     pub money: [f64; 2],
 }
 
@@ -116,12 +117,13 @@ pub struct Site {
     pub limits: Vec<LimitRate>,
     /// Expected annual losses; `None` if the study does not record falls.
     pub lost: Option<Lost>,
-    /// Contributions of ranges of intensity to the rate of collapse.
+    /// Contribution of each range of intensity to the rate of collapse.
     pub contributions: Vec<Contribution>,
 }
 
 impl Site {
-    /// Convolves the fragility curves of the study with the hazard; the first curve must be that of collapse.
+    /// Convolves the fragility curves of the study with the hazard curve; the first fragility curve must be
+    /// the curve of collapse.
     pub(super) fn of(
         cases: &Cases,
         curves: &[LimitCurve],
@@ -133,7 +135,7 @@ impl Site {
             return Err(TableError::Unsuited {
                 file: hazard.file.clone(),
                 reason: format!(
-                    "the hazard curve is for {}, but the study is for {}; give a hazard curve for that measure",
+                    "the hazard curve is for {0}, but the study is for {1}; give a hazard curve for {1}",
                     hazard.measure,
                     cases.measure().name
                 ),
@@ -181,7 +183,8 @@ fn rate(hazard: &Hazard, years: f64, curve: &LimitCurve) -> LimitRate {
     LimitRate { limit: curve.limit.clone(), fitted, interval, raw, chance }
 }
 
-/// Returns the edges of twelve intervals of intensity that cover the table, evenly spaced in the logarithm.
+/// Returns the edges of twelve ranges of intensity that cover the hazard curve and are evenly spaced in the
+/// logarithm.
 fn edges(hazard: &Hazard) -> Vec<f64> {
     let rows = hazard.rows();
     let (first, last) = (rows[0].0, rows[rows.len() - 1].0);

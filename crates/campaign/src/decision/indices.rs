@@ -1,4 +1,4 @@
-//! First-order and total Sobol' indices of every varied quantity, for collapse and for the demands.
+//! First-order and total Sobol' indices of every varied quantity for collapse and for the demands.
 
 use barrelstack_fragility::{Index, sobol_indices};
 
@@ -10,7 +10,7 @@ use crate::study::{Column, Provenance, Role, StudyTable};
 pub struct Sensitivity {
     /// Name of the result: "collapse", or the column of a demand.
     pub result: String,
-    /// Number of blocks that are evaluated: those in which every case has the result.
+    /// Number of blocks of cases that are evaluated, that is, blocks in which every case has the result.
     pub blocks: usize,
     /// Number of blocks that are left out because a case lacks the result.
     pub left_out: usize,
@@ -21,12 +21,12 @@ pub struct Sensitivity {
 /// Results of every case of a sensitivity design, by case number.
 #[derive(Debug, Default)]
 pub(super) struct Results {
-    /// Collapse (1 or 0) and the demands, each with its name; NaN if unknown.
+    /// Name and values of each result: collapse (1 or 0) and the demands; NaN if unknown.
     of: Vec<(String, Vec<f64>)>,
 }
 
 impl Results {
-    /// Adds the results of the next rows; does nothing for other designs.
+    /// Adds the results of the next rows; does nothing for designs that are not sensitivity designs.
     pub(super) fn add(&mut self, made: &Provenance, table: &StudyTable) {
         let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome"))
         else {
@@ -62,7 +62,8 @@ impl Results {
         }
     }
 
-    /// Returns the indices for collapse and for every demand that varies; empty for other designs.
+    /// Returns the indices for collapse and for every demand that varies; empty for designs that are not
+    /// sensitivity designs.
     pub(super) fn indices(self, made: &Provenance) -> Vec<Sensitivity> {
         let size = made.varied.len() + 2;
         let sensitivity = |(result, values): (String, Vec<f64>)| {

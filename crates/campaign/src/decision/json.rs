@@ -30,27 +30,27 @@ described! {
         pub measure: NamedMeasure = NamedMeasure::of(decision.cases.measure()),
         /// Fragility of every limit state against the measure of the study.
         pub fragility: Vec<Fragility> = decision.curves.iter().map(Fragility::of).collect(),
-        /// Efficiency of every intensity measure as a predictor of collapse, the best first.
+        /// Efficiency of every intensity measure as a predictor of collapse, the best measure first.
         pub measures: Vec<MeasureEfficiency> =
             decision.measures.iter().map(|row| MeasureEfficiency::of(&(row, &decision.cases))).collect(),
         /// Incidence of each collapse mode, the most frequent first.
         pub modes: Vec<ModeShare> =
             decision.modes.iter().map(|mode| ModeShare::of(&(mode, &decision.curves[0]))).collect(),
-        /// Number of cases that were followed until nothing moved.
+        /// Number of cases that were simulated until nothing moved.
         pub followed_to_rest: u64 = decision.cases.endings.followed,
         /// Number of cases that were stopped a fixed time after their collapse.
         pub stopped_after_collapse: u64 = decision.cases.endings.stopped,
-        /// Number of cases that were ended by run.duration.
+        /// Number of cases that were ended by `run.duration`.
         pub ended_by_duration: u64 = decision.cases.endings.short,
-        /// Number of cases that were cut short while the ground still moved.
+        /// Number of cases that were ended by `run.duration` while the ground still moved.
         pub cut_while_the_ground_moved: u64 = decision.cases.endings.cut,
-        /// Number of cases in which something still moved at the time limit.
+        /// Number of cases in which something still moved when the time limit was reached.
         pub still_moving_at_the_end: u64 = decision.cases.endings.moving,
-        /// Reason why no losses are given; null if they are.
+        /// Reason why no losses are given; null if losses are given.
         pub no_losses: Option<String> = decision.losses.as_ref().err().cloned(),
-        /// Barrels and wine lost; null if unknown.
+        /// Barrels and wine lost at each level; null if unknown.
         pub losses: Option<LossTable> = decision.losses.as_ref().ok().map(LossTable::of),
-        /// Sobol indices of the varied quantities for every result; empty unless the design is "saltelli".
+        /// Sobol' indices of the varied quantities for every result; empty unless the design is "saltelli".
         pub sobol_indices: Vec<SobolIndices> =
             decision.sensitivities.iter().map(SobolIndices::of).collect(),
         /// Effects of the varied factors, the largest first.
@@ -73,41 +73,43 @@ described! {
     pub struct Fragility of curve: &LimitCurve {
         /// Name of the limit state.
         pub limit_state: String = curve.limit.name(),
-        /// Numbers of cases and failures at every level.
+        /// Numbers of cases and failures at every level or in every bin.
         pub raw: Vec<RawShare> = raw(&curve.stripes, &curve.intervals),
         /// Median of the lognormal curve; null if the data determine no curve.
         pub median: Option<f64> as "of the measure" =
             curve.fit.as_ref().ok().map(|fit| fit.curve.median),
-        /// Dispersion of the curve: standard deviation of the logarithm of the capacity.
+        /// Dispersion of the curve: standard deviation of the logarithm of the intensity at failure.
         pub dispersion: Option<f64> as "1" = curve.fit.as_ref().ok().map(|fit| fit.curve.dispersion),
-        /// Standard error of the logarithm of the median: by jackknife over records if `band` says so, otherwise for
-        /// independent cases.
+        /// Standard error of the logarithm of the median. It is computed by jackknife over records if `band`
+        /// is "jackknife over records", otherwise for independent cases.
         pub ln_median_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[median, _]| finite(median)),
-        /// Standard error of the logarithm of the dispersion, by the same method.
+        /// Standard error of the logarithm of the dispersion, by the same method as for the median.
         pub ln_dispersion_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[_, dispersion]| finite(dispersion)),
-        /// 95 % interval of the median; an end is null if it is unbounded.
+        /// 95 % interval of the median; an unbounded end is null.
         pub median_interval: Option<[Option<f64>; 2]> as "of the measure" =
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
         /// Reason why there is no curve; null if there is one.
         pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
-        /// Method of the confidence band.
+        /// Method by which the confidence band was computed.
         pub band: &'static str ["jackknife over records", "profile likelihood", "none"] =
             match curve.band_kind {
                 BandKind::Records => "jackknife over records",
                 BandKind::Likelihood => "profile likelihood",
                 BandKind::None => "none",
             },
-        /// 95 % confidence band of the curve.
+        /// 95 % confidence band of the curve, at a series of intensities.
         pub band_at: Vec<BandAt> = curve.grid.iter().zip(&curve.band).map(|at| BandAt::of(&at)).collect(),
-        /// p-value of the goodness-of-fit test: probability of data that fit worse if the curve is true.
+        /// p-value of the goodness-of-fit test: the probability that data fit worse than these if the curve
+        /// is true.
         pub goodness_p: Option<f64> as "1" =
             curve.goodness.filter(|test| test.freedom > 0).map(|test| test.p),
-        /// p-value of the test of monotony: probability of decreases as large if failure never becomes less likely with
-        /// intensity.
+        /// p-value of the test of monotony: the probability of decreases as large as these if failure never
+        /// becomes less likely with intensity.
         pub monotone_p: Option<f64> as "1" = finite(curve.monotony.p),
         /// Ranges of intensity over which the fraction of failures decreases.
         pub falls: Vec<FallBetween> = curve.monotony.falls.iter().map(FallBetween::of).collect(),
-        /// Number of curves of one motion on which the stack fails at one level and stands at a higher one.
+        /// Number of curves of one motion on which the stack fails at one intensity and stands at a higher
+        /// one.
         pub returned: usize = curve.returned.len(),
     }
 
@@ -119,7 +121,7 @@ described! {
         pub cases: u32 = at.0.cases,
         /// Number of cases that reached the limit state.
         pub failures: u32 = at.0.failures,
-        /// 95 % interval of the probability (Wilson).
+        /// 95 % interval of the probability, by Wilson's method.
         pub interval: [Option<f64>; 2] as "1" = bounds(*at.1),
     }
 
@@ -137,11 +139,11 @@ described! {
         pub from: f64 as "of the measure" = fall.from.intensity,
         /// Intensity of the higher level.
         pub to: f64 as "of the measure" = fall.to.intensity,
-        /// p-value: probability of such a decrease if failure never becomes less likely with intensity.
+        /// p-value: the probability of such a decrease if failure never becomes less likely with intensity.
         pub p: f64 as "1" = fall.p,
     }
 
-    /// Efficiency of a measure as a predictor of collapse.
+    /// Efficiency of an intensity measure as a predictor of collapse.
     pub struct MeasureEfficiency of row: &(&MeasureRow, &Cases) {
         /// Name of the measure.
         pub measure: String = row.1.measures[row.0.measure].name.clone(),
@@ -153,13 +155,14 @@ described! {
         /// Dispersion: standard deviation of the logarithm of the intensity at collapse.
         pub dispersion: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().map(|found| found.fit.curve.dispersion),
-        /// Logarithm of the likelihood.
+        /// Logarithm of the likelihood of the fitted curve.
         pub ln_likelihood: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().map(|found| found.fit.ln_likelihood),
-        /// Share of the pairs of a collapsed and a standing case in which the collapsed one has the higher intensity.
+        /// Concordance: of all pairs of a collapsed and a standing case, the share in which the collapsed
+        /// case has the higher intensity.
         pub concordance: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().and_then(|found| finite(found.concordance)),
-        /// Other measure against which sufficiency was tested.
+        /// Name of the other measure against which sufficiency was tested.
         pub beside: Option<String> = row.0.beside.map(|at| row.1.measures[at].name.clone()),
         /// p-value of the hypothesis that the other measure adds no information on collapse.
         pub sufficiency_p: Option<f64> as "1" =
@@ -197,9 +200,10 @@ described! {
     pub struct LossTable of losses: &Losses {
         /// Number of barrels in a stack.
         pub barrels: u32 = losses.barrels,
-        /// Fall height at which half of the barrels burst, under three assumptions.
+        /// Fall height at which half of the barrels burst, under each of three assumptions.
         pub breakage_median_m: [f64; 3] as "m" = Breakage::RANGE.map(|breakage| breakage.median),
-        /// Standard deviation of the logarithm of that fall height.
+        /// Standard deviation of the logarithm of the fall height at which a barrel bursts, under each
+        /// assumption.
         pub breakage_dispersion: [f64; 3] as "1" = Breakage::RANGE.map(|breakage| breakage.dispersion),
         /// Losses at every level.
         pub levels: Vec<LossAt> = losses.levels.iter().map(LossAt::of).collect(),
@@ -213,17 +217,18 @@ described! {
         pub cases: usize = loss.cases,
         /// Mean number of barrels that fall.
         pub barrels_fallen: f64 as "barrels" = loss.fallen,
-        /// 95 % interval of that mean.
+        /// 95 % interval of the mean number of barrels that fall.
         pub barrels_fallen_interval: [Option<f64>; 2] as "barrels" = bounds(loss.interval),
         /// Mean number of barrels that burst, under each assumption.
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
-        /// Wine lost in burst barrels, under each assumption.
+        /// Expected volume of wine lost in burst barrels, under each assumption.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
-        /// Mean number of barrels that burst, by the largest force on them; null if the study does not record forces.
+        /// Mean number of barrels that burst, if the largest force on a barrel determines whether it bursts;
+        /// null if the study does not record forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 
-    /// Sobol indices of the varied quantities for one result.
+    /// Sobol' indices of the varied quantities for one result.
     pub struct SobolIndices of found: &Sensitivity {
         /// Name of the result.
         pub result: String = found.result.clone(),
@@ -235,17 +240,18 @@ described! {
         pub inputs: Vec<SobolIndex> = found.inputs.iter().map(SobolIndex::of).collect(),
     }
 
-    /// Sobol indices of one varied quantity.
+    /// Sobol' indices of one varied quantity.
     pub struct SobolIndex of input: &(String, Index) {
         /// Name of the quantity.
         pub input: String = input.0.clone(),
-        /// First-order index, limited to 0 to 1.
+        /// First-order index, limited to the range from 0 to 1.
         pub first: f64 as "1" = input.1.first,
-        /// 95 % interval of the first-order index (jackknife over blocks); 0 to 1 if there are too few blocks.
+        /// 95 % interval of the first-order index, by jackknife over blocks; 0 to 1 if there are too few
+        /// blocks.
         pub first_interval: [Option<f64>; 2] as "1" = bounds(input.1.first_interval),
-        /// Total index, limited to 0 to 1.
+        /// Total index, limited to the range from 0 to 1.
         pub total: f64 as "1" = input.1.total,
-        /// 95 % interval of the total index, by the same method.
+        /// 95 % interval of the total index, by the same method as for the first-order index.
         pub total_interval: [Option<f64>; 2] as "1" = bounds(input.1.total_interval),
     }
 
@@ -253,21 +259,22 @@ described! {
     pub struct FactorEffect of effect: &Effect {
         /// Name of the factor.
         pub factor: String = effect.factor.clone(),
-        /// Collapse by groups of values of the factor.
+        /// Counts of collapses for each group of values of the factor.
         pub groups: Vec<EffectGroup> = effect.groups.iter().map(EffectGroup::of).collect(),
     }
 
     /// Cases of one group of values of a factor.
     pub struct EffectGroup of group: &Group {
-        /// Values of the group.
+        /// Values of the factor in the group, as text.
         pub value: String = group.label.clone(),
         /// Number of cases.
         pub cases: u32 = group.cases,
         /// Number of cases that collapse.
         pub collapsed: u32 = group.collapsed,
-        /// 95 % interval of the share of collapse: Wilson's, or clustered by motion for one-at-a-time designs.
+        /// 95 % interval of the share of collapse. Clustered by motion for one-at-a-time designs; Wilson's
+        /// interval otherwise.
         pub interval: [Option<f64>; 2] as "1" = bounds(group.interval),
-        /// Collapse at each level, for one-at-a-time designs.
+        /// Counts of collapses at each level, for one-at-a-time designs; empty otherwise.
         pub levels: Vec<EffectLevel> = group.levels.iter().map(EffectLevel::of).collect(),
     }
 
@@ -289,7 +296,7 @@ described! {
         pub hazard: String = site.hazard.file.clone(),
         /// Intensity measure of the hazard curve.
         pub measure: String = site.hazard.measure.clone(),
-        /// Exposure time, for which probabilities are given.
+        /// Exposure time, for which the probabilities are given.
         pub years: f64 as "year" = site.years,
         /// Rate of every limit state.
         pub limit_states: Vec<LimitStateRate> = site.limits.iter().map(LimitStateRate::of).collect(),
@@ -301,7 +308,8 @@ described! {
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
         /// Wine lost per year, under each assumption.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
-        /// Lower and upper cost of the barrels that burst under the central assumption, with their wine.
+        /// Lower and upper cost of the barrels that burst per year and of their wine, under the central
+        /// assumption.
         pub money_lost_per_year: Option<[f64; 2]> as "US$/year" = site.lost.as_ref().map(|lost| lost.money),
         /// Contributions of ranges of intensity to the rate of collapse.
         pub contributions: Vec<RatePart> = site.contributions.iter().map(RatePart::of).collect(),
@@ -313,21 +321,22 @@ described! {
         pub limit_state: String = limit.limit.name(),
         /// Annual rate from the fitted curve; null without a curve.
         pub annual_rate: Option<YearlyRate> = limit.fitted.as_ref().map(YearlyRate::of),
-        /// 95 % interval of that rate.
+        /// 95 % interval of the rate from the fitted curve.
         pub annual_rate_interval: Option<[Option<f64>; 2]> as "1/year" = limit.interval.map(bounds),
         /// Annual rate from the raw fractions.
         pub annual_rate_raw: YearlyRate = YearlyRate::of(&limit.raw),
-        /// Probability in the exposure time.
+        /// Probability that the limit state is reached at least once in the exposure time.
         pub chance: f64 as "1" = limit.chance,
     }
 
-    /// Annual rate, with bounds for shaking beyond the hazard curve.
+    /// Annual rate, with bounds that differ by the effect of shaking beyond the hazard curve.
     pub struct YearlyRate of rate: &Rate {
-        /// Rate if shaking stronger than the last row of the hazard curve has the effect of the last row.
+        /// Rate if shaking stronger than the last row of the hazard curve has the same effect as the last
+        /// row.
         pub low: f64 as "1/year" = rate.low,
-        /// Rate if shaking stronger than the last row has the worst effect.
+        /// Rate if shaking stronger than the last row of the hazard curve has the worst possible effect.
         pub high: f64 as "1/year" = rate.high,
-        /// Effect of shaking with the intensity of the first row.
+        /// Effect of shaking with the intensity of the first row of the hazard curve.
         pub at_first_row: f64 as "1" = rate.at_first,
     }
 
@@ -342,7 +351,7 @@ described! {
     }
 }
 
-/// Returns a finite number, and `None` for any other, since JSON has no infinity.
+/// Returns a number if it is finite and `None` otherwise, since JSON has no infinity.
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

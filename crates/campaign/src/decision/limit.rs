@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use super::cases::{Case, Cases};
 
-/// Definition of failure of a stack.
+/// Definition of the failure of a stack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LimitState {
-    /// A barrel or rack loses its seat: collapse.
+    /// Collapse: at least one barrel or rack loses its seat.
     SeatLost,
-    /// At least this number of barrels falls.
+    /// At least this number of barrels fall.
     Fallen(u32),
 }
 
@@ -30,7 +30,7 @@ impl LimitState {
         }
     }
 
-    /// Returns the name for display, such as after "chance of".
+    /// Returns the name for display, which can follow "chance of".
     pub fn words(&self) -> String {
         match self {
             Self::SeatLost => "collapse (first seat lost)".to_owned(),
@@ -47,8 +47,8 @@ impl LimitState {
         }
     }
 
-    /// Returns the limit states to be evaluated: collapse and, if falls are known, one barrel and a quarter, half and all
-    /// of the barrels fallen.
+    /// Returns the limit states to be evaluated: collapse and, if falls are known, falls of at least one
+    /// barrel, a quarter, half and all of the barrels.
     pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
         let most = if cases.has_losses() { cases.most_barrels() } else { 0 };
         let counts: BTreeSet<u32> =

@@ -1,4 +1,4 @@
-//! Losses: barrels that fall, and the wine of barrels that burst.
+//! Losses: barrels that fall, barrels that burst, and their wine.
 
 use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 
@@ -7,12 +7,12 @@ use super::curve::{LEVEL, interpolate};
 
 /// Assumed probability that a full barrel bursts in a fall, as a lognormal function of the height of the fall.
 ///
-/// No published drop tests of barrels were found. Of the barrels that toppled at Napa in 2014 about one in ten was
-/// lost (Wines & Vines 2016); from which levels is not recorded.
-/// A lognormal function with a median of 5 m and a dispersion of 0.6 agrees with that. With 0.9 m per level, 0.2 % of the
-/// barrels burst that fall from the second level, 4 % from the third, and 15 %, 29 % and 43 % from the fourth to the
-/// sixth. In a stack of four to six levels that falls completely, this is 7 % to 18 % of the barrels above the lowest
-/// level. Results are also given for medians of 3.5 m and 7 m.
+/// No published drop tests of barrels were found. Of the barrels that toppled at Napa in 2014 about one in
+/// ten was lost (Wines & Vines 2016); the levels from which they fell are not recorded. A lognormal function
+/// with a median of 5 m and a dispersion of 0.6 agrees with that share. At 0.9 m per level, 0.2 % of the
+/// barrels that fall from the second level burst, 4 % from the third, 15 % from the fourth, 29 % from the
+/// fifth and 43 % from the sixth. If a stack of four to six levels falls completely, 7 % to 18 % of the
+/// barrels above the lowest level burst. Results are also given for medians of 3.5 m and 7 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breakage {
     /// Height of fall (m) at which half of the barrels burst.
@@ -22,7 +22,8 @@ pub struct Breakage {
 }
 
 impl Breakage {
-    /// The three assumptions: few barrels burst, the central assumption, many barrels burst.
+    /// The three assumptions of breakage, in this order: few barrels burst, the central assumption, many
+    /// barrels burst.
     pub const RANGE: [Self; 3] = [
         Self { median: 7.0, dispersion: 0.6 },
         Self { median: 5.0, dispersion: 0.6 },
@@ -35,28 +36,31 @@ impl Breakage {
     }
 }
 
-/// Assumed probability that a full barrel bursts, as a function of the largest force on it (N) since it fell.
+/// Assumed probability that a full barrel bursts, as a function of the largest force (N) on the barrel after
+/// it fell.
 ///
-/// It is not tested. It corresponds to the central assumption of [`Breakage`] for a barrel of 269 kg that falls freely
-/// on the floor.
+/// The function has not been tested. It corresponds to the central assumption of [`Breakage`] for a barrel of
+/// 269 kg that falls freely on the floor.
 ///
-/// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The force grows
-/// as the height to the power of 0.6, so that its dispersion is 0.6 times that of the height.
-/// A landing on other barrels, or on their heads, is softer than on the floor, so that the two assumptions differ there.
+/// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The
+/// force grows as the height to the power 0.6, so that the dispersion of the force is 0.6 times that of the
+/// height. A landing on other barrels or on barrel heads is softer than a landing on the floor, so that the
+/// two assumptions differ there.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
 
 /// Volume of wine in a bottle (m³).
 const BOTTLE: f64 = 0.75e-3;
 
-/// Assumed lower and upper cost (US$) of a lost bottle of wine, as the cellar could sell it.
+/// Assumed lower and upper value (US$) of a bottle of wine, for which the cellar could have sold it.
 ///
-/// A barrel of 225 L holds 25 cases (The Californian 2014).
+/// A barrel of 225 L holds 25 cases of wine (The Californian 2014).
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
 
-/// Assumed lower and upper cost (US$) of a burst barrel without its wine, for any size.
+/// Assumed lower and upper cost (US$) of a burst barrel of any size, without its wine.
 const BARREL_COST: [f64; 2] = [400.0, 1200.0];
 
-/// Returns the lower and upper cost (US$) of a number of burst barrels with their wine (m³).
+/// Returns the lower and upper cost (US$) of a number of burst barrels and of their wine, whose volume is
+/// `wine` (m³).
 pub(super) fn cost(barrels: f64, wine: f64) -> [f64; 2] {
     [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])
 }
@@ -70,14 +74,15 @@ pub struct Loss {
     pub cases: usize,
     /// Mean number of barrels that fall.
     pub fallen: f64,
-    /// 95 % interval of the mean number that fall, clustered by record.
+    /// 95 % interval of the mean number of barrels that fall, clustered by record.
     pub interval: Interval,
-    /// Expected number of barrels that burst, under the three assumptions of [`Breakage::RANGE`].
+    /// Expected number of barrels that burst, under each of the three assumptions in [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Expected loss of wine (m³), under the same assumptions: the contents of the barrels that burst. Leaks from the
-    /// bungs of intact barrels are not counted.
+    /// Expected loss of wine (m³), under each of the three assumptions. It is the contents of the barrels
+    /// that burst. Leaks from the bungs of intact barrels are not counted.
     pub wine: [f64; 3],
-    /// Expected number of barrels that burst by the largest force on them; `None` if the study does not record forces.
+    /// Expected number of barrels that burst, if the largest force on a barrel determines whether it bursts;
+    /// `None` if the study does not record forces.
     pub burst_by_force: Option<f64>,
 }
 
@@ -93,16 +98,16 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// Returns the mean losses at each level, over the cases that were simulated until nothing moved, or the reason why
-    /// they are unknown.
+    /// Returns the mean losses at each level, or the reason why they are unknown. Only cases that were
+    /// simulated until nothing moved are counted.
     pub(super) fn of(cases: &Cases) -> Result<Self, String> {
         if let Some(reason) = cases.endings.no_losses() {
             return Err(reason);
         }
         if cases.hunted {
             return Err(
-                "the levels are those of hunts for collapse, so that a mean over the cases \
-                        belongs to no level of shaking"
+                "the levels were chosen by hunts for collapse, so that a mean over the cases belongs to no level of \
+                        shaking"
                     .to_owned(),
             );
         }
@@ -116,12 +121,14 @@ impl Losses {
         self.interpolated(intensity, |loss| loss.fallen)
     }
 
-    /// Returns the expected number of burst barrels at an intensity, under an assumption of [`Breakage::RANGE`].
+    /// Returns the expected number of burst barrels at an intensity, under the assumption at the index
+    /// `assumption` in [`Breakage::RANGE`].
     pub fn burst(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.burst[assumption])
     }
 
-    /// Returns the expected loss of wine (m³) at an intensity, under an assumption of [`Breakage::RANGE`].
+    /// Returns the expected loss of wine (m³) at an intensity, under the assumption at the index `assumption`
+    /// in [`Breakage::RANGE`].
     pub fn wine(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.wine[assumption])
     }

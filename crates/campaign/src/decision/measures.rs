@@ -11,13 +11,13 @@ pub struct MeasureRow {
     pub measure: usize,
     /// Index of the other measure against which sufficiency is tested.
     pub beside: Option<usize>,
-    /// Fit of collapse to the measure, or the reason why there is no curve.
+    /// Fit of collapse against the measure, or the reason why there is no curve.
     pub collapse: Result<Measured, FitError>,
-    /// Regression of the drift of the top on the measure, for stacks that stood.
+    /// Regression of the drift of the top against the measure, for stacks that stood.
     pub drift: Option<Demanded>,
 }
 
-/// Compares all measures, and sorts them by the likelihood of the collapses, the largest first.
+/// Compares all measures. The measure under which the observed collapses are most likely comes first.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())

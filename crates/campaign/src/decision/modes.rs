@@ -10,11 +10,11 @@ use super::curve::{LEVEL, LimitCurve, stripe};
 pub struct ModeIncidence {
     /// Name of the mode.
     pub mode: String,
-    /// Number of collapses in this mode, among all cases of each level or bin.
+    /// Number of cases and of collapses in this mode, for each level or bin.
     pub stripes: Vec<Stripe>,
-    /// Wilson's interval of each fraction.
+    /// Wilson's interval for each fraction.
     pub intervals: Vec<Interval>,
-    /// Probability of collapse in this mode at each intensity of [`LimitCurve::grid`].
+    /// Probability of collapse in this mode, at each intensity of [`LimitCurve::grid`].
     ///
     /// Empty if collapse has no fitted curve, or if the cases do not determine the shares of the modes.
     pub fitted: Vec<f64>,
@@ -26,7 +26,7 @@ fn is(case: &Case, mode: usize) -> bool {
 
 /// Returns the incidence of every mode that occurs, the most frequent first.
 ///
-/// Empty for hunts, since their levels concentrate near collapse.
+/// The result is empty for hunts, since their levels concentrate near collapse.
 pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
     if cases.hunted {
         return Vec::new();

@@ -12,7 +12,7 @@ use super::words::{self, count, percent, range};
 use super::{Decision, figures, tables};
 use crate::study::Provenance;
 
-/// Builds the report page.
+/// Builds the report page of a decision.
 pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     Document {
         title: decision.cases.title.clone(),
@@ -28,7 +28,7 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     }
 }
 
-/// Returns the heading of a section.
+/// Returns a block with the heading of a section.
 pub(crate) fn heading(text: &str) -> Block {
     Block::Heading { level: 2, text: text.to_owned() }
 }
@@ -82,9 +82,9 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(Block::Table(tables::indices(&decision.sensitivities)));
         blocks.push(text(
             "The first index is the share of the variance that would vanish if the quantity were known; the total index is the \
-             share that would remain if all other quantities were known. The total exceeds the first by the effect of \
-             interactions. Demands are those up to the collapse. A quantity without effect in these blocks may have one in \
-             others, so no interval ends at zero.",
+             share that would remain if all other quantities were known. The total index exceeds the first by the \
+             effect of interactions. Demands are recorded until the collapse. A quantity without effect in \
+             these blocks may have an effect in others, so that no interval ends at zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
@@ -133,8 +133,8 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
     let mut said = Vec::new();
     if !cases.hunted && !cases.shares_levels(cases.main) {
         said.push(format!(
-            "The cases share no levels, so they are counted in {} bins of about {} neighboring cases; the intensity of \
-             a bin is the geometric mean over its cases. The curve is fitted to the single cases.",
+            "The cases do not share levels, so they are counted in {} bins of about {} neighboring cases; the \
+             intensity of a bin is the geometric mean over its cases. The curve is fitted to the individual cases.",
             curve.stripes.len(),
             cases.all.len() / curve.stripes.len().max(1)
         ));
@@ -145,7 +145,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         }
         Ok([median, dispersion]) => {
             said.push(format!(
-                "The curve is the lognormal one of maximum likelihood (Baker 2015); standard errors: {} of ln θ, \
+                "The curve is the lognormal curve of maximum likelihood (Baker 2015); standard errors: {} of ln θ, \
                  {} of ln β, {}.",
                 significant(median, 2),
                 significant(dispersion, 2),
@@ -157,7 +157,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
             ));
             said.push(match curve.band_kind {
                 BandKind::Records => {
-                    "The band is found by leaving out one record at a time (with Student's t), so that \
+                    "The band is computed by omitting one record at a time (with Student's t), so that \
                      cases of one record may depend on each other."
                         .to_owned()
                 }
@@ -309,24 +309,27 @@ fn assumptions() -> Vec<Block> {
     vec![
         Block::Table(table),
         Block::List(vec![
-            "No published drop tests of barrels with numbers were found. About one in ten of the barrels that toppled at Napa \
-             in 2014 was lost (Wines & Vines 2016); the heights of their falls are not known. The central curve (lognormal, \
-             median fall 5 m, dispersion 0.6) was chosen to agree: if stacks of four to six levels fall completely, 7 to \
-             18 % of the barrels above the lowest level burst."
+            "No published drop tests of barrels with numerical results were found. About one in ten of the \
+             barrels that toppled at Napa in 2014 was lost (Wines & Vines 2016); the heights of their falls are \
+             not known. The central curve (lognormal, median height of fall 5 m, dispersion 0.6) was chosen to \
+             agree: if stacks of four to six levels fall completely, 7 to 18 % of the barrels above the lowest \
+             level burst."
                 .into(),
-            "\"By force\" means that a barrel bursts by the largest force on it since it fell (lognormal, median 2.2 MN, \
-             dispersion 0.36), which equals the central assumption for a fall on the floor. The two assumptions differ where \
+            "\"By force\" means that the largest force on a barrel after it fell determines whether it bursts \
+             (lognormal, median 2.2 MN, dispersion 0.36). For a fall on the floor this is equivalent to the central \
+             assumption. The two assumptions differ where \
              barrels land on each other or on racks, or fall in steps; neither has been tested."
                 .into(),
-            "A burst barrel is assumed to cost its wine, at US$4 to US$20 per bottle of 0.75 L, and US$400 to US$1,200 for the \
-             barrel of any size."
+            "The assumed cost of a burst barrel is US$4 to US$20 per bottle of 0.75 L for its wine, plus US$400 to \
+             US$1,200 for the barrel, regardless of its size."
                 .into(),
-            "A burst barrel loses all its wine, by its size and fill in the scenario. Partly filled barrels are taken to burst \
-             like full ones. Barrels that do not burst lose nothing here, although bungs may leak. Damage to neighboring \
-             stacks, racks and buildings is not counted."
+            "A burst barrel loses all its wine; the volume follows from the size and the fill of the barrel in \
+             the scenario. Partly filled barrels are taken to burst like full ones. Barrels that do not burst \
+             lose nothing here, although bungs may leak. Damage to neighboring stacks, racks and buildings is \
+             not counted."
                 .into(),
-            "Only cases that were followed until nothing moved are counted. In a plane model every barrel stands for those \
-             beside it along the view."
+            "Only cases that were followed until nothing moved are counted. In a plane model, every barrel \
+             represents all barrels behind it in its row."
                 .into(),
         ]),
     ]

@@ -9,7 +9,7 @@ use super::cases::{Case, Cases, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Cases with one value of a factor, or with a third of its values.
+/// Cases with one value of a factor, or with values in one third of its range of values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.
@@ -37,7 +37,8 @@ pub struct Level {
     pub interval: Interval,
 }
 
-/// `true` if two intensities are the same level up to rounding, since levels are rounded when written as text.
+/// `true` if two intensities are the same level. A tolerance is needed because levels are rounded when they
+/// are written as text.
 pub(super) fn alike(one: f64, other: f64) -> bool {
     (one - other).abs() < 1e-6 * one
 }
@@ -54,19 +55,19 @@ impl Group {
 pub struct Effect {
     /// Name of the factor.
     pub factor: String,
-    /// Cases by value of the factor, in ascending order.
+    /// Groups of cases, in ascending order of the value of the factor.
     pub groups: Vec<Group>,
 }
 
 impl Effect {
-    /// Returns the difference between the largest and the smallest share of collapse of the groups.
+    /// Returns the difference between the largest and the smallest share of collapse among the groups.
     pub fn range(&self) -> f64 {
         let shares = || self.groups.iter().map(Group::share);
         shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
     }
 }
 
-/// Maximum number of values of a factor that are listed individually.
+/// Maximum number of values of a factor for which each value is a separate group.
 const MOST: usize = 6;
 
 /// Returns the effects of all factors that vary, the largest first.
@@ -105,8 +106,8 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
     found
 }
 
-/// Returns the most frequent value of a factor, the first if there are several; in a one-at-a-time design it is the
-/// base value.
+/// Returns the most frequent value of a factor, or the first of several. In a one-at-a-time design this is
+/// the base value.
 fn most_frequent(factor: &Column) -> Option<Value> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in 0..factor.values.len() {
@@ -123,7 +124,7 @@ fn group(label: String, of: Vec<&Case>) -> (Group, Vec<&Case>) {
     (Group { label, cases, collapsed, interval, levels: Vec::new() }, of)
 }
 
-/// Counts cases and collapses, with an interval clustered by motion.
+/// Counts cases and collapses, and computes an interval of their share that is clustered by motion.
 fn by_motion(of: &[&Case]) -> Level {
     let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     for case in of {
@@ -140,7 +141,8 @@ fn by_motion(of: &[&Case]) -> Level {
     }
 }
 
-/// Counts cases and collapses at each level, in ascending order; empty if cases were not scaled to levels.
+/// Counts cases and collapses at each level, in ascending order; empty if the cases were not scaled to
+/// levels.
 fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
     let leveled = of.iter().filter(|_| cases.leveled);
     let mut at: Vec<(f64, &Case)> =

@@ -47,7 +47,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
     table
 }
 
-/// Tabulates the first and total index of every varied quantity for every result.
+/// Tabulates the first-order and total index of every varied quantity for every result.
 pub(super) fn indices(all: &[Sensitivity]) -> Table {
     let rows = all.iter().flat_map(|of| of.inputs.iter().zip(0..).map(move |one| (of, one)));
     let result = |of: &Sensitivity, at: i32| {
@@ -96,7 +96,7 @@ pub(super) fn measures(decision: &Decision) -> Table {
     let proficient = |of: Demanded| Some(of.proficiency).filter(|value| *value > 0.0);
     Table::of(
         "Intensity measures as predictors of collapse, and of the drift of stacks that stood; the measure with the \
-         largest likelihood is at the top.",
+         largest likelihood comes first.",
         &decision.measures,
         &[
             ("measure", "", &|row| Cell::text(&all[row.measure].label)),

@@ -1,4 +1,4 @@
-//! Sentences of the report page: verdict and warnings.
+//! Sentences of the report page of a study: verdict and warnings.
 
 use barrelstack_fragility::{FitError, Interval, wilson};
 use barrelstack_report::{Cell, capital, measured, significant};
@@ -25,26 +25,27 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
-/// Formats an interval, with both ends formatted by `format`.
+/// Formats an interval; `format` formats each of its two ends.
 pub(crate) fn range(of: Interval, format: impl Fn(f64) -> String) -> String {
     format!("{} to {}", format(of.low), format(of.high))
 }
 
-/// Returns a table cell with a count, with all its digits.
+/// Returns a table cell with a count that is not rounded.
 pub(super) fn count(count: impl Into<f64>) -> Cell {
     let count: f64 = count.into();
     let digits = format!("{count:.0}").len();
     Cell::Number(count, digits)
 }
 
-/// Returns a note on runs without a verdict, if there are any.
+/// Returns a note on runs without a verdict; `None` if there are no such runs.
 pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
     (lost > 0).then(|| {
         format!("{lost} of {runs} runs have no verdict and are left out; the column `error` of the tables gives the reasons.")
     })
 }
 
-/// Returns a sentence on stacks that fall under their own weight, to open a statement; empty if there are none.
+/// Returns a sentence on stacks that fall under their own weight, to be placed before another sentence; empty
+/// if there are no such stacks.
 pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     let (falls, they) = match fallen {
         0 => return String::new(),
@@ -54,7 +55,7 @@ pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     format!("{fallen} of {of} {what} {falls} own weight, before {they} shaken. ")
 }
 
-/// Formats a rate as a recurrence interval in years.
+/// Formats a rate as a mean interval in years between events.
 fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
         return "no collapse".to_owned();
@@ -62,15 +63,15 @@ fn recurrence(rate: f64) -> String {
     format!("a collapse once in {} years", significant(1.0 / rate, 2))
 }
 
-/// Returns the reason why there is no curve, with intensities formatted by `format`.
+/// Returns the reason why there is no fitted curve; `format` formats intensities.
 pub(crate) fn refusal(reason: &FitError, format: impl Fn(f64) -> String) -> String {
     match reason {
         FitError::NothingFailed { largest } => format!(
-            "no case failed up to {}, so the median lies above; add cases of higher intensity",
+            "no case failed up to {}, so the median is higher; add cases of higher intensity",
             format(*largest)
         ),
         FitError::EverythingFailed { smallest } => format!(
-            "every case failed down to {}, so the median lies below; add cases of lower intensity",
+            "every case failed down to {}, so the median is lower; add cases of lower intensity",
             format(*smallest)
         ),
         FitError::Separated { above, below } => match (format(*above), format(*below)) {
@@ -100,7 +101,7 @@ pub(super) fn headline(decision: &Decision) -> String {
     fallen_at_rest(cases.fallen_at_rest(), cases.all.len(), "cases") + &collapse(decision)
 }
 
-/// Describes how collapse depends on the measure of the study.
+/// Describes how collapse depends on the intensity measure of the study.
 fn collapse(decision: &Decision) -> String {
     let cases = &decision.cases;
     let curve = &decision.curves[0];
@@ -122,7 +123,7 @@ fn collapse(decision: &Decision) -> String {
             measure.range(*interval)
         ),
         (Ok(fit), None) => format!(
-            "Half of the stacks collapse at a {} of {} ({rests_on}, which give it no interval).",
+            "Half of the stacks collapse at a {} of {} ({rests_on}, which determine no interval).",
             measure.label,
             measure.words(fit.curve.median)
         ),
@@ -140,7 +141,7 @@ fn collapse(decision: &Decision) -> String {
     }
 }
 
-/// Returns the sentences under the headline.
+/// Returns the sentences that follow the headline.
 pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     let cases = &decision.cases;
     let curve = &decision.curves[0];
@@ -159,7 +160,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             // The headline states the median, unless it warns against the curve.
             said.push(if curve.violates_order() {
                 format!(
-                    "A fitted curve, which does not show this, has a median {} of {} ({} with 95 % confidence) \
+                    "A fitted curve, which cannot show this, has a median {} of {} ({} with 95 % confidence) \
                      and a dispersion of {dispersion}.",
                     measure.label,
                     measure.words(fit.curve.median),
@@ -196,13 +197,13 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         let rate = &site.limits[0];
         let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
         said.push(format!(
-            "At the site of {} that is {}, a chance of {} in {} years{}.",
+            "At the site of {} this means {}, with a chance of {} in {} years{}.",
             site.hazard.file,
             recurrence(annual),
             percent(rate.chance),
             site.years,
             site.lost.as_ref().map_or_else(String::new, |lost| format!(
-                ", and {} barrels on the floor a year",
+                ", and {} barrels fall per year",
                 measured(lost.fallen.low, 2)
             ))
         ));
@@ -247,8 +248,8 @@ pub(super) fn warnings(
     }
     if cases.hunted {
         said.push(
-            "The levels are those of hunts for collapse, so that shares and means over all cases apply to the levels that were \
-             run, and not to shaking of a given strength."
+            "The levels were chosen by hunts for collapse, so that shares and means over all cases apply to the \
+             levels that were run, and not to shaking of a given strength."
                 .to_owned(),
         );
     }
@@ -307,7 +308,7 @@ pub(super) fn warnings(
     said
 }
 
-/// Describes intensities at which collapse becomes less likely.
+/// Warns of intensities above which collapse becomes less likely.
 fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     let measure = &cases.measures[curve.measure];
     let falls = curve.monotony.significant(0.05);
@@ -354,7 +355,8 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     let last = losses.levels.last().map_or(0.0, |loss| loss.intensity);
     if rows[rows.len() - 1].0 > 1.5 * last {
         said.push(format!(
-            "The hazard table reaches {}, but the study only {}: losses beyond are taken as those of its last level.",
+            "The hazard table reaches {}, but the study only {}: for stronger shaking, the losses at the last \
+             level of the study are used.",
             cases.measure().words(rows[rows.len() - 1].0),
             cases.measure().words(last)
         ));

@@ -8,10 +8,10 @@ use super::{AtLevel, Heights};
 use crate::decision::percent;
 use crate::scenario::View;
 
-/// Number of levels of the lowest stacks that are compared with the observations.
+/// Number of levels of the lowest stacks that are compared with the field observations.
 const LOWEST_OBSERVED: u32 = 4;
 
-/// Compares the results with observations at Napa.
+/// Compares the results with field observations at Napa.
 pub(super) fn napa(all: &Heights) -> Vec<Block> {
     let mut blocks = Vec::new();
     if all.request.highest >= LOWEST_OBSERVED {
@@ -33,11 +33,11 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     blocks
 }
 
-/// Tabulates the simulated shares for high stacks beside those observed at Napa.
+/// Tabulates the simulated shares for high stacks next to the shares observed at Napa.
 fn observations(all: &Heights) -> Table {
     let mut table = Table::new(
         format!(
-            "Stacks of {}: simulated at the strength of shaking at Napa, and observed there.",
+            "Stacks of {}: simulations at the strength of shaking at Napa, and observations there.",
             span(LOWEST_OBSERVED, all.request.highest)
         ),
         &[("", ""), ("simulated", ""), ("observed at Napa", "")],
@@ -80,7 +80,7 @@ fn observations(all: &Heights) -> Table {
     table
 }
 
-/// Tabulates the runs under the bundled record, unscaled.
+/// Tabulates the runs under the unscaled bundled record.
 fn recorded(all: &Heights) -> Table {
     let names: Vec<String> =
         all.request.heights().map(|levels| format!("{levels} levels")).collect();

@@ -15,11 +15,11 @@ described! {
         pub rack: String = all.request.rack.clone(),
         /// Name of the barrel in the catalog.
         pub barrel: String = all.request.barrel.clone(),
-        /// Seed of motions and friction.
+        /// Seed of the synthetic motions and of the random friction.
         pub seed: u32 = all.request.seed,
         /// Number of motions under which every stack was run.
         pub motions: usize = all.motions,
-        /// Number of all runs.
+        /// Total number of runs.
         pub runs: usize = all.runs,
         /// Number of runs without a verdict.
         pub runs_without_verdict: usize = all.left_out,
@@ -29,13 +29,13 @@ described! {
         pub headline: String = all.document.verdict.headline.clone(),
         /// Results of every height in every direction.
         pub heights: Vec<HeightRow> = all.heights.iter().map(HeightRow::of).collect(),
-        /// Runs under the bundled record, unscaled.
+        /// Runs under the unscaled bundled record.
         pub as_recorded: Vec<RecordedRow> = all.recorded.iter().map(RecordedRow::of).collect(),
         /// Warnings.
         pub warnings: Vec<String> = all.warnings.clone(),
     }
 
-    /// Run of a stack under the bundled record, unscaled.
+    /// Run of a stack under the unscaled bundled record.
     pub struct RecordedRow of run: &AsRecorded {
         /// Number of levels of the stack.
         pub levels: u32 = run.levels,
@@ -59,8 +59,8 @@ described! {
         pub levels: u32 = height.levels,
         /// Direction of the shaking: across or along the barrels.
         pub direction: &'static str ["transverse", "longitudinal"] = height.view.name(),
-        /// Largest steady horizontal acceleration that the stack bears, with the friction and the seats of the catalog;
-        /// null if it bears 1 g.
+        /// Static margin: largest steady horizontal acceleration under which the stack stands, with the
+        /// friction and the seats of the catalog; null if the stack stands at 1 g.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
         /// Results at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),
@@ -78,7 +78,8 @@ described! {
         pub cases: u32 = at.0.cases,
         /// Number of runs that collapse.
         pub collapsed: u32 = at.0.failures,
-        /// Lower and upper bound of the probability of collapse; each holds with 95 % confidence (Clopper and Pearson).
+        /// Lower and upper bound of the probability of collapse. Each of them is a one-sided bound with 95 %
+        /// confidence (Clopper and Pearson).
         pub interval: [Option<f64>; 2] as "1" = bounds(known(at.0)),
         /// Mean share of the barrels that fall.
         pub fallen_share: f64 as "1" = *at.1,

@@ -10,7 +10,8 @@ use crate::run::RunFailure;
 use crate::scenario::{Scenario, View};
 use crate::study::StudyError;
 
-/// Returns the static margin (m/s²) of a stack; `None` if it stands at 1 g, zero if it falls under its own weight.
+/// Returns the static margin (m/s²) of a stack: `None` if the stack stands even at 1 g, zero if it falls
+/// under its own weight.
 fn margin(
     request: &Request,
     (levels, view): (u32, View),
@@ -31,8 +32,8 @@ fn margin(
     }
 }
 
-/// Returns the static margins (m/s²) of stacks, given by levels and direction, in the same order; `None` for a stack
-/// that stands at 1 g.
+/// Returns the static margin (m/s²) of each stack; stacks are given by levels and direction. `None` for a
+/// stack that stands even at 1 g.
 pub(super) fn margins(
     request: &Request,
     stacks: &[(u32, View)],

@@ -1,4 +1,4 @@
-//! Report page of a study of heights.
+//! Report page of a study of safe heights.
 
 use barrelstack_fragility::{Fit, Interval, at_most};
 use barrelstack_report::{
@@ -14,12 +14,14 @@ use crate::decision::{
 use crate::scenario::title::{counted, number};
 use crate::scenario::{View, catalog};
 
-/// Largest share of collapse that is rated low, and the largest upper bound of the probability of collapse that is.
+/// Conditions for the rating "low": the maximum share of collapse, and the maximum upper bound of the
+/// probability of collapse.
 ///
-/// A probability above that bound is rated low in at most one of 20 tries, for any number of motions.
+/// A stack whose probability of collapse exceeds the second number is rated low in at most one of 20 studies,
+/// for any number of motions.
 const LOW: (f64, f64) = (0.05, 0.12);
 
-/// Largest share of collapse that is rated medium.
+/// Maximum share of collapse for the rating "medium".
 const MEDIUM: f64 = 0.25;
 
 /// Builds the report page.
@@ -50,7 +52,8 @@ fn rack_source(name: &str) -> String {
 
 /// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of shaking maps.
 ///
-/// The classes are averages over earthquakes in California (Wald et al. 1999), so that they are an assumption elsewhere.
+/// The classes are averages over earthquakes in California (Wald et al. 1999). For other regions they are an
+/// assumption.
 fn felt(velocity: f64) -> &'static str {
     match 100.0 * velocity {
         v if v < 8.1 => "moderate (V)",
@@ -81,8 +84,8 @@ fn named(velocity: f64) -> String {
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// Returns the results of a height at a level of PGV (m/s), in the direction with the larger upper bound of the
-/// probability of collapse.
+/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which
+/// the upper bound of the probability of collapse is larger.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     View::ALL
         .into_iter()
@@ -101,7 +104,8 @@ fn rating(at: &AtLevel) -> Rating {
     }
 }
 
-/// Returns the largest height that is rated low at a level of PGV (m/s) along with all smaller heights.
+/// Returns the largest number of levels that is rated low at a level of PGV (m/s), provided that all smaller
+/// numbers are rated low as well.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     all.request
         .heights()
@@ -111,7 +115,7 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
         .last()
 }
 
-/// Returns the smallest number of motions with which a height can be rated low if no stack collapses.
+/// Returns the smallest number of motions that suffice for the rating "low" if no stack collapses.
 fn fewest_motions() -> u32 {
     (1..1_000_000).find(|n| at_most(0, *n, 0.95) <= LOW.1).unwrap_or(u32::MAX)
 }
@@ -122,7 +126,8 @@ fn headline(all: &Heights) -> String {
     if motions < fewest_motions() {
         let more = fewest_motions() - motions;
         return format!(
-            "Too few motions to call any stack {racks} low in risk: {motions} shook every stack, and {more} more would do."
+            "Too few motions to rate any stack {racks} as low risk: {motions} shook every stack, and {more} \
+             more are needed."
         );
     }
     // Go from the weakest shaking up to the first level that is not rated low. If each level were judged
@@ -131,24 +136,25 @@ fn headline(all: &Heights) -> String {
         VELOCITIES.into_iter().map_while(|velocity| Some((velocity, highest_low(all, velocity)?)));
     let Some((velocity, levels)) = low.last() else {
         return format!(
-            "Not even two levels {racks} are low in risk in {}{}.",
+            "Not even two levels {racks} have a low risk in {}{}.",
             named(VELOCITIES[0]),
             weaker(all, VELOCITIES[0])
         );
     };
     let next = VELOCITIES.into_iter().find(|other| *other > velocity);
     format!(
-        "Up to {levels} levels {racks} are low in risk in {}, across the barrels and along them: {}{}.",
+        "Up to {levels} levels {racks} have a low risk in {}, across the barrels and along them: {}{}.",
         named(velocity),
         found(all, levels, velocity),
         next.map(|next| {
-            format!("; in {} not even two levels are{}", named(next), weaker(all, next))
+            format!("; in {} not even two levels do{}", named(next), weaker(all, next))
         })
         .unwrap_or_default()
     )
 }
 
-/// Returns the directions in which two levels are not rated low at a level of PGV (m/s), such as ", along the barrels".
+/// Returns the directions in which stacks of two levels are not rated low at a level of PGV (m/s), such as ",
+/// along the barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |view: &View| {
         let at = all.of(LOWEST, *view).and_then(|height| height.at(velocity));
@@ -158,8 +164,8 @@ fn weaker(all: &Heights, velocity: f64) -> String {
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
-/// Returns the worst result of all heights up to `levels` at a level of PGV (m/s), such as
-/// "in 24 motions none fell: at most 12 % (95 %)".
+/// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24
+/// motions none fell (the probability is at most 12 % with 95 % confidence)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -168,12 +174,16 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let Some(AtLevel { stripe, interval, .. }) = worst else { return String::new() };
     let fell = match stripe.failures {
         0 => "none fell".to_owned(),
-        count => format!("no more than {count} of a height fell"),
+        count => format!("no more than {count} of any height fell"),
     };
-    format!("in {} motions {fell}: at most {} (95 %)", stripe.cases, bound(interval.high))
+    format!(
+        "in {} motions {fell} (the probability is at most {} with 95 % confidence)",
+        stripe.cases,
+        bound(interval.high)
+    )
 }
 
-/// Formats a bound in whole percent, so that rounding may understate it by half a percent.
+/// Formats a bound as a whole percentage, so that rounding may understate the bound by half a percent.
 fn bound(high: f64) -> String {
     format!("{:.0} %", 100.0 * high)
 }
@@ -221,7 +231,7 @@ fn gravities(acceleration: f64) -> String {
     format!("{:.2} g", acceleration / barrelstack_motion::STANDARD_GRAVITY)
 }
 
-/// Returns the tilt (degrees) of a floor that acts like a steady horizontal acceleration (m/s²).
+/// Returns the tilt (degrees) of a floor that has the same effect as a steady horizontal acceleration (m/s²).
 fn tilt(acceleration: f64) -> f64 {
     libm::atan(acceleration / barrelstack_motion::STANDARD_GRAVITY).to_degrees()
 }
@@ -233,8 +243,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse, in the direction with the higher bound, and in brackets the range \
              of the true chance; each end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range \
-             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 tries. ! medium: at most \
-             {:.0} %. ✗ high: more. These limits are a choice.",
+             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 studies. ! \
+             medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * MEDIUM
@@ -309,7 +319,7 @@ fn direction(all: &Heights, view: View) -> Table {
     by_height(
         all,
         format!(
-            "Collapse under shaking {}: number of stacks that collapse, of those run.",
+            "Collapse under shaking {}: number of stacks that collapse and number of stacks that were run.",
             view.words()
         ),
         |levels, velocity| {
@@ -323,7 +333,7 @@ fn direction(all: &Heights, view: View) -> Table {
     )
 }
 
-/// Tabulates the static margin of each height, and the weakest shaking in which some stacks collapse.
+/// Tabulates, for each height, the static margin and the weakest shaking in which some stacks collapse.
 fn static_margins(all: &Heights) -> Table {
     let first = |height: &Height| {
         let falls = |at: &AtLevel| at.stripe.failures > 0;
@@ -332,8 +342,8 @@ fn static_margins(all: &Heights) -> Table {
     };
     Table::of(
         "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
-         with the friction and the seats of the catalog. Shaking with pulses as long as the stack takes to tip over \
-         fells it at little more.",
+         with the friction and the seats of the catalog. If the shaking has pulses that last as long as the stack \
+         takes to tip over, a slightly larger acceleration makes it collapse.",
         &all.heights,
         &[
             ("levels", "", &|height| Cell::text(height.levels.to_string())),
@@ -352,7 +362,7 @@ fn level_axis(all: &Heights) -> Axis {
     Axis { range: Some(range), ..Axis::new("levels", "") }
 }
 
-/// Plots the share of collapse against height at three levels of shaking, with intervals.
+/// Plots the share of collapse against height at three levels of shaking, with 95 % intervals.
 fn chart(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
@@ -383,7 +393,7 @@ fn chart(all: &Heights) -> Figure {
     )
 }
 
-/// Plots the PGV at which half of the stacks collapse against height.
+/// Plots, against height, the PGV at which half of the stacks collapse.
 fn medians(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, view) in View::ALL.into_iter().enumerate() {
@@ -452,23 +462,23 @@ fn median_table(all: &Heights) -> Table {
 fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
-            "Motions: both horizontal components of South Napa 2014 at Napa College with its vertical, {} synthetic ones \
-             (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of near faults){}, each scaled to \
-             every level of PGV.",
+            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
+             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of \
+             near faults){}, each scaled to every level of PGV.",
             all.request.synthetic,
             if all.request.records.is_empty() { "" } else { ", and the given records" }
         ),
         format!(
-            "Full barrels, `{}` of the catalog. Friction is drawn for every run: rack on floor about 0.5 (scatter 20 %), \
-             barrel on rack about 0.3 (scatter 25 %). Both are assumptions; wet floors and painted racks differ. Measure \
-             your own.",
+            "Full barrels, `{}` of the catalog. Friction is drawn for every run, with a median of about 0.5 for \
+             rack on floor (scatter 20 %) and about 0.3 for barrel on rack (scatter 25 %). Both are \
+             assumptions; wet floors and painted racks differ. Measure your own.",
             all.request.barrel
         ),
         "Each stack stands alone, in a plane model: no neighbors, no walls, no straps. Collapse is the first loss of a seat \
          by a barrel or a rack."
             .into(),
-        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. Results at \
-         levels far from a motion's own strength are the least certain."
+        "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. \
+         Results at levels far from the original strength of a motion are the least certain."
             .into(),
         "Ranges count every motion as one observation. They apply to motions like these and do not cover errors of the model."
             .into(),

@@ -1,4 +1,4 @@
-//! Study files of a study of heights: stacks, motions and random factors.
+//! Study files of a study of safe heights: stacks, motions and random factors.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use crate::scenario::{Scenario, View, catalog};
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Number of levels of the lowest stacks.
+/// Number of levels of the lowest stacks in the study.
 pub const LOWEST: u32 = 2;
 /// Largest number of levels that may be requested.
 pub const HIGHEST: u32 = 6;
@@ -16,13 +16,13 @@ pub const HIGHEST: u32 = 6;
 /// Levels of peak ground velocity (m/s) to which every motion is scaled.
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
 
-/// Returns the name of a study, which is also that of its folder.
+/// Returns the name of a study, which is also the name of its folder.
 pub(super) fn name(view: View, recorded: bool) -> String {
     format!("{}{}", view.name(), if recorded { "-as-recorded" } else { "" })
 }
 
-/// Returns the text of a study file: every height under every motion at every level, or under the bundled record
-/// unscaled.
+/// Returns the text of a study file. The study runs every height under every motion at every level, or under
+/// the unscaled bundled record.
 pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
     let (columns, rack) = columns_and_rack(request, view)?;
     let levels: Vec<String> = request.heights().map(|levels| levels.to_string()).collect();
@@ -73,7 +73,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
     Ok(text)
 }
 
-/// Returns the number of columns of a stack in a direction, and its rack as TOML.
+/// Returns the number of columns of a stack for a direction of shaking, and its rack as TOML.
 fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), HeightsError> {
     let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
         let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
@@ -93,7 +93,7 @@ fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), Heig
     })
 }
 
-/// Returns the table `[stack]` of a scenario, for a number of levels.
+/// Returns the `[stack]` table of a scenario for a number of levels.
 pub(super) fn stack(request: &Request, view: View, levels: u32) -> Result<String, HeightsError> {
     let (columns, rack) = columns_and_rack(request, view)?;
     Ok(format!(
@@ -103,17 +103,18 @@ pub(super) fn stack(request: &Request, view: View, levels: u32) -> Result<String
     ))
 }
 
-/// Returns a path as a TOML string, made absolute so that it does not depend on the folder of the study.
+/// Returns a path as a TOML string. The path is made absolute, so that it does not depend on the folder of
+/// the study.
 pub(crate) fn quoted(path: &std::path::Path) -> String {
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let text = whole.display().to_string().replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{text}\"")
 }
 
-/// Returns the tables `[[motion]]` of synthetic motions, with a suffix to their names.
+/// Returns the `[[motion]]` tables of synthetic motions; `suffix` is appended to their names.
 ///
-/// Half of them are of a moderate earthquake nearby, a quarter of a large one further away, and a quarter have a velocity
-/// pulse as near faults.
+/// Half of the motions are of a moderate earthquake nearby, and a quarter are of a large earthquake further
+/// away. The last quarter has a velocity pulse as it occurs near faults.
 pub(crate) fn synthetic(count: u32, suffix: &str) -> String {
     let large = count / 4;
     let pulses = count / 4;

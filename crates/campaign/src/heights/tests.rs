@@ -7,7 +7,8 @@ use super::page::document;
 use super::*;
 use crate::decision::BandKind;
 
-/// Returns a curve without a fit, from counts for 24 motions at each level of shaking.
+/// Returns a curve without a fit. `failures` gives the number of failures in 24 motions as a function of the
+/// level of shaking.
 fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     let stripe =
         |velocity: f64| Stripe { intensity: velocity, cases: 24, failures: failures(velocity) };
@@ -36,7 +37,8 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
-/// Returns results in which `failures` stacks collapse, as a function of levels, direction and level of shaking.
+/// Returns results in which `failures` gives the number of stacks that collapse, as a function of levels,
+/// direction and level of shaking.
 fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
     let height = |levels: u32, view: View| Height {
         levels,
@@ -74,21 +76,21 @@ fn every_headline_says_the_rack_and_the_direction() {
     let page = document(&made(along));
     assert_eq!(
         page.verdict.headline,
-        "Up to 5 levels on two-barrel racks are low in risk in very strong shaking (24 cm/s), across the barrels and \
-         along them: in 24 motions none fell: at most 12 % (95 %); in severe shaking (36 cm/s) not even two levels are, \
-         along the barrels."
+        "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), across the barrels and \
+         along them: in 24 motions none fell (the probability is at most 12 % with 95 % confidence); in severe shaking \
+         (36 cm/s) not even two levels do, along the barrels."
     );
     // One collapse in 24 leaves up to 18 % possible, which is not rated low.
     let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
     assert_eq!(
         one.verdict.headline,
-        "Not even two levels on two-barrel racks are low in risk in strong shaking (12 cm/s), across the barrels."
+        "Not even two levels on two-barrel racks have a low risk in strong shaking (12 cm/s), across the barrels."
     );
     let few = document(&Heights { motions: 5, ..made(along) });
     assert!(
         few.verdict
             .headline
-            .contains("any stack on two-barrel racks low in risk: 5 shook every stack")
+            .contains("any stack on two-barrel racks as low risk: 5 shook every stack")
     );
 }
 

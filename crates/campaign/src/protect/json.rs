@@ -13,27 +13,29 @@ described! {
         pub title: String = all.request.scenario.title.clone(),
         /// Peak ground velocities to which every motion was scaled.
         pub velocities: Vec<f64> as "m/s" = all.request.shaking.levels().to_vec(),
-        /// Reference of the estimates: one event, with all levels equally likely, or one year at the site.
+        /// Reference of the estimates: one event, in which all levels are equally likely, or one year at the
+        /// site.
         pub per: &'static str ["event", "year"] = match all.request.shaking {
             Shaking::Levels(_) => "event",
             Shaking::Site(_) => "year",
         },
-        /// Name of the file of the hazard curve; null without a site.
+        /// Name of the file of the hazard curve; null if there is none.
         pub hazard: Option<String> = match &all.request.shaking {
             Shaking::Levels(_) => None,
             Shaking::Site(site) => Some(site.file.clone()),
         },
-        /// Seed of motions and friction.
+        /// Seed of the motions and of the random friction.
         pub seed: u32 = all.request.seed,
-        /// Largest cost of a protection of one stack; null without a limit.
+        /// Maximum cost of a protection of one stack; null if there is no limit.
         pub budget: Option<f64> as "US$" = all.request.budget,
-        /// Number of protections tried, not counting the stack as it is.
+        /// Number of protections that were tried, excluding the unprotected stack.
         pub tries: usize = all.tries(),
-        /// Number of all runs.
+        /// Total number of runs.
         pub runs: usize = all.runs,
         /// Main result in a sentence.
         pub headline: String = all.document.verdict.headline.clone(),
-        /// Name of the protection that saves most barrels for its cost; null if none helps significantly.
+        /// Name of the protection that saves most barrels for its cost; null if no protection helps
+        /// significantly.
         pub best: Option<String> = all.best().map(|one| one.protection.name.clone()),
         /// Every protection that was tried, sorted by last round (the latest first) and then by the number of fallen
         /// barrels.
@@ -46,30 +48,33 @@ described! {
     pub struct ProtectionRow of one: &Ranked {
         /// Name of the protection.
         pub name: String = one.protection.name.clone(),
-        /// Kind of change.
+        /// Kind of the protection.
         pub kind: &'static str ["as-it-is", "height", "rack", "device", "pair"] = one.protection.kind.name(),
-        /// Changes, as overrides of the scenario.
+        /// Changes of the scenario, as overrides.
         pub changes: Vec<String> = one.protection.changes.clone(),
         /// Lower and upper cost for one stack.
         pub cost: [f64; 2] as "US$" = one.protection.cost,
         /// Source of the cost.
         pub cost_source: String = one.protection.source.clone(),
-        /// Number of barrels that have to be stored elsewhere.
+        /// Number of barrels that the protection requires to be stored elsewhere.
         pub barrels_moved: u32 = one.protection.moved,
         /// Probability of collapse, or number of collapses per year.
         pub collapse: Interval = Interval::of(&one.collapse),
         /// Number of barrels that fall, per event or per year.
         pub barrels_fallen: Interval = Interval::of(&one.fallen),
-        /// Number of barrels that burst under the central assumption, per event or per year.
+        /// Number of barrels that burst under the central assumption, per event or per year, according to
+        /// `per`.
         pub barrels_burst: Interval = Interval::of(&one.burst),
-        /// Reduction of fallen barrels compared with the stack as it is, under the same motions; null for the stack as it is.
+        /// Reduction of fallen barrels compared with the unprotected stack, under the same motions; null for
+        /// the unprotected stack.
         pub barrels_saved: Option<Interval> = one.saved.as_ref().map(Interval::of),
-        /// The same reduction, with an interval that holds for all tried protections simultaneously (Bonferroni), by which
-        /// `best` is chosen; null for the stack as it is.
+        /// Reduction of fallen barrels as in `barrels_saved`, with an interval that holds for all tried
+        /// protections simultaneously (Bonferroni). This interval decides on `best`. Null for the unprotected
+        /// stack.
         pub barrels_saved_together: Option<Interval> = one.saved_together.as_ref().map(Interval::of),
-        /// Number of barrels that fall in the worst state of maintenance; null if not tried.
+        /// Number of barrels that fall in the worst state of maintenance; null if no such state was tried.
         pub barrels_fallen_when_worn: Option<Interval> = one.worn.as_ref().map(|(_, worn)| Interval::of(worn)),
-        /// Description of that state; null if not tried.
+        /// Description of the worst state of maintenance; null if no such state was tried.
         pub worn: Option<String> = one.worn.as_ref().map(|(words, _)| words.clone()),
         /// Direction of shaking in which more barrels fall.
         pub direction: &'static str ["transverse", "longitudinal"] = one.direction.name(),
@@ -87,7 +92,8 @@ described! {
         pub on_front: bool = one.on_front,
     }
 
-    /// Mean and its 95 % interval, which is clustered by motion and allows for a small number of motions.
+    /// Mean and its 95 % interval. The interval is clustered by motion and allows for the small number of
+    /// motions.
     pub struct Interval of estimate: &Estimate {
         /// Mean; null if no run has a verdict.
         pub mean: Option<f64> as "that of the field" = Some(estimate.mean).filter(|mean| mean.is_finite()),
@@ -97,11 +103,11 @@ described! {
         pub high: f64 as "that of the field" = estimate.high,
     }
 
-    /// Protection that was not tried.
+    /// A protection that was not tried.
     pub struct NotTried of one: &(String, String) {
         /// Name of the protection.
         pub name: String = one.0.clone(),
-        /// Reason why it was not tried.
+        /// Reason why the protection was not tried.
         pub reason: String = one.1.clone(),
     }
 }

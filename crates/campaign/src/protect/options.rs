@@ -1,21 +1,21 @@
-//! Protections of a stack: changes of the scenario, with their cost and their worn states.
+//! Protections of a stack: changes of the scenario, with their costs and their worn states.
 
 use barrelstack::device::{Cost, DEVICES, Each, Setting};
 
 use crate::scenario::{MotionSource, Scenario, ScenarioError, catalog};
 
-/// Kind of a protection; a pair has two different kinds.
+/// Kind of a protection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// The stack as it is.
+    /// The unprotected stack, as it is.
     AsItIs,
     /// Fewer levels.
     Height,
     /// Other racks.
     Rack,
-    /// A device, identified by its name in the singular.
+    /// A device; the text is the name of the device in the singular.
     Device(&'static str),
-    /// Two protections of different kinds at once.
+    /// Two protections of different kinds together.
     Pair,
 }
 
@@ -32,12 +32,12 @@ impl Kind {
     }
 }
 
-/// Protection of a stack, single or combined from two.
+/// Protection of a stack: a single protection, or a combination of two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protection {
     /// Kind of the protection.
     pub kind: Kind,
-    /// Name of the folder of its studies: letters, digits and dashes.
+    /// Name of the folder for the studies of the protection: letters, digits and dashes.
     pub key: String,
     /// Name for display.
     pub name: String,
@@ -47,24 +47,27 @@ pub struct Protection {
     pub cost: [f64; 2],
     /// Source of the cost.
     pub source: String,
-    /// Number of barrels that have to be stored elsewhere.
+    /// Number of barrels that the protection requires to be stored elsewhere.
     pub moved: u32,
-    /// Worn states: a description, and further overrides of the scenario.
+    /// Worn states of the protection: for each, a description and further overrides of the scenario.
     pub degraded: Vec<(String, Vec<String>)>,
 }
 
 /// Lower and upper price (US$) of a new rack for two barrels.
 ///
-/// The price was about 100 in 2009 (cedarrivercellars.com); that it has doubled since is an assumption.
+/// The price was about US$100 in 2009 (cedarrivercellars.com). It is assumed that the price may have doubled
+/// since.
 const RACK: [f64; 2] = [100.0, 200.0];
 
-/// Assumed lower and upper price (US$) of a rack on posts, which has about twice the steel.
+/// Assumed lower and upper price (US$) of a rack on posts, which contains about twice as much steel as a rack
+/// for two barrels.
 const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 
-/// Assumed lower and upper cost (US$) of storing a barrel elsewhere: half a rack and its floor space.
+/// Assumed lower and upper cost (US$) of storing a barrel elsewhere, that is, of half a rack and its floor
+/// space.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
-/// Returns all single protections of a stack; the first is the stack as it is.
+/// Returns all single protections of a stack; the first is the unprotected stack.
 pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let Some(stack) = scenario.stack() else { return Vec::new() };
     let (levels, columns) = (stack.levels, stack.columns);
@@ -102,8 +105,8 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
         all.push(Protection {
             changes: vec![format!("stack.rack=\"{}\"", rack.base)],
             cost: times(price, count),
-            source: "about US$100 for a rack of two barrels in 2009; that racks on posts cost twice as much is an \
-                     assumption"
+            source: "about US$100 for a rack of two barrels in 2009; it is assumed that racks on posts cost twice \
+                     as much"
                 .to_owned(),
             ..none(Kind::Rack, &format!("rack-{}", rack.base), &format!("{} racks", rack.base))
         });
@@ -123,9 +126,10 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     all
 }
 
-/// Returns the lower and upper price of a device (US$).
+/// Returns the lower and upper price (US$) of a device.
 ///
-/// A price per level is multiplied by the number of levels that the changes state, by default all.
+/// A price per level is multiplied by the number of levels that `changes` states, or by `levels` if it states
+/// none.
 fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     let set = |change: &String| change.split_once(".levels=")?.1.parse::<u32>().ok();
     let count = match cost.each {
@@ -144,7 +148,8 @@ pub(crate) fn slug(name: &str) -> String {
 
 /// Combines two protections: the second is applied to the stack that results from the first.
 ///
-/// Returns `None` for two of one kind, since they change the same fields, and if the second does not fit that stack.
+/// Returns `None` if both are of one kind, since they then change the same fields, or if the second does not
+/// fit the resulting stack.
 pub(super) fn pair(
     scenario: &Scenario,
     one: &Protection,
@@ -172,7 +177,7 @@ pub(super) fn pair(
     })
 }
 
-/// Applies overrides to a scenario from any source, without reading a file.
+/// Applies overrides to a scenario without reading a file.
 pub(crate) fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
@@ -190,7 +195,7 @@ impl Protection {
         changed(scenario, &self.changes)
     }
 
-    /// Returns the worn states: a description of each, and the protection in that state.
+    /// Returns the worn states of the protection: for each, its description and the protection in that state.
     pub(super) fn worn(&self) -> impl Iterator<Item = (&str, Self)> {
         self.degraded.iter().enumerate().map(|(at, (words, changes))| {
             let field = |change: &String| change.split('=').next().map(str::to_owned);

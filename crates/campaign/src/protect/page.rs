@@ -42,7 +42,8 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
     }
 }
 
-/// Returns the reference of the estimates, such as "a year at this site" or "in shaking of 25, 50, 75 cm/s".
+/// Returns the situation to which the estimates refer, such as "a year at this site" or "in shaking of 25,
+/// 50, 75 cm/s".
 fn per(all: &Ranking) -> String {
     match &all.request.shaking {
         Shaking::Site(_) => "a year at this site".to_owned(),
@@ -60,12 +61,13 @@ fn is_site(all: &Ranking) -> bool {
     matches!(all.request.shaking, Shaking::Site(_))
 }
 
-/// Formats the probability or annual rate of collapse.
+/// Formats a probability of collapse, or an annual rate of collapse for a site.
 fn collapse(all: &Ranking, value: f64) -> String {
     if is_site(all) { format!("{} times a year", significant(value, 2)) } else { percent(value) }
 }
 
-/// Returns a sentence if the stack as it is, or with the best protection, falls under its own weight; empty otherwise.
+/// Returns a sentence if the stack, unprotected or with the best protection, falls under its own weight;
+/// empty otherwise.
 fn by_themselves(all: &Ranking) -> String {
     let of = |one: Option<&Ranked>, name: &str| {
         let said = one.map(|one| fallen_at_rest(one.fallen_at_rest, one.runs, "runs"));
@@ -104,18 +106,18 @@ fn headline(all: &Ranking) -> String {
     )
 }
 
-/// Returns a sentence with the chance or rate of collapse, its upper bound, and the number of motions.
+/// Returns a sentence with the probability or rate of collapse, its upper bound, and the number of motions.
 fn known(all: &Ranking, one: &Ranked) -> String {
     let (mean, high) = (one.collapse.mean, collapse(all, one.collapse.high));
     if mean <= 0.0 {
         return format!(
-            " Under {} motions it never collapses: at most {high} (95 %).",
+            " Under {} motions it never collapses; the upper bound is {high} (95 % confidence).",
             one.motions
         );
     }
     let runs = if is_site(all) { "" } else { "in " };
     format!(
-        " It collapses {runs}{} under {} motions, at most {high} (95 %).",
+        " It collapses {runs}{} under {} motions; the upper bound is {high} (95 % confidence).",
         collapse(all, mean),
         one.motions
     )
@@ -137,7 +139,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
         let shown = |x: f64| significant(x, 2);
         said.push(format!(
             "It keeps {} barrels from falling on average ({} to {} with 95 % confidence, for all {} protections that were \
-             tried simultaneously). The mean of the best of many tends to be somewhat too good.",
+             tried simultaneously). The mean for the best of many protections tends to be somewhat too favorable.",
             shown(saved.mean),
             shown(saved.low),
             shown(saved.high),
@@ -170,15 +172,15 @@ fn sentences(all: &Ranking) -> Vec<String> {
         }
     }
     said.push(format!(
-        "{} protections were tried in {} runs, across the barrels and along them where the scenario has both.",
+        "{} protections were tried in {} runs, across the barrels and along them if the scenario has both directions.",
         all.tries(),
         all.runs
     ));
     said
 }
 
-/// Formats a number of barrels with its interval: two decimals per event, or two significant digits per year, since
-/// annual numbers may be far below one.
+/// Formats a number of barrels with its interval. Numbers per event have two decimals. Numbers per year have
+/// two significant digits, since they may be far below one.
 fn interval(all: &Ranking, estimate: &Estimate) -> String {
     let shown = |x: f64| match format!("{x:.2}") {
         _ if is_site(all) => significant(x, 2),
@@ -230,7 +232,9 @@ fn table(all: &Ranking) -> Table {
             (fallen, "", &|one| Cell::text(interval(all, &one.fallen))),
             (burst, "", &|one| Cell::text(interval(all, &one.burst))),
             ("fewer fall, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
-            ("the same for all tries at once", "", &|one| Cell::maybe(shown(&one.saved_together))),
+            ("the same, for all protections at once", "", &|one| {
+                Cell::maybe(shown(&one.saved_together))
+            }),
             ("fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
             ("weaker", "", &|one| Cell::text(one.direction.words())),
             ("motions", "", &|one| Cell::text(one.motions.to_string())),
@@ -241,11 +245,12 @@ fn table(all: &Ranking) -> Table {
 fn legend(all: &Ranking) -> String {
     format!(
         "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections with \
-         fewer motions were dropped early, because a cheaper one is significantly better or half of the others did better. \
-         \"Fewer fall\" compares run by run under the same {}, which is more precise than the difference of two means. \
-         The next column has an interval that holds for all {} protections at once; it decides whether a protection helps \
-         significantly, since the best of many tries looks better than it is. All intervals allow for the small number of \
-         motions. Numbers are for the direction of shaking in which more barrels fall.",
+         fewer motions were dropped early, because a cheaper protection is significantly better or because half \
+         of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more precise \
+         than the difference of two means. The next column has an interval that holds for all {} protections at \
+         once; it decides whether a protection helps significantly, since the best of many protections looks \
+         better than it is. All intervals allow for the small number of motions. Numbers are for the direction \
+         of shaking in which more barrels fall.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -287,7 +292,8 @@ fn chart(all: &Ranking) -> Figure {
     )
 }
 
-/// Tabulates the changes of each protection, so that a reader can try them.
+/// Tabulates the changes of each protection in the scenario, so that readers can try the protection
+/// themselves.
 fn changes(all: &Ranking) -> Table {
     let tried = all.all.iter().map(|one| &one.protection);
     Table::of(
@@ -306,24 +312,26 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     let motions = if own {
         "Motions: the given records, each scaled to every level of peak ground velocity.".to_owned()
     } else {
-        "Motions: both components of South Napa 2014 at Napa College with its vertical, and synthetic ones (earthquakes \
-         of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every level of peak ground velocity."
+        "Motions: both components of South Napa 2014 at Napa College with the vertical component, and synthetic \
+         motions (earthquakes of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every \
+         level of peak ground velocity."
             .to_owned()
     };
     vec![
         motions,
-        "Friction is drawn for every run about that of the scenario, with an assumed scatter of 20 % for rack on floor and of \
-         25 % for barrel on rack. All protections draw the same quantiles."
+        "Friction is drawn for every run around the value in the scenario, with an assumed scatter of 20 % for \
+         rack on floor and of 25 % for barrel on rack. All protections draw the same quantiles."
             .into(),
-        "Costs are for one stack, for purchase and installation once; most are assumptions, listed in the table. Labor, lost \
-         time and injuries are not counted."
+        "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
+         table. Labor, lost time and injuries are not counted."
             .into(),
-        "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; none is tested.".into(),
+        "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; \
+         none has been tested.".into(),
         "The stack stands alone, in a plane model: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
          do not tear unless the scenario states a strength."
             .into(),
-        "Between two levels of shaking the loss is interpolated over the logarithm of the velocity. Below half of the lowest \
-         level nothing is lost; above the highest level the loss is that of the highest."
+        "Between two levels of shaking the loss is interpolated linearly in the logarithm of the velocity. Below \
+         the lowest level it decreases to zero at half of that level; above the highest level it remains constant."
             .into(),
     ]
 }

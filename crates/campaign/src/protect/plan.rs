@@ -1,4 +1,5 @@
-//! Studies of a ranking: one per protection, direction and round, which differ in the stack only.
+//! Studies of a ranking. There is one study per protection, direction and round; studies of the same round
+//! differ in the stack only.
 
 use std::fmt::Write as _;
 
@@ -9,24 +10,25 @@ use crate::study::Study;
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Number of runs of a chunk, the unit that is kept or lost at an interruption.
+/// Number of runs in a chunk, the unit that is stored or lost as a whole if the study is interrupted.
 const CHUNK: usize = 24;
 
-/// Table `[[motion]]` with both horizontal components of the bundled record and its vertical.
+/// `[[motion]]` table with both horizontal components of the bundled record, each with the vertical
+/// component.
 pub(crate) const NAPA: &str = "[[motion]]\n\
      bundled = \"napa-college-2014\"\n\
      components = [\"horizontal-1\", \"horizontal-2\"]\n\
      each = { vertical = \"UP\" }\n\n";
 
-/// Returns the name of the folder of a study, below the folder of its protection.
+/// Returns the name of the folder of a study, which lies in the folder of the protection.
 pub(super) fn name(direction: &str, round: u32) -> String {
     format!("{direction}-{}", round + 1)
 }
 
 /// Returns the study of a stack in one direction, in a round counted from 0.
 ///
-/// Random draws depend on the round only, so that all protections have the same motions and the same quantiles of
-/// friction and of the constants of seats.
+/// Random draws depend on the round only. All protections therefore have the same motions, and the same
+/// quantiles of friction and of the contact constants of seats.
 ///
 /// # Errors
 /// If a record cannot be read.
@@ -43,7 +45,7 @@ pub(super) fn study(
 
 /// Returns the study of a stack under motions that are scaled to levels of peak ground velocity (m/s).
 ///
-/// Uncertain parameters are drawn for each run from the seed. Runs end as `Until` states.
+/// Uncertain parameters are drawn for each run from the seed. `Until` determines when runs end.
 ///
 /// # Errors
 /// If a record cannot be read.
@@ -69,8 +71,8 @@ pub(crate) fn shaken(
     Study::written(title, &text)
 }
 
-/// Returns the tables `[[motion]]` of a round: the given records, or synthetic motions and, in the first round, the
-/// bundled record.
+/// Returns the `[[motion]]` tables of a round. They contain the given records; without given records, they
+/// contain synthetic motions and, in the first round, the bundled record.
 fn motions(request: &Request, round: u32) -> String {
     let mut text = String::new();
     for record in &request.records {

@@ -28,7 +28,7 @@ impl Outcome {
     }
 }
 
-/// Quantity by which protections are judged: the barrels that fall.
+/// Quantity by which protections are judged: the number of barrels that fall.
 pub(super) const FALLEN: Quantity = |run| run.fallen;
 
 /// All runs of a stack in one direction, by motion and level of shaking.
@@ -44,7 +44,7 @@ pub(super) struct Runs {
 /// Mean of one quantity, with its interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Mean over all motions, weighted over the levels of shaking.
+    /// Mean over all motions; the levels of shaking are weighted.
     pub mean: f64,
     /// Lower end of the 95 % interval, clustered by motion.
     pub low: f64,
@@ -74,7 +74,8 @@ impl Runs {
         }
     }
 
-    /// Returns the mean of a quantity for each motion, weighted over the levels; motions that lack a level are left out.
+    /// Returns the mean of a quantity for each motion, over the weighted levels. Motions that lack a run at
+    /// some level are left out.
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
@@ -96,7 +97,8 @@ impl Runs {
         self.by_motion.values().filter(|levels| levels.iter().all(|runs| !runs.is_empty())).count()
     }
 
-    /// Estimates a quantity, weighted over the levels; `most` is its largest possible value in one run.
+    /// Estimates the mean of a quantity over the weighted levels; `most` is the largest possible value of the
+    /// quantity in one run.
     pub(super) fn estimate(&self, quantity: Quantity, weights: &[f64], most: f64) -> Estimate {
         let values: Vec<f64> = self.by_motion(quantity, weights).into_values().collect();
         let scale = most * weights.iter().sum::<f64>();
@@ -109,10 +111,11 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// Estimates by how much a quantity is smaller than in other runs under the same motions.
+    /// Estimates by how much a quantity is smaller than in the runs `other` under the same motions.
     ///
-    /// The result is the mean of the differences with its 95 % interval ([`mean_difference`]), as the best of a number of
-    /// tries; `most` is the largest possible value in one run. `None` if fewer than two motions are common to both.
+    /// Returns the mean of the differences and its 95 % interval ([`mean_difference`]). The interval is
+    /// widened for the number of tries, since the best of them is reported. `most` is the largest possible
+    /// value in one run. Returns `None` if fewer than two motions are common to both.
     pub(super) fn less_than(
         &self,
         other: &Self,
@@ -135,8 +138,9 @@ impl Runs {
 /// Returns the weights of levels of shaking (m/s): the annual rate that each level represents, or equal weights without
 /// a hazard curve.
 ///
-/// The weights assume that results are linear in the logarithm of the shaking between two levels, constant above the
-/// highest level, and decrease to zero at half of the lowest level.
+/// The weights assume that results are linear in the logarithm of the shaking between two levels and constant
+/// above the highest level. Below the lowest level, results are assumed to decrease to zero at half of that
+/// level.
 pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
     let Some(hazard) = hazard else { return vec![1.0 / levels.len() as f64; levels.len()] };
     let share = |at: usize, x: f64| {
@@ -157,10 +161,11 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
 
 /// Returns the indices of the trials that continue in the next round.
 ///
-/// Trials that are significantly worse than a cheaper one are dropped. Of the others the better half by mean continues,
-/// at least four. The first trial, the stack as it is, always continues.
-/// Each trial is given by its runs and the middle of its cost; `most` is the largest number of fallen barrels in one run.
-/// Significance is simultaneous over all pairs.
+/// Trials that are significantly worse than a cheaper trial are dropped. Of the others, the half with the
+/// smaller means continues, but at least four trials do. The first trial, the unprotected stack, always
+/// continues. Each trial is given by its runs and the midpoint of its cost range; `most` is the largest
+/// possible number of fallen barrels in one run. The tests of significance hold for all pairs of trials
+/// simultaneously.
 pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;
     let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;
@@ -179,7 +184,8 @@ pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Ve
     left
 }
 
-/// Returns the indices on the Pareto front of cost and mean, the cheapest first.
+/// Returns the indices of the points on the Pareto front, the cheapest first. A point is a cost and a mean,
+/// both of which should be small.
 pub(super) fn front(all: &[(f64, f64)]) -> Vec<usize> {
     let better = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
     let mut front: Vec<usize> =

@@ -1,4 +1,4 @@
-//! Trials of a ranking: a protected stack in every direction, run in rounds of studies.
+//! Trials of a ranking. A trial is a protected stack in every direction, which is run in rounds of studies.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -38,7 +38,7 @@ impl Trial {
         Ok(Self { protection, stacks, runs, round: 0 })
     }
 
-    /// Returns the number of barrels of the stack, in the direction in which it is larger.
+    /// Returns the number of barrels of the stack, in the direction in which this number is larger.
     pub(super) fn barrels(&self) -> f64 {
         let stacks = self.stacks.iter().filter_map(|(_, scenario)| scenario.stack());
         stacks.map(|stack| f64::from(stack.levels * stack.columns)).fold(0.0, f64::max)
@@ -63,7 +63,8 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns trials of the protections that can be built within the budget, and records why the others cannot.
+    /// Returns trials of the protections that can be built and do not exceed the budget; records the reasons
+    /// for the others.
     pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
         let mut trials = Vec::new();
         for protection in protections {
@@ -128,7 +129,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Tries the worn states of the protections on the Pareto front, under the motions of the first round.
+    /// Runs the protections on the Pareto front in their worn states, under the motions of the first round.
     pub(super) fn worn(
         &mut self,
         trials: &[Trial],

@@ -5,7 +5,7 @@ use barrelstack_report::described;
 use super::{Capacity, Scored, Sheet};
 
 described! {
-    /// RockScore of a rack and its devices.
+    /// RockScore of a rack with its devices.
     pub struct ScoreDocument of sheet: &Sheet {
         /// Name and version of this layout.
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",
@@ -15,13 +15,13 @@ described! {
         pub title: String = sheet.scenario.title.clone(),
         /// Name of the rack.
         pub rack: Option<String> = sheet.scenario.stack().map(|stack| stack.rack.base.to_owned()),
-        /// Score: the smallest velocity of all states and directions, rounded down.
+        /// Score: the smallest velocity over all states and directions, rounded down.
         pub score: u32 as "cm/s" = sheet.score(),
         /// Number of levels of the stack.
         pub levels: u32 = sheet.protocol.levels,
         /// Peak ground velocities to which every motion was scaled.
         pub velocities: Vec<f64> as "m/s" = sheet.protocol.velocities.clone(),
-        /// Number of motions.
+        /// Number of motions of the protocol.
         pub motions: usize = sheet.protocol.count(),
         /// Probability of collapse that defines the score.
         pub chance: f64 as "1" = sheet.protocol.chance,
@@ -33,14 +33,14 @@ described! {
     pub struct StateRow of row: &(&Scored, &Sheet) {
         /// Name of the state.
         pub state: String = row.0.state.name.clone(),
-        /// Changes of the state, as overrides of the scenario.
+        /// Changes of the scenario in this state, as overrides.
         pub changes: Vec<String> = row.0.state.changes.clone(),
         /// Direction of shaking: across or along the barrels.
         pub direction: &'static str ["transverse", "longitudinal"] = row.0.view.name(),
-        /// Velocity at which that probability of collapse is reached; 0 if it is below all levels.
+        /// Peak ground velocity at which one stack in ten collapses; 0 if that velocity is below all levels.
         pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
-        /// Source of the velocity: a fitted curve, the highest level at which at most one in ten collapsed, or the end of the
-        /// range of levels.
+        /// Source of the velocity: the fitted curve, the lower of two levels between which the share of
+        /// collapse exceeds one in ten, or an end of the range of levels.
         pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"] =
             match row.0.capacity {
                 Capacity::Fitted(..) => "curve",
@@ -50,7 +50,7 @@ described! {
             },
         /// 95 % interval of the velocity, clustered by motion; null if there is none.
         pub interval: Option<[f64; 2]> as "m/s" = row.0.capacity.interval().map(|of| [of.low, of.high]),
-        /// Share of collapse at each of the velocities; null if no run has a verdict.
+        /// Share of collapse at each of the velocities of the protocol; null where no run has a verdict.
         pub collapsed: Vec<Option<f64>> as "1" = row.1.protocol.velocities.iter()
             .map(|velocity| row.0.at(*velocity).map(|stripe| stripe.fraction())).collect(),
         /// Number of runs.

@@ -19,9 +19,9 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         blocks: vec![
             Block::Table(table(sheet)),
             text(
-                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood through all runs, \
-                 with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, rounded down, \
-                 is the score.",
+                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood \
+                 for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all \
+                 velocities, rounded down, is the score.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
@@ -69,7 +69,7 @@ fn headline(sheet: &Sheet) -> String {
             "RockScore {score}: shaken {direction} to {score} cm/s, nine in ten {stacks} stand."
         ),
         Capacity::Above(_) => format!(
-            "RockScore {score} at least: under the strongest shaking of the protocol nine in ten {stacks} stand."
+            "RockScore of at least {score}: under the strongest shaking of the protocol nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
             "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} to {} cm/s, the weakest \
@@ -90,7 +90,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     said
 }
 
-/// Formats a capacity, such as "42 cm/s".
+/// Formats the velocity of a capacity, such as "42 cm/s".
 fn bears(capacity: Capacity) -> String {
     match capacity {
         Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),
@@ -106,7 +106,8 @@ fn table(sheet: &Sheet) -> Table {
     let mut columns = vec![("state", ""), ("shaken", ""), ("one in ten collapses at", "")];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));
     let mut table = Table::new(
-        "Velocity that the stack bears in every state and direction, and the share that collapses at every level of shaking.",
+        "Velocity at which one stack in ten collapses, in every state and direction, and the share of stacks \
+         that collapse at every level of shaking.",
         &columns,
     );
     let weakest = sheet.weakest();
@@ -182,8 +183,8 @@ fn rules(sheet: &Sheet) -> Vec<String> {
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction is drawn for every run about that of the scenario, with a scatter of 20 % for rack on floor and of 25 % for \
-         barrel on rack; all racks get the same quantiles and the same motions."
+        "Friction is drawn for every run around the value in the scenario, with a scatter of 20 % for rack on \
+         floor and of 25 % for barrel on rack; all racks get the same quantiles and the same motions."
             .into(),
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
          one at a time."
@@ -191,7 +192,7 @@ fn rules(sheet: &Sheet) -> Vec<String> {
         "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once the stack has come to rest on \
          ground that stays below 0.02 g."
             .into(),
-        "A protocol never changes; any change gets a new version number.".into(),
+        "A protocol never changes; any change requires a new version number.".into(),
     ]
 }
 

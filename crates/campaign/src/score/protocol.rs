@@ -1,6 +1,6 @@
 //! Protocol of a score.
 //!
-//! A protocol must not change under its name, since only scores of the same protocol are comparable.
+//! A protocol must never change without a new name, since only scores of the same protocol are comparable.
 
 use std::fmt::Write as _;
 
@@ -15,13 +15,13 @@ pub struct Protocol {
     pub name: &'static str,
     /// Number of levels of the stack.
     pub levels: u32,
-    /// Levels of peak ground velocity (m/s) to which every motion is scaled, ascending.
+    /// Levels of peak ground velocity (m/s) to which every motion is scaled, in ascending order.
     pub velocities: Vec<f64>,
     /// Periods (s) of the velocity pulses.
     pub periods: Vec<f64>,
     /// Number of synthetic motions.
     pub synthetic: u32,
-    /// Seed of the synthetic motions and of friction.
+    /// Seed of the synthetic motions and of the random friction.
     pub seed: u32,
     /// Probability of collapse that defines the score.
     pub chance: f64,
@@ -37,16 +37,17 @@ const WET: f64 = 0.2;
 pub struct State {
     /// Name for display.
     pub name: String,
-    /// Changes, as overrides of the scenario.
+    /// Changes of the scenario in this state, as overrides.
     pub changes: Vec<String>,
 }
 
 impl Protocol {
     /// Returns the protocol of the RockScore.
     ///
-    /// Stacks of four levels are shaken by six velocity pulses, both components of the bundled record and sixteen
-    /// synthetic motions, at six levels. Friction, stiffness and damping of seats are drawn as for variants. Version 1
-    /// drew friction only, with less scatter, and stated constants per contact element.
+    /// Stacks of four levels are shaken by six velocity pulses, both components of the bundled record and
+    /// sixteen synthetic motions, at six levels. The friction, stiffness and damping of seats are drawn from
+    /// the same distributions as for variants. In version 1 only friction was drawn, with less scatter, and
+    /// constants were stated per contact element.
     pub fn rockscore() -> Self {
         Self {
             name: "rockscore/2",
@@ -59,17 +60,17 @@ impl Protocol {
         }
     }
 
-    /// Returns the overrides that give a scenario the stack of the protocol.
+    /// Returns the overrides that turn the stack of a scenario into that of the protocol.
     pub(super) fn stacked(&self) -> Vec<String> {
         vec![format!("stack.levels={}", self.levels)]
     }
 
-    /// Returns the number of motions.
+    /// Returns the number of motions of the protocol.
     pub fn count(&self) -> usize {
         self.periods.len() + 2 + self.synthetic as usize
     }
 
-    /// Returns the states: as good as new, with wet cradles, and with each device worn.
+    /// Returns the states to be scored: as good as new, with wet cradles, and with each device worn.
     pub fn states(&self, scenario: &Scenario) -> Vec<State> {
         let state = |name: &str, changes: Vec<String>| State { name: name.to_owned(), changes };
         let friction = |field: &str| format!("interface.barrel-rack.friction.{field}={WET}");
@@ -88,7 +89,7 @@ impl Protocol {
         states
     }
 
-    /// Returns the motions, as tables `[[motion]]` of a study.
+    /// Returns the motions of the protocol, as `[[motion]]` tables of a study.
     pub(super) fn motions(&self) -> String {
         let mut text = String::new();
         for period in &self.periods {

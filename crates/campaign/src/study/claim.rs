@@ -1,9 +1,9 @@
 //! Claims of chunks: a process locks a file in the folder as long as it works on a chunk.
 //!
-//! The operating system holds the lock (`flock`, also on network file systems) and releases it when the process ends in
-//! any way, so that another process can take over the chunk.
-//! A stopped process (`kill -STOP`) keeps its lock; the file contains the name of the process.
-//! On file systems without locks a chunk may be run twice, which does no harm since both shards are equal.
+//! The lock is an operating-system lock (`flock`), which also works on network file systems. It is released
+//! when the process ends for any reason, so that another process can take over the chunk. A suspended process
+//! (`kill -STOP`) keeps its lock; the locked file contains the name of the process. On file systems without
+//! locks, a chunk may be run twice. This does no harm, since both shards are equal.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
@@ -13,7 +13,7 @@ use std::time::Duration;
 use super::error::StudyError;
 use crate::system;
 
-/// Exclusive claim of a chunk, released on drop.
+/// Exclusive claim of a chunk, which is released on drop.
 #[derive(Debug)]
 pub(super) struct Claim {
     path: PathBuf,
@@ -31,7 +31,8 @@ pub struct Holder {
 }
 
 impl Claim {
-    /// Claims a chunk by locking the file at `path`; `None` while another process or thread holds it.
+    /// Claims a chunk by locking the file at `path`; returns `None` while another process or thread holds the
+    /// claim.
     pub(super) fn take(path: PathBuf) -> Result<Option<Self>, StudyError> {
         let failed = StudyError::system("claim a chunk by", &path);
         remove_foreign(&path).map_err(failed)?;
@@ -47,7 +48,7 @@ impl Claim {
     }
 }
 
-/// Removes a link, or a second name of another file, that stands in the place of a claim.
+/// Removes a symbolic link, or a hard link to another file, that stands in the place of a claim.
 fn remove_foreign(path: &Path) -> std::io::Result<()> {
     let found = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -83,7 +84,8 @@ fn this_process() -> String {
     host.map_or(process.clone(), |host| format!("{process} on {host}"))
 }
 
-/// Returns the process that has claimed a chunk; `None` if there is no claim, or this process holds it.
+/// Returns the process that has claimed a chunk; `None` if the chunk is not claimed, or if this process has
+/// claimed it.
 pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
     let path = folder.join("shards").join(format!("{chunk:06}.claim"));
     let text = String::from_utf8(system::read_result(&path, 1000).ok()?).ok()?;

@@ -1,4 +1,4 @@
-//! Reading of the rows of a study from the shards of its folder.
+//! Reads the rows of a study from the shards in its folder.
 //!
 //! Rows are read in parts, so that memory does not grow with the number of cases.
 
@@ -22,25 +22,26 @@ use super::table::StudyTable;
 pub struct Collected {
     /// Table with one row per finished case.
     pub table: StudyTable,
-    /// Provenance of the rows.
+    /// Provenance of the study with the number of these rows.
     pub provenance: Provenance,
 }
 
 /// Progress of a study in a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
-    /// Provenance of the folder.
+    /// Provenance of the study in the folder.
     pub provenance: Provenance,
     /// Numbers of finished cases by outcome.
     pub tally: Tally,
-    /// Numbers of the chunks still to be run, ascending.
+    /// Numbers of the chunks that still have to be run, in ascending order.
     pub missing: Vec<usize>,
 }
 
-/// Reader of the shards of a folder, in the order of their first cases.
+/// Reader of the shards in a folder, in the order of their first cases.
 ///
-/// In a Monte Carlo design only the contiguous finished chunks are read, up to the one with which the stop rule is met,
-/// so that the result does not depend on which later chunks were run.
+/// In a Monte Carlo design, chunks are read in order up to the first unfinished chunk, or up to the chunk
+/// with which the stopping rule is satisfied. The result therefore does not depend on which later chunks were
+/// run.
 struct Shards {
     provenance: Provenance,
     paths: BTreeMap<usize, PathBuf>,
@@ -79,9 +80,10 @@ impl Shards {
     }
 }
 
-/// Reads the finished rows of a study, complete or not, and returns its provenance.
+/// Reads the finished rows of a study, complete or not, and returns the provenance of the study.
 ///
-/// `visit` receives all rows in the order of the cases, as tables of one or several chunks, with the provenance so far.
+/// `visit` receives all rows in the order of the cases, as tables of one or several chunks, with the
+/// provenance of the rows read so far.
 ///
 /// # Errors
 /// If the folder is not that of a study, a shard is damaged, or `visit` fails.
@@ -112,10 +114,10 @@ pub fn read_shards<E: From<StudyError>>(
 
 /// Writes the rows of a study into its folder, as `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`.
 ///
-/// `visit` receives the rows meanwhile, as in [`read_shards`].
+/// Meanwhile `visit` receives the rows, as in [`read_shards`].
 ///
 /// # Errors
-/// As [`read_shards`], or if a file cannot be written.
+/// As for [`read_shards`], or if a file cannot be written.
 pub fn collect(
     folder: &Path,
     visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), StudyError>,
@@ -160,7 +162,7 @@ impl Collected {
     /// Reads all finished rows of a study, complete or not, into memory.
     ///
     /// # Errors
-    /// As [`read_shards`].
+    /// As for [`read_shards`].
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
         let mut parts = Vec::new();
         let provenance = read_shards(folder, &mut |_, rows| {
@@ -174,7 +176,7 @@ impl Collected {
     /// Returns the progress of the study in a folder.
     ///
     /// # Errors
-    /// As [`read_shards`].
+    /// As for [`read_shards`].
     pub fn status(folder: &Path) -> Result<Status, StudyError> {
         let mut parts = Shards::open(folder)?;
         while parts.read()?.is_some() {}

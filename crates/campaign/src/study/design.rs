@@ -1,4 +1,4 @@
-//! Designs of studies: how the list of cases follows from motions, levels and factors.
+//! Designs of studies: rules by which the list of cases follows from motions, levels and factors.
 
 use barrelstack_fragility::sobol::Axis;
 use barrelstack_motion::Random;
@@ -14,50 +14,55 @@ use barrelstack_report::column::Value;
 pub enum Design {
     /// Every combination of all values, levels and motions.
     FullFactorial,
-    /// The base values, and every other value of one factor at a time, for every level and motion.
+    /// The base values and, for every other value of a factor, the base values with only this factor changed;
+    /// for every level and motion.
     OneAtATime {
-        /// Quantiles that represent a distribution.
+        /// Probabilities of the quantiles that represent a distribution.
         quantiles: Vec<f64>,
-        /// Number of draws, per motion, of the factors with distributions; 0 to use quantiles instead.
+        /// Number of draws per motion of the factors with distributions; 0 to use quantiles instead.
         draws: u32,
     },
-    /// Latin hypercube: one sample lies in each of `count` equally probable parts of every factor.
+    /// Latin hypercube: the range of every factor is divided into `count` equally probable parts, and one
+    /// sample lies in each part.
     LatinHypercube {
         /// Number of samples.
         count: u32,
     },
-    /// Points of a Sobol' sequence, shifted at random.
+    /// Points of a Sobol' sequence with a random shift.
     Sobol {
         /// Number of points.
         count: u32,
     },
     /// Blocks of Sobol' points for first-order and total sensitivity indices (Saltelli et al. 2010).
     ///
-    /// A block has two samples and, for every varied quantity, the first sample with that quantity taken from the second.
+    /// A block contains two samples and, for every varied quantity, a copy of the first sample in which that
+    /// quantity is taken from the second.
     Saltelli {
         /// Number of blocks.
         count: u32,
     },
-    /// Random samples, until the probability of collapse is known precisely enough.
+    /// Independent random samples, until the interval of the collapse probability is narrow enough.
     MonteCarlo {
-        /// Half-width of the 95 % interval (Wilson) of the collapse probability at which to stop; `None` to run all cases.
+        /// Half-width of the 95 % interval (Wilson) of the collapse probability at which sampling stops;
+        /// `None` to run all cases.
         half_width: Option<f64>,
-        /// Number of cases before the interval is first tested.
+        /// Number of cases before the interval is tested for the first time.
         least: u32,
         /// Maximum number of cases.
         most: u32,
     },
-    /// Every motion at every level. Factors with listed values are crossed; those with a distribution are drawn.
+    /// Every motion at every level. All combinations of listed values are run; factors with a distribution
+    /// are drawn for each case.
     Stripes,
     /// Incremental dynamic analysis by hunt and fill.
     Ida(super::ida::Hunt),
 }
 
 impl Design {
-    /// `true` if the cases are a sample of the stated distributions, so that the share that collapses estimates the
-    /// probability of collapse.
+    /// `true` if the cases are a sample of the stated distributions, so that the share of collapsed cases
+    /// estimates the probability of collapse.
     ///
-    /// `false` if cases are at requested levels, or differ from each other in a single quantity.
+    /// `false` if levels are requested, or if cases differ from each other in a single quantity.
     pub fn is_sample(&self) -> bool {
         matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::MonteCarlo { .. })
     }
@@ -77,34 +82,36 @@ impl Design {
     }
 }
 
-/// Case before its model is built.
+/// Description of a case before its model is built.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Case {
-    /// Number of the case in the table; numbers of an adaptive design have gaps.
+    /// Number of the case in the table; the numbers in an adaptive design have gaps.
     pub(super) number: u64,
-    /// Identity of the case, independent of the number of cases; also the seed of its draws.
+    /// Identity of the case, which does not depend on the number of cases. It is also the seed of the random
+    /// draws for the case.
     pub(super) id: u64,
     /// Index of the motion in the study.
     pub(super) motion: usize,
     /// Intensity (SI) to which the motion is scaled, if any.
     pub(super) level: Option<f64>,
-    /// Value of each factor; `None` to keep the value of the base.
+    /// Value of each factor in the case; `None` to keep the value of the base scenario.
     pub(super) settings: Vec<Option<Setting>>,
 }
 
-/// Enumeration of the cases of a design: crossed lists, or samples.
+/// Enumeration of the cases of a design: combinations of lists, or samples.
 #[derive(Clone, Debug)]
 pub(super) enum Cases {
-    /// Every combination, in the order of motion (slowest), factors, and level (fastest).
+    /// Every combination. The motion varies slowest, then the factors, and the level varies fastest.
     Crossed,
-    /// The base and one change at a time, in the order of motion (slowest), draw, level, and change (fastest).
+    /// The base values, or a single change of them. The motion varies slowest, then the draw, then the level,
+    /// and the change varies fastest.
     OneAtATime {
-        /// Index of the factor, and value, of each change.
+        /// Changes: each has the index of a factor and a value.
         changes: Vec<(usize, Setting)>,
-        /// Number of draws of all other factors per motion, equal for all changes and levels.
+        /// Number of draws per motion of all other factors; all changes and levels use the same draws.
         draws: u64,
     },
-    /// Points of the unit cube, whose axes are motion, level and factors.
+    /// Points of the unit cube, whose axes are the motion, the level and the factors.
     Sampled(Sampling),
 }
 
@@ -113,15 +120,16 @@ pub(super) enum Cases {
 pub(super) enum Sampling {
     /// Random numbers from the seed of each case.
     Random,
-    /// Latin hypercube: a permutation of the strata for each axis.
+    /// Latin hypercube, given by a permutation of the strata for each axis.
     LatinHypercube(Vec<Vec<u32>>),
-    /// Sobol' sequence: one dimension for each axis.
+    /// Sobol' sequence, with one dimension for each axis.
     Sobol(Vec<Axis>),
-    /// Two dimensions of the Sobol' sequence for each axis, and the axes that are exchanged.
+    /// Saltelli blocks: two dimensions of the Sobol' sequence for each axis, and the indices of the axes that
+    /// are exchanged.
     Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
 }
 
-/// Derives a seed from another seed and a text.
+/// Derives a seed from another seed and text.
 pub(super) fn seed_of(seed: u64, words: &str) -> u64 {
     // The seeding of the generator mixes the bits, which the hash leaves correlated.
     Random::new(fnv1a(format!("{seed}|{words}").as_bytes())).bits()
@@ -136,7 +144,7 @@ fn pick(u: f64, count: usize) -> usize {
     ((u * count as f64) as usize).min(count - 1)
 }
 
-/// Returns a uniformly distributed integer below `count` (Lemire's multiplication, bias below 2⁻³²).
+/// Returns a uniformly distributed integer below `count`, by Lemire's multiplication with a bias below 2⁻³².
 #[expect(clippy::cast_possible_truncation, reason = "below the count")]
 fn below(random: &mut Random, count: usize) -> usize {
     ((u128::from(random.bits()) * count as u128) >> 64) as usize
@@ -182,7 +190,8 @@ impl Cases {
         }
     }
 
-    /// Returns the number of cases; for an incremental dynamic analysis, of hunts; for Monte Carlo, the maximum.
+    /// Returns the number of cases. For an incremental dynamic analysis this is the number of hunts, and for
+    /// Monte Carlo the maximum number of cases.
     pub(super) fn count(&self, study: &Study) -> u64 {
         let motions = study.motions.len() as u64;
         let levels = study.crossed_levels().len() as u64;
@@ -205,7 +214,8 @@ impl Cases {
         }
     }
 
-    /// Returns the case with a number; for an incremental dynamic analysis, a hunt without its level.
+    /// Returns the case with the number `number`. For an incremental dynamic analysis this is a hunt, whose
+    /// level is not set.
     pub(super) fn case(&self, study: &Study, number: u64) -> Case {
         match self {
             Self::Crossed => crossed(study, number),
@@ -268,7 +278,8 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     Case { number, id: study.identity(motion, level, &settings), motion, level, settings }
 }
 
-/// Returns every change from the base: each factor, except drawn ones, with each of its other values.
+/// Returns every single change from the base values: each factor with each of its other values. Factors that
+/// are drawn are excluded if `drawn` is `true`.
 fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Setting)> {
     let mut changes = Vec::new();
     for (index, factor) in factors.iter().enumerate() {
@@ -329,13 +340,13 @@ fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
 }
 
 impl Study {
-    /// Returns the names of the axes of the unit cube of samples.
+    /// Returns the names of the axes of the unit cube from which samples are taken.
     pub(super) fn axes(&self) -> Vec<String> {
         let factors = self.factors.iter().map(|factor| format!("factor {}", factor.name));
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).collect()
     }
 
-    /// Returns the axes that take more than one value: their indices, and their names for display.
+    /// Returns the axes that take more than one value, each with its index and its name for display.
     pub(super) fn varied(&self) -> Vec<(usize, String)> {
         let level = self.intensity.as_ref().is_some_and(|intensity| match &intensity.levels {
             Levels::List(levels) => levels.len() > 1,
@@ -349,12 +360,13 @@ impl Study {
         always.into_iter().enumerate().filter_map(of).chain(factors).collect()
     }
 
-    /// Returns the levels that are crossed with motions and factors; a single `None` without levels.
+    /// Returns the levels that are combined with motions and factors; a single `None` if there are no levels.
     pub(super) fn crossed_levels(&self) -> &[Option<f64>] {
         &self.levels
     }
 
-    /// Returns the identity of a case of a crossed design, which depends on its contents and not on its position.
+    /// Returns the identity of a case in a crossed design. It depends on the contents of the case and not on
+    /// its position.
     fn identity(&self, motion: usize, level: Option<f64>, settings: &[Option<Setting>]) -> u64 {
         let mut words = vec![format!("case of {}", self.motions[motion].name)];
         words.extend(
@@ -366,7 +378,7 @@ impl Study {
         seed_of(self.seed, &words.join("|"))
     }
 
-    /// Returns the value of a factor in a case, in the form of the table.
+    /// Returns the value of a factor in a case, in the form in which it is written to the table.
     pub(super) fn factor_value(&self, case: &Case, factor: usize) -> Option<Value> {
         match &case.settings[factor] {
             Some(setting) => Some(setting.value.clone()),

@@ -14,7 +14,7 @@ use super::setting::{Domain, Setting};
 pub struct Distribution {
     shape: Shape,
     domain: Domain,
-    /// Place of the distribution in the file.
+    /// Place in the study file where the distribution is stated.
     origin: Origin,
 }
 
@@ -39,21 +39,21 @@ enum Shape {
         dispersion: f64,
         cut: Cut,
     },
-    /// Values, each with the cumulative probability up to it.
+    /// Discrete values, each with the cumulative probability of the values up to and including it.
     Discrete(Vec<(f64, Setting)>),
 }
 
 /// Truncation of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
-    /// Smallest and largest value.
+    /// Smallest and largest value that remain after truncation.
     values: [f64; 2],
-    /// Probability below each of these values, before truncation.
+    /// Probability below each of these two values in the untruncated distribution.
     below: [f64; 2],
 }
 
 impl Distribution {
-    /// Reads `[….distribution]`.
+    /// Reads a `[….distribution]` table.
     pub(super) fn read(
         reader: Reader<'_>,
         domain: Domain,
@@ -100,7 +100,7 @@ impl Distribution {
         Ok(Self { shape, domain, origin })
     }
 
-    /// Returns the quantile for a probability `u` in `0..1`.
+    /// Returns the value at which the cumulative probability is `u`, for `u` in `0..1`.
     pub(super) fn quantile(&self, u: f64) -> Setting {
         let value = match &self.shape {
             Shape::Uniform { from, to } => from + u * (to - from),
@@ -143,13 +143,14 @@ impl Cut {
         if below[1] - below[0] < 1e-9 {
             let which = if reader.has("least") { "least" } else { "greatest" };
             let message =
-                "`least` and `greatest` leave nothing of the distribution between them".to_owned();
+                "no value of the distribution lies between `least` and `greatest`".to_owned();
             return Err(reader.inconsistent(which, message));
         }
         Ok(Self { values, below })
     }
 
-    /// Converts a probability of the truncated distribution to that of the same value in the untruncated distribution.
+    /// Converts a cumulative probability of the truncated distribution to the cumulative probability of the
+    /// same value in the untruncated distribution.
     fn uncut(&self, u: f64) -> f64 {
         // The result stays away from 0 and 1, where quantiles are infinite; no draw of 53 bits is changed.
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)

@@ -1,4 +1,4 @@
-//! Draft files, which get their final names only when they are complete and on the disk.
+//! Draft files, which receive their final names only when they are complete and on the disk.
 
 use std::fs::{self, File, TryLockError};
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
@@ -20,15 +20,15 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write().map_err(StudyError::system("write", path))
 }
 
-/// Maximum number of times that a folder removed by others is created again.
+/// Maximum number of times that a folder is created again after another process has removed it.
 const TRIES: u32 = 10;
 
-/// Temporary files of this process.
+/// Paths of the temporary files of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Removes the temporary files of this process before it exits.
 ///
-/// The lock stays held, so that no thread begins another file.
+/// The lock is never released, so that no thread can begin another file.
 pub fn remove_drafts() {
     let drafts = system::taken(&DRAFTS);
     for draft in drafts.iter().flat_map(|drafts| drafts.iter()) {
@@ -37,7 +37,7 @@ pub fn remove_drafts() {
     }
 }
 
-/// Temporary file that is removed on drop unless it was renamed.
+/// Temporary file. It is removed on drop unless it was renamed.
 pub(super) struct Draft {
     pub(super) file: File,
     path: PathBuf,
@@ -45,9 +45,10 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Creates a temporary file for the file `whole`.
+    /// Creates a temporary file from which the file `whole` will be made.
     ///
-    /// Its name is unique, so that a process that cleans the folder never removes another draft of the same name.
+    /// The name of the temporary file is unique, so that a process that cleans the folder never removes a
+    /// different draft with the same name.
     pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
         let name = whole.file_name().unwrap_or_default().to_string_lossy();
         let mut tries = 0_u32;
@@ -77,7 +78,7 @@ impl Draft {
         }
     }
 
-    /// Syncs the file to the disk and gives it its final name.
+    /// Syncs the file to the disk and renames it to its final name.
     pub(super) fn name(self) -> std::io::Result<()> {
         system::replaceable(&self.whole)?;
         self.file.sync_all()?;
@@ -96,7 +97,7 @@ impl Drop for Draft {
     }
 }
 
-/// Syncs the entries of a folder to the disk, if the system supports that.
+/// Syncs the directory entries of a folder to the disk, if the system supports that.
 #[cfg(unix)]
 fn sync_folder(folder: &Path) -> std::io::Result<()> {
     File::open(folder)?.sync_all()

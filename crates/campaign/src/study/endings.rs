@@ -1,4 +1,5 @@
-//! Endings of cases: how many were followed until nothing moved, and how many were stopped earlier.
+//! Endings of cases: numbers of cases that were followed until nothing moved, and of cases that were stopped
+//! earlier.
 
 use std::fmt::Write as _;
 
@@ -13,24 +14,26 @@ use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::{Ending, after_collapse};
 
-/// Numbers of cases with a verdict, by how they ended.
+/// Numbers of cases with a verdict, by the way in which they ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Endings {
     /// Number of all cases with a verdict.
     pub judged: u64,
-    /// Number of cases followed until the ground was still (after a collapse: calm) and nothing moved.
+    /// Number of cases followed until nothing moved and the ground was still, or calm after a collapse.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,
-    /// Number of cases stopped a fixed time after their collapse, as the study states.
+    /// Number of cases that were stopped a fixed time after their collapse, because the study states such a
+    /// time.
     pub stopped: u64,
-    /// Number of cases ended by the duration that the study states.
+    /// Number of cases that were ended by the duration that the study states.
     pub short: u64,
-    /// Number of cases ended by the duration while the ground still moved.
+    /// Number of cases that were ended by the duration while the ground still moved.
     pub cut: u64,
-    /// Number of cases ended by the duration while the ground still moved and the stack still stood.
+    /// Number of cases that were ended by the duration while the ground still moved and the stack still
+    /// stood.
     pub open: u64,
-    /// Longest part of a motion that was cut off by the duration (s).
+    /// Longest part (s) of a motion that was not run because of the duration.
     pub longest_cut: f64,
     /// Number of cases in which something still moved at the time limit of the study.
     pub moving: u64,
@@ -64,23 +67,24 @@ impl Endings {
         }
     }
 
-    /// Largest share of cases with something moving at the time limit for which losses of the others are still reported.
+    /// Maximum share of cases in which something still moves at the time limit. If the share is larger, no
+    /// losses are reported.
     const MOST_MOVING: f64 = 0.02;
 
-    /// Returns the reason why the falls in these cases are unknown; `None` if they are known.
+    /// Returns the reason why the falls in the cases are unknown; `None` if the falls are known.
     pub fn no_losses(&self) -> Option<String> {
         let Self { judged, stopped, short, moving, .. } = *self;
         if stopped > 0 {
             return Some(format!(
                 "{stopped} of {judged} cases were stopped a fixed time after their collapse \
-                 (run.stop_after_collapse, or run.until = \"verdict\"), before everything had fallen; leave that out to \
-                 follow every case until nothing moves"
+                 (run.stop_after_collapse, or run.until = \"verdict\"), before everything had fallen; omit this \
+                 setting to follow every case until nothing moves"
             ));
         }
         if short > 0 {
             return Some(format!(
-                "{short} of {judged} cases were ended by run.duration before everything had come to \
-                 rest; leave that out to follow every case until nothing moves"
+                "{short} of {judged} cases were ended by run.duration before everything had come to rest; omit this \
+                 setting to follow every case until nothing moves"
             ));
         }
         (moving as f64 > Self::MOST_MOVING * judged as f64).then(|| {
@@ -97,8 +101,8 @@ impl Endings {
         if self.cut > 0 {
             said.push(format!(
                 "{} of {} cases were cut short by run.duration while the ground still moved, by up to {:.1} s; \
-                 {} of them stood until then, and the effect of the rest of their motions is not \
-                 known. Leave run.duration out to run every motion to its end.",
+                 {} of them stood until then, and the effect of the rest of their motions is not known. Omit \
+                 run.duration to run every motion to its end.",
                 self.cut, self.judged, self.longest_cut, self.open
             ));
         }
@@ -106,8 +110,8 @@ impl Endings {
             said.push(format!("No losses are given: {reason}."));
         } else if self.moving > 0 {
             said.push(format!(
-                "In {} of {} cases something still moved at the time limit; losses are those of the \
-                 other cases.",
+                "In {} of {} cases something still moved at the time limit; losses are given for the other cases \
+                 only.",
                 self.moving, self.judged
             ));
         }
@@ -116,28 +120,28 @@ impl Endings {
 }
 
 described! {
-    /// End conditions of the cases of a study.
+    /// Conditions under which the cases of a study end.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Following {
         /// `true` if a case is followed until nothing moves.
         pub to_rest: bool,
-        /// `true` if a case ends once its verdict is known.
+        /// `true` if a case ends as soon as its verdict is known.
         pub by_verdict: bool,
-        /// Time limit (s) after the end of the motion, if nothing else ends a case.
+        /// Time limit (s), counted from the end of the motion, for cases that do not end before.
         pub patience: f64 as "s",
-        /// Duration (s) of the cases that the study states; none if it follows from the motion.
+        /// Duration (s) of the cases if the study states one; none if the duration follows from the motion.
         pub duration: Option<f64> as "s",
-        /// Time (s) after a collapse at which the study stops a case; none if it does not.
+        /// Time (s) after a collapse at which the study stops a case; none if the study states no such time.
         pub after_collapse: Option<f64> as "s",
         /// Names of the motions that are longer than the duration.
         pub cut: Vec<String>,
-        /// Longest time (s) by which a motion is cut short.
+        /// Longest part (s) of a motion that is not run because of the duration.
         pub longest_cut: f64 as "s",
     }
 }
 
 impl Study {
-    /// Returns how long the cases are followed, and which motions are cut short.
+    /// Returns the conditions under which the cases end, and the motions that are cut short.
     ///
     /// # Errors
     /// If a motion cannot be read.
@@ -179,7 +183,7 @@ impl Study {
 }
 
 impl Following {
-    /// Describes the end conditions in a sentence; `motions` is the number of motions of the study.
+    /// Describes in a sentence when the cases end; `motions` is the number of motions of the study.
     pub fn words(&self, motions: usize) -> String {
         let mut said = match self.duration {
             None if self.to_rest => format!(

@@ -1,4 +1,5 @@
-//! Reading of the tables `[[motion]]` of a study file: records, folders of records, formulas, and synthetic ensembles.
+//! Reads the `[[motion]]` tables of a study file: records, folders of records, formulas, and synthetic
+//! ensembles.
 
 use std::path::{Path, PathBuf};
 
@@ -15,10 +16,11 @@ use super::design::seed_of;
 use super::fields::{Maker, Soil};
 use super::motions::{Making, Motion, Shaking, Synthetic};
 
-/// Maximum number of motions of a study, and of files in a folder of records.
+/// Maximum number of motions in a study, and of files in a folder of records.
 pub(super) const MOST: usize = 100_000;
 
-/// Reads the motions of one table `[[motion]]`; `number` is its position in the file, from 1.
+/// Reads the motions of one `[[motion]]` table; `number` is the position of the table in the file, counted
+/// from 1.
 pub(super) fn read(
     set: &Reader<'_>,
     opened: &Opened,
@@ -99,7 +101,8 @@ pub(super) fn read(
     Ok(motions)
 }
 
-/// Reads the motion that results from `each`, `sine`, `pulse` and `scale` of a table `[[motion]]` and further entries.
+/// Reads the motion that results from the entries `each`, `sine`, `pulse` and `scale` of a `[[motion]]` table
+/// and from further entries.
 fn motion_of(
     set: &Reader<'_>,
     opened: &Opened,
@@ -138,7 +141,8 @@ fn motion_of(
 
 /// Returns the sorted paths, relative to the study, of the files in a folder whose names match a pattern.
 ///
-/// Folders and names that begin with a period are skipped. Other entries that are not files fail when they are read.
+/// Folders are skipped, as are names that begin with a period. Other entries that are not files cause an
+/// error when they are read.
 fn matching(
     set: &Reader<'_>,
     folder: &Path,
@@ -180,7 +184,8 @@ fn matching(
     Ok(names.into_iter().map(path).collect())
 }
 
-/// `true` if a name matches a pattern, in which `*` stands for any characters and `?` for one; case is ignored.
+/// `true` if a name matches a pattern, in which `*` stands for any number of characters and `?` for one
+/// character; case is ignored.
 fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =
         (pattern.to_lowercase().chars().collect(), name.to_lowercase().chars().collect());
@@ -205,7 +210,7 @@ fn matches(pattern: &str, name: &str) -> bool {
     pattern[p..].iter().all(|letter| *letter == '*')
 }
 
-/// Returns the realizations of an ensemble.
+/// Returns the motions of a synthetic ensemble, one for each realization.
 fn ensemble(
     reader: Reader<'_>,
     name: Option<String>,

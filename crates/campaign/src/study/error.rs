@@ -6,7 +6,7 @@ use crate::ground::GroundError;
 use crate::scenario::ScenarioError;
 use crate::system;
 
-/// Error of planning, running or collecting a study.
+/// Error that occurs when a study is planned, run or collected.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The study file, its base scenario or a value of a factor is invalid.
@@ -17,25 +17,25 @@ pub enum StudyError {
     Motion {
         /// Name of the motion.
         name: String,
-        /// Reason.
+        /// Reason for the error.
         error: Box<GroundError>,
     },
     /// A system call failed.
     #[error("cannot {doing} {path}: {reason}", path = path.display())]
     System {
-        /// The attempted action, such as "write".
+        /// The action that failed, such as "write".
         doing: &'static str,
         /// Path of the file or folder.
         path: PathBuf,
-        /// Message of the system.
+        /// Error message of the operating system.
         reason: String,
     },
-    /// The folder is not that of this study.
+    /// The folder does not belong to this study.
     #[error("{folder} {reason}", folder = folder.display())]
     Folder {
         /// Path of the folder.
         folder: PathBuf,
-        /// What was found and what to do, as a predicate that follows the path.
+        /// What was found in the folder and what to do, as a predicate whose subject is the path.
         reason: String,
     },
     /// A shard is damaged.
@@ -49,13 +49,13 @@ pub enum StudyError {
         /// What is wrong with the shard.
         reason: String,
     },
-    /// There is no built-in study with the name.
+    /// There is no built-in study with this name.
     #[error("{0}")]
     BuiltIn(String),
     /// A table is inconsistent.
     #[error("{0}")]
     Table(String),
-    /// The study has no chunk with the number.
+    /// The study has no chunk with this number.
     #[error("{0}")]
     Chunk(String),
     /// The caller canceled the run.

@@ -1,4 +1,4 @@
-//! Execution of a study: runs one chunk, or all missing chunks of a folder on all cores.
+//! Runs the chunks of a study: one chunk, or all chunks that are missing from a folder, on all cores.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -27,32 +27,33 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 /// Options of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RunOptions {
-    /// Number of threads; by default, the number of cores.
+    /// Number of threads; `None` for the number of cores.
     pub threads: Option<NonZero<usize>>,
-    /// Vector width for the cases; by default, the widest of the machine. The table does not depend on it.
+    /// Vector width for the cases; `None` for the widest that the machine supports. The table does not depend
+    /// on it.
     pub lanes: Option<Width>,
 }
 
 /// Progress of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Number of all cases; for an adaptive design, the maximum.
+    /// Total number of cases; for an adaptive design, the maximum number.
     pub cases: u64,
-    /// Number of cases in chunks that earlier or concurrent runs finished.
+    /// Number of cases in chunks that were finished by earlier or concurrent runs.
     pub before: u64,
     /// Number of cases that this run finished.
     pub now: u64,
     /// Numbers of all finished cases by outcome.
     pub tally: Tally,
-    /// Number of all chunks; for an adaptive design, the maximum.
+    /// Total number of chunks; for an adaptive design, the maximum number.
     pub chunks: usize,
     /// Number of finished chunks.
     pub chunks_done: usize,
-    /// Number of damaged shards that were set aside; their chunks are run again.
+    /// Number of damaged shards that were set aside, so that their chunks are run again.
     pub damaged: usize,
     /// `true` if the manifest of the folder was damaged and has been rewritten.
     pub manifest_healed: bool,
-    /// Number of a chunk that another process holds, while no other chunk is left to run.
+    /// Number of a chunk that another process is running, if no other chunk is left to run.
     pub waits_for: Option<usize>,
 }
 
@@ -63,11 +64,11 @@ pub enum ChunkRun {
     Before,
     /// The chunk was run.
     Now,
-    /// The chunk was run again, after its damaged shard was set aside.
+    /// The damaged shard of the chunk was set aside, and the chunk was run again.
     Again,
 }
 
-/// Finished chunks of a folder.
+/// Finished chunks in a folder.
 #[derive(Default)]
 struct Done {
     /// Numbers of cases by outcome, for each chunk with an intact shard.
@@ -81,7 +82,7 @@ struct Shared<'a> {
     study: &'a Study,
     folder: &'a Folder,
     cache: MotionCache,
-    /// Keys of the shards of the study.
+    /// Keys that identify the shards of the study.
     keys: Keys,
     lanes: Width,
     rule: Option<StopRule>,
@@ -90,11 +91,11 @@ struct Shared<'a> {
     report: &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync),
 }
 
-/// State behind the mutex.
+/// State of a run that all its threads share, protected by a mutex.
 struct State {
-    /// Chunks that no thread of this process has taken; the next one is last.
+    /// Chunks that no thread of this process has taken. The next chunk to be taken is the last element.
     open: Vec<usize>,
-    /// Chunks that another process has claimed.
+    /// Chunks that other processes have claimed.
     elsewhere: Vec<usize>,
     /// Numbers of cases by outcome, for each finished chunk.
     done: BTreeMap<usize, Tally>,
@@ -107,7 +108,7 @@ impl Study {
     /// Runs all chunks that are missing from a folder, writes the table and returns it.
     ///
     /// # Errors
-    /// As [`Study::run_all`].
+    /// As for [`Study::run_all`].
     pub fn run(
         &self,
         folder: &Path,
@@ -121,11 +122,12 @@ impl Study {
 
     /// Runs all chunks that are missing from a folder.
     ///
-    /// Several processes may run the same study in a folder at the same time; each chunk is run by one of them.
+    /// Several processes may run the same study in a folder at the same time; each chunk is run by a single
+    /// process.
     ///
-    /// `report` is called after each case and many times a second in between, from several threads, and may cancel the
-    /// run. Finished chunks are kept, and the next run resumes from there.
-    /// The table does not depend on the number of threads.
+    /// `report` is called from several threads, after each case and many times a second in between, and may
+    /// cancel the run. Finished chunks are kept, so that the next run resumes from them. The table does not
+    /// depend on the number of threads.
     ///
     /// # Errors
     /// If a motion cannot be read, the folder belongs to another study, or a file cannot be written;
@@ -245,7 +247,7 @@ impl Study {
     /// Runs one chunk with a vector width and writes its shard, unless the shard exists.
     ///
     /// # Errors
-    /// If there is no such chunk, or as [`Study::run`].
+    /// If there is no such chunk, or as for [`Study::run`].
     pub fn run_chunk(
         &self,
         folder: &Path,
@@ -282,10 +284,11 @@ impl Study {
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
     }
 
-    /// Returns which of the given chunks are finished in a folder.
+    /// Determines which of the given chunks are finished in a folder.
     ///
-    /// A shard is set aside, and its chunk counts as not finished, if it is damaged or does not hold the present cases of
-    /// its chunk. The latter was written before the study grew, possibly by a process that is still running.
+    /// A shard is set aside, and its chunk counts as not finished, if the shard is damaged or does not
+    /// contain the current cases of its chunk. A shard without the current cases was written before the study
+    /// grew, possibly by a process that is still running.
     fn done(&self, folder: &Folder, chunks: Range<usize>, keys: &Keys) -> Result<Done, StudyError> {
         let (mut done, specs) = (Done::default(), self.columns());
         for (chunk, path) in folder.shards()?.into_iter().filter(|(n, _)| chunks.contains(n)) {
@@ -309,7 +312,7 @@ impl Study {
 
 /// Renames a shard, so that its chunk is run again and its data are kept.
 ///
-/// It is no error if another process has renamed the shard already.
+/// If another process has already renamed the shard, this is not an error.
 fn set_aside(path: &Path, ending: &str) -> Result<(), StudyError> {
     match std::fs::rename(path, path.with_extension(ending)) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -324,7 +327,7 @@ impl Shared<'_> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Runs chunks until none is left or needed.
+    /// Runs chunks until no chunk is left or needed.
     fn work(&self) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(chunk) = self.take() else { return };
@@ -335,7 +338,8 @@ impl Shared<'_> {
         }
     }
 
-    /// Takes the next chunk; `None` if none is left, or if the stop rule is met by the contiguous finished chunks.
+    /// Takes the next chunk; `None` if no chunk is left, or if the contiguous finished chunks satisfy the
+    /// stopping rule.
     fn take(&self) -> Option<usize> {
         let mut state = self.state();
         if let Some(rule) = self.rule {

@@ -48,7 +48,7 @@ named! {
 }
 
 table! {
-    /// Values at equal steps or equal ratios, both ends included.
+    /// Values at equal steps or equal ratios; both ends are included.
     static RANGE = "range";
     /// First value.
     from = Kind::Value, Default::Required;
@@ -56,7 +56,7 @@ table! {
     to = Kind::Value, Default::Required;
     /// Number of values.
     count = Kind::Integer(2, 10_000), Default::Required;
-    /// Equal steps, or with "log" equal ratios.
+    /// Equal steps, or equal ratios with "log".
     spacing = Kind::Choice(names::<Spacing>), Default::Value("\"linear\"");
 }
 
@@ -79,35 +79,35 @@ table! {
     /// Kind of the distribution.
     kind = Kind::Choice(names::<Form>), Default::Required;
     by kind {
-        /// All values between two limits are equally likely.
+        /// All values between two limits are equally probable.
         "uniform" {
             /// Least value.
             from = Kind::Value, Default::Required;
             /// Greatest value.
             to = Kind::Value, Default::Required;
         }
-        /// The logarithm is uniform.
+        /// The logarithm of the value is uniformly distributed between two limits.
         "log-uniform" {
             /// Least value, above zero.
             from = Kind::Value, Default::Required;
             /// Greatest value.
             to = Kind::Value, Default::Required;
         }
-        /// Normal (Gauss).
+        /// Normal (Gaussian) distribution.
         "normal" {
             /// Mean.
             mean = Kind::Value, Default::Required;
             /// Standard deviation, before any truncation.
             deviation = Kind::Value, Default::Required;
         } then [LEAST, GREATEST]
-        /// The logarithm is normal.
+        /// The logarithm of the value is normally distributed.
         "lognormal" {
             /// Median, above zero.
             median = Kind::Value, Default::Required;
             /// Standard deviation of the natural logarithm, before any truncation.
             dispersion = Kind::Number(Range::up_to(5.0)), Default::Required;
         } then [LEAST, GREATEST]
-        /// One of a list of values.
+        /// One of a list of values, each with its probability.
         "discrete" {
             /// List of the values.
             values = Kind::Values, Default::Required;
@@ -118,11 +118,12 @@ table! {
 }
 
 table! {
-    /// A field of the scenario that the study varies, with one of `values`, `range` and `distribution`.
+    /// A factor: a field of the scenario that the study varies, with one of `values`, `range` and
+    /// `distribution`.
     static FACTOR = "factor";
     /// Path of the field, such as `interface.rack-ground.friction.coefficient`.
     field = Kind::Text, Default::Required;
-    /// Paths of further fields that take the same value.
+    /// Paths of further fields that take the same value as `field`.
     also = Kind::Texts, Default::Nothing;
     /// Name of the column of the factor.
     name = Kind::Text, Default::Derived("`field`");
@@ -136,7 +137,7 @@ table! {
 }
 
 table! {
-    /// The intensity to which motions are scaled, all components by one factor.
+    /// The intensity to which motions are scaled. All components of a motion are scaled by one factor.
     static INTENSITY = "intensity";
     /// Intensity measure of the horizontal component that shakes the stack: pga, pgv, pgd, arias, cav, sa(0.5), …
     measure = Kind::Text, Default::Value("\"pgv\"");
@@ -157,61 +158,69 @@ table! {
     static DESIGN = "design";
     /// Kind of the design.
     kind = Kind::Choice(names::<DesignKind>), Default::Required;
-    /// Number of cases of a chunk, the unit of work that is run and stored as a whole; in an incremental dynamic
-    /// analysis, of hunts.
+    /// Number of cases in a chunk, the unit of work that is run and stored as a whole; in an incremental
+    /// dynamic analysis, number of hunts.
     chunk = Kind::Integer(1, 100_000),
-        Default::Derived("64, and twice as many after every 512 chunks; in space, and in an incremental dynamic analysis, 8");
+        Default::Derived("64, doubled after every 512 chunks; 8 for stacks in space and for an incremental \
+            dynamic analysis");
     by kind {
         /// Every combination of all values, levels and motions.
         "full-factorial" {}
-        /// The base values, and every other value of one factor at a time, for every level and motion.
+        /// The base values and, for every other value of a factor, the base values with only this factor
+        /// changed; for every level and motion.
         "one-at-a-time" {
-            /// Quantiles that represent a distribution.
+            /// Probabilities of the quantiles that represent a distribution.
             quantiles = Kind::Values, Default::Value("[0.1, 0.9]");
-            /// Number of stacks for each motion. If above 0, factors with a distribution are drawn for each stack, with
-            /// the same values for all changes and levels, and quantiles are not used.
+            /// Number of stacks for each motion. If it is above 0, factors with a distribution are drawn for
+            /// each stack, the same values are used for all changes and levels, and quantiles are not used.
             draws = Kind::Integer(0, 10_000), Default::Value("0");
         }
-        /// Latin hypercube: one sample lies in each of `count` equally probable parts of every factor.
+        /// Latin hypercube: the range of every factor is divided into `count` equally probable parts, and one
+        /// sample lies in each part.
         "latin-hypercube" with [COUNT] {}
-        /// Points of a Sobol' sequence, shifted at random; a larger `count` keeps the earlier points.
+        /// Points of a Sobol' sequence with a random shift; if `count` is increased, the earlier points
+        /// remain.
         "sobol" with [COUNT] {}
-        /// Blocks of Sobol' points for variance-based sensitivity: two samples and, for every varied quantity, one
-        /// with this quantity exchanged.
+        /// Blocks of Sobol' points for variance-based sensitivity. A block contains two samples and, for
+        /// every varied quantity, a copy of the first sample in which that quantity is taken from the second.
         "saltelli" {
-            /// Number of blocks, best a power of two; each has two cases more than there are varied quantities.
+            /// Number of blocks, preferably a power of two. The number of cases in a block is the number of
+            /// varied quantities plus two.
             count = Kind::Integer(2, MOST), Default::Required;
         }
-        /// Random samples, until the probability of collapse is known precisely enough.
+        /// Independent random samples, until the interval of the collapse probability is narrow enough.
         "monte-carlo" {
-            /// Half-width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+            /// Half-width of the 95 % interval (Wilson) of the collapse probability at which sampling stops.
             half_width = Kind::Number(Range::between(1e-4, 0.5)), Default::Nothing;
             /// Maximum number of cases.
             most = Kind::Integer(1, MOST), Default::Required;
-            /// Number of cases before the interval is first tested.
+            /// Number of cases before the interval is tested for the first time.
             least = Kind::Integer(1, MOST), Default::Value("100");
         }
-        /// Every motion at every level. Factors with listed values are crossed; those with a distribution are drawn.
+        /// Every motion at every level. All combinations of listed values are run; factors with a
+        /// distribution are drawn for each case.
         "stripes" {}
-        /// Incremental dynamic analysis: the level of each motion rises in growing steps until the stack collapses; then
-        /// the gap before collapse and the gaps below are filled (hunt and fill, Vamvatsikos and Cornell 2004).
+        /// Incremental dynamic analysis: the level of each motion is raised in growing steps until the stack
+        /// collapses. Then the gap just below collapse is narrowed, and the wider gaps below it are filled
+        /// (hunt and fill, Vamvatsikos and Cornell 2004).
         "ida" {
-            /// Lowest level.
+            /// Lowest level, at which each hunt starts.
             first = Kind::Value, Default::Required;
-            /// First step of the level.
+            /// First step by which the level is raised.
             step = Kind::Value, Default::Required;
             /// Amount by which each step is larger than the previous one.
             growth = Kind::Value, Default::Derived("half of `step`");
-            /// Gap between standing and collapse, relative to the highest level that stood, at which narrowing stops.
+            /// Gap between the highest level that stood and the lowest level that collapsed, relative to the
+            /// former, at which narrowing stops.
             resolution = Kind::Number(Range::between(1e-3, 1.0)), Default::Value("0.1");
-            /// Number of runs of each hunt.
+            /// Number of runs in each hunt.
             runs = Kind::Integer(3, 1000), Default::Value("12");
         }
     }
 }
 
 table! {
-    /// Many runs of one scenario, with varied values and motions.
+    /// A study: many runs of one scenario with varied values and motions.
     pub static STUDY = "study";
     /// Version of the format of study files.
     schema = Kind::Integer(1, SCHEMA), Default::Required;
@@ -219,11 +228,12 @@ table! {
     title = Kind::Text, Default::Derived("name of the file");
     /// Seed of all random draws.
     seed = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
-    /// Scenario that is varied, with all its fields; usually `extends` and the fields that differ.
+    /// Scenario that is varied. All fields of a scenario are allowed; usually it contains `extends` and the
+    /// fields that differ.
     base = Kind::Table(&ROOT), Default::Required;
     /// Varied quantities.
     factor = Kind::Tables(&FACTOR), Default::Nothing;
-    /// Motions of the ground.
+    /// Ground motions.
     motion = Kind::Tables(&MOTIONS), Default::Derived("the motion of the base");
     /// Intensity to which motions are scaled.
     intensity = Kind::Table(&INTENSITY), Default::Nothing;

@@ -1,4 +1,4 @@
-//! Reading and checking of study files.
+//! Reads and checks study files.
 
 mod factor;
 
@@ -28,25 +28,27 @@ use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 /// Maximum number of cases of a design.
 const MOST_CASES: u64 = 10_000_000;
 
-/// Maximum number of strata of a Latin hypercube, of all quantities together; each takes four bytes.
+/// Maximum number of strata of a Latin hypercube, over all quantities together; each stratum takes four
+/// bytes.
 const MOST_STRATA: usize = 50_000_000;
 
-/// Size of chunks if each case or hunt takes long.
+/// Size of chunks if each case or hunt takes a long time.
 const FEW: Sizes = Sizes::Given(8);
 
 impl Study {
-    /// Reads a study file, the scenarios it extends, and the bytes of its records.
+    /// Reads a study file, the scenarios that it extends, and the bytes of its records.
     ///
     /// # Errors
-    /// If the study is invalid; the error states the first problem and its place.
+    /// If the study is invalid; the error states the first problem and where it is.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
         read(&Opened::load(path)?, None)
     }
 
-    /// Reads a study from text, which may extend built-in scenarios only; `source_name` is its name in errors.
+    /// Reads a study from text, which may extend built-in scenarios only; `source_name` is the name of the
+    /// text in error messages.
     ///
     /// # Errors
-    /// As [`Study::load`].
+    /// As for [`Study::load`].
     pub fn parse(source_name: &str, text: &str) -> Result<Self, StudyError> {
         read(&Opened::parse(source_name, text)?, None)
     }
@@ -66,8 +68,8 @@ impl Study {
         Ok(study)
     }
 
-    /// Reads a study from text like [`Study::parse`], without opening files: `fetch` returns the bytes of a record by its
-    /// path.
+    /// Reads a study from text like [`Study::parse`], without opening files. `fetch` returns the bytes of a
+    /// record for its path.
     ///
     /// ```
     /// use barrelstack_campaign::Study;
@@ -92,7 +94,7 @@ impl Study {
     /// ```
     ///
     /// # Errors
-    /// As [`Study::load`], or if `fetch` fails.
+    /// As for [`Study::load`], or if `fetch` fails.
     pub fn parse_with(
         source_name: &str,
         text: &str,
@@ -104,7 +106,7 @@ impl Study {
     /// Reads a built-in study.
     ///
     /// # Errors
-    /// If there is no built-in study with the name.
+    /// If there is no built-in study with that name.
     pub fn built_in(name: &str) -> Result<Self, StudyError> {
         let Some(text) = super::builtin::get(name) else {
             let known: Vec<&str> = super::builtin::names().collect();
@@ -119,7 +121,7 @@ impl Study {
     }
 }
 
-/// Callback that returns the bytes of a file by its path, or the reason why they cannot be read.
+/// Callback that returns the bytes of the file at a path, or the reason why the file cannot be read.
 type Fetch<'a> = &'a mut dyn FnMut(&Path) -> Result<Vec<u8>, String>;
 
 fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> {
@@ -171,7 +173,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     let intensity = top.optional_section("intensity")?.map(read_intensity).transpose()?;
     if intensity.is_some() && own && scenario.motion.source == MotionSource::None {
         let message =
-            "there is no motion to scale: the ground of the base stays at rest; add [[motion]]"
+            "there is no motion to scale: the ground in [base] remains at rest; add [[motion]]"
                 .to_owned();
         return Err(top.inconsistent("intensity", message).into());
     }
@@ -229,7 +231,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     Ok(study)
 }
 
-/// Loads the files of all motions into memory.
+/// Loads into memory the files of all motions.
 fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
     let mut base = study.scenario(&[])?.motion;
     for motion in &mut study.motions {
@@ -248,7 +250,7 @@ fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// Returns the fingerprint of everything on which the rows depend.
+/// Returns a fingerprint of all inputs on which the rows of the study depend.
 fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     let mut all = vec![env!("CARGO_PKG_VERSION").to_owned(), crate::ensemble::VERSION.to_string()];
     all.extend(study.template.texts().map(str::to_owned));
@@ -260,7 +262,7 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-/// Returns the limits on the values of factors, given the number of motions and the kind of the design.
+/// Returns limits on the number of values of factors, given the number of motions and the kind of design.
 fn room_for(top: &Reader<'_>, motions: usize) -> Result<Room, ScenarioError> {
     let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
     let kind: Option<DesignKind> =
@@ -298,7 +300,8 @@ fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Scenar
     Ok(())
 }
 
-/// Returns the dimensions in which levels of a measure may be written; `None` if motions cannot be scaled to it.
+/// Returns the dimensions in which levels of a measure may be written; `None` if motions cannot be scaled to
+/// the measure.
 fn dimension_of(measure: IntensityMeasure) -> Option<&'static [Dimension]> {
     match measure.unit() {
         "m/s2" => Some(&[Dimension::ACCELERATION]),
@@ -337,7 +340,7 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     Ok(Intensity { measure, levels })
 }
 
-/// Reads `[design]`; returns the design, the stated size of chunks, if any, and the intensity.
+/// Reads the `[design]` table. Returns the design, the size of chunks if it is stated, and the intensity.
 fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,
@@ -377,8 +380,8 @@ fn read_design(
                 (quantiles.collect::<Result<_, _>>()?, reader.integer("draws")?);
             if draws > 0 && factors.iter().all(|factor| factor.crossed().is_none()) {
                 return refuse(
-                    "every factor is drawn, so nothing is changed one at a time: give one of them `values`, or use \
-                     \"stripes\"",
+                    "every factor is drawn, so that no factor is changed one at a time: give at least one of \
+                     them `values`, or use \"stripes\"",
                 );
             }
             Design::OneAtATime { quantiles, draws }
@@ -411,8 +414,8 @@ fn read_design(
             let most = sobol::DIMENSIONS / 2 - 2;
             if factors.len() > most {
                 return refuse(&format!(
-                    "a \"saltelli\" design has at most {most} factors, but this study has {}; leave out those that \
-                     matter least",
+                    "a \"saltelli\" design has at most {most} factors, but this study has {}; omit the least \
+                     important ones",
                     factors.len()
                 ));
             }

@@ -33,7 +33,7 @@ use barrelstack_report::column::ColumnSpec;
 /// Version of the layout of a folder.
 pub(super) const LAYOUT: u32 = 3;
 
-/// Maximum size (bytes) of a file of a folder that is read.
+/// Maximum size (bytes) of a file in the folder; larger files are not read.
 const FILE_LIMIT: usize = 1 << 30;
 
 pub(super) const MANIFEST: &str = "study.json";
@@ -46,7 +46,7 @@ const COPY: &str = "study.toml";
 const KEY: &str = "chunk";
 
 described! {
-    /// Provenance of the rows of a study.
+    /// Provenance of the rows of a study: their inputs, and the progress of the study.
     #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
     pub struct Provenance {
         /// Version of the layout of the folder.
@@ -57,29 +57,31 @@ described! {
         pub version: String,
         /// Title of the study.
         pub title: String,
-        /// Fingerprint of the study file, the scenarios it extends, the bytes of its records, and the version.
+        /// Fingerprint of the study file, the scenarios that it extends, the bytes of its records, and the
+        /// version of the program.
         pub study_hash: String,
-        /// Fingerprint of the bytes of the study file, a copy of which is in the folder.
+        /// Fingerprint of the bytes of the study file; the folder contains a copy of this file.
         pub text_hash: String,
         /// Seed of all random draws.
         pub seed: u64,
-        /// Design, by its name in study files.
+        /// Name of the design in study files.
         pub design: String,
-        /// Intensity measure of the column `level`; null without levels.
+        /// Intensity measure of the column `level`; null if there are no levels.
         pub measure: Option<String>,
-        /// Stop rule of a Monte Carlo design; null without one.
+        /// Stopping rule of a Monte Carlo design; null if there is none.
         pub stop: Option<StopRule>,
-        /// Names of the factors that are drawn for each case of a motion.
+        /// Names of the factors that are drawn anew for each case of a motion.
         pub drawn: Vec<String>,
-        /// Quantities that a sensitivity design exchanges, in the order of the cases of a block; empty for other designs.
+        /// Quantities that a sensitivity design exchanges between samples, in the order of the cases in a
+        /// block; empty for other designs.
         pub varied: Vec<String>,
-        /// Inputs that all cases have in common.
+        /// Inputs that all cases share.
         pub common: Vec<Common>,
-        /// Motions of the study, in order.
+        /// Motions of the study, in the order of the study file.
         pub motions: Vec<MotionSource>,
         /// Columns of the table.
         pub columns: Vec<ColumnSpec>,
-        /// Number of all chunks; for a Monte Carlo design, the maximum.
+        /// Total number of chunks; for a Monte Carlo design, the maximum number.
         pub chunks: usize,
         /// Number of finished chunks.
         pub chunks_done: usize,
@@ -91,12 +93,12 @@ described! {
 }
 
 impl Provenance {
-    /// `true` if motion, level and factors are drawn for each case.
+    /// `true` if cases are samples: motion, level and factors are drawn for each case.
     pub fn is_sampled(&self) -> bool {
         self.is_sample() || self.design == "saltelli"
     }
 
-    /// Returns [`Design::is_sample`] of the design of the study.
+    /// Returns [`Design::is_sample`] for the design of the study.
     pub fn is_sample(&self) -> bool {
         matches!(self.design.as_str(), "latin-hypercube" | "sobol" | "monte-carlo")
     }
@@ -108,30 +110,32 @@ described! {
     pub struct MotionSource {
         /// Name of the motion in the table.
         pub name: String,
-        /// Description of the source: files, or the method by which the motion is made.
+        /// Description of the source: the files, or the method by which the motion is made.
         pub source: String,
-        /// Fingerprint of the bytes of the files; none without files.
+        /// Fingerprint of the bytes of the files; none if the motion has no files.
         pub hash: Option<String>,
         /// Fingerprint of the method and its settings.
         pub key: String,
     }
 }
 
-/// Folder that was opened for a study.
+/// Folder that is open for a study.
 #[derive(Clone, Debug)]
 pub(super) struct Folder {
     path: PathBuf,
-    /// Fingerprint of the study for which the folder was opened.
+    /// Fingerprint of the study for which the folder is open.
     study: String,
     /// `true` if the manifest was damaged and has been rewritten.
     pub(super) healed: bool,
 }
 
 impl Folder {
-    /// Opens a folder for a study: creates it, or checks that an existing folder belongs to the study.
+    /// Opens a folder for a study: creates the folder, or checks that an existing folder belongs to the
+    /// study.
     ///
-    /// The folder of an earlier form of the study is accepted if `grows` is `true` and everything that all cases have in
-    /// common is unchanged. Only a run of the whole study sets `grows`; it then calls [`Folder::describe`].
+    /// The folder of an earlier form of the study is accepted if `grows` is `true` and all inputs that the
+    /// cases share are unchanged. Only a run of the whole study sets `grows`; such a run then calls
+    /// [`Folder::describe`].
     pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
         let mut folder = Self { path: path.to_owned(), study: study.fingerprint(), healed: false };
         let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
@@ -183,7 +187,8 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Writes the manifest and the copy of the study file, if they are missing or of an earlier form of the study.
+    /// Writes the manifest and the copy of the study file, if these files are missing or belong to an earlier
+    /// form of the study.
     pub(super) fn describe(&self, study: &Study) -> Result<(), StudyError> {
         let manifest = self.path.join(MANIFEST);
         // An earlier version may have computed other keys for the same motions.
@@ -209,14 +214,16 @@ impl Folder {
         Ok(manifest_of(&self.path)?.study_hash == self.study)
     }
 
-    /// Returns the chunks that have shards, and the paths of the shards, sorted.
+    /// Returns the chunks that have shards, with the paths of the shards, in ascending order.
     pub(super) fn shards(&self) -> Result<Vec<(usize, PathBuf)>, StudyError> {
         shards(&self.path)
     }
 
-    /// Claims a chunk for this process and thread; `None` while another holds it.
+    /// Claims a chunk for this process and thread; returns `None` while another process or thread holds the
+    /// claim.
     ///
-    /// A process that began before the study grew gets an error, since it would compute the earlier study.
+    /// A process that began before the study grew receives an error, since it would compute the earlier form
+    /// of the study.
     pub(super) fn claim(&self, chunk: usize) -> Result<Option<Claim>, StudyError> {
         let claim = Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))?;
         if claim.is_some() && !self.is_ours()? {
@@ -229,7 +236,7 @@ impl Folder {
         Ok(claim)
     }
 
-    /// Removes files left behind by killed runs.
+    /// Removes files that killed runs have left behind.
     pub(super) fn clean(&self) -> Result<(), StudyError> {
         let shards = self.path.join(SHARDS);
         for path in list(&self.path)?.into_iter().chain(list(&shards)?) {
@@ -273,7 +280,7 @@ impl Folder {
     }
 }
 
-/// Reads a file of a folder.
+/// Reads a file of the folder.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     system::read_result(path, FILE_LIMIT).map_err(|reason| StudyError::System {
         doing: "read",
@@ -282,16 +289,16 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     })
 }
 
-/// Returns the first name in a folder, for an error message, without hidden names and those in `but`.
+/// Returns the first name in a folder, for an error message. Hidden names and those in `but` are ignored.
 ///
-/// Returns `None` if there is no such name, or no folder.
+/// Returns `None` if there is no such name or no such folder.
 fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
     let names = fs::read_dir(folder).ok()?.flatten();
     let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.filter(|name| !but.contains(&name.as_str()) && !name.starts_with('.')).min()
 }
 
-/// Returns the paths of the entries of a folder, sorted.
+/// Returns the sorted paths of the entries in a folder.
 fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     let failed = StudyError::system("list", folder);
     let entries = fs::read_dir(folder).map_err(failed)?;
@@ -301,20 +308,21 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(paths)
 }
 
-/// Returns the chunks that have shards in a folder, and the paths of the shards, sorted.
+/// Returns the chunks that have shards in a folder, with the paths of the shards, in ascending order.
 pub(super) fn shards(folder: &Path) -> Result<Vec<(usize, PathBuf)>, StudyError> {
     let paths = list(&folder.join(SHARDS))?.into_iter();
     Ok(paths.filter_map(|path| Some((named(&path)?.0, path))).collect())
 }
 
-/// Returns the chunk and the fingerprint in the name of a shard; `None` for any other file.
+/// Returns the chunk number and the fingerprint in the name of a shard; `None` for any other file.
 fn named(path: &Path) -> Option<(usize, u64)> {
     let name = path.file_name()?.to_str()?.strip_suffix(".parquet")?;
     let (chunk, hash) = name.split_once('-')?;
     Some((chunk.parse().ok()?, u64::from_str_radix(hash, 16).ok()?))
 }
 
-/// Returns the copy of the study file in a folder, which must match the fingerprint in its manifest.
+/// Returns the copy of the study file in a folder, after checking that it matches the fingerprint in the
+/// manifest.
 pub(super) fn study_text(folder: &Path, made: &Provenance) -> Result<String, StudyError> {
     let path = folder.join(COPY);
     let bytes = read_file(&path)?;
@@ -329,7 +337,8 @@ pub(super) fn study_text(folder: &Path, made: &Provenance) -> Result<String, Stu
     })
 }
 
-/// Reads a shard and the key of its chunk, and checks its bytes against the fingerprint in its name.
+/// Reads a shard and the key of its chunk, and checks the bytes of the shard against the fingerprint in its
+/// name.
 pub(super) fn read_shard(
     path: &Path,
     specs: &[ColumnSpec],
@@ -357,7 +366,7 @@ pub(super) fn read_shard(
 }
 
 impl Study {
-    /// Returns the provenance of the rows of the study, with no chunks finished.
+    /// Returns the provenance of the study before any chunk is finished.
     ///
     /// # Errors
     /// If a record cannot be read.
@@ -398,17 +407,18 @@ impl Study {
         })
     }
 
-    /// Returns the fingerprint of the study file as text.
+    /// Returns the fingerprint of the study file, as text.
     fn text_hash(&self) -> String {
         format!("{:016x}", fnv1a(self.text.as_bytes()))
     }
 
-    /// Returns the fingerprint of the study as text.
+    /// Returns the fingerprint of the study, as text.
     fn fingerprint(&self) -> String {
         format!("{:016x}", self.hash())
     }
 
-    /// Returns the names of the factors that stripes draw for each case, or one-at-a-time designs for each draw.
+    /// Returns the names of the factors that are drawn: for each case of a stripes design, or for each draw
+    /// of a one-at-a-time design.
     fn drawn(&self) -> Vec<String> {
         let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
         let names = drawn.map(|factor| factor.name.clone());
@@ -416,7 +426,7 @@ impl Study {
         if draws { names.collect() } else { Vec::new() }
     }
 
-    /// Returns the stop rule; `None` if all cases are run.
+    /// Returns the stopping rule; `None` if all cases are run.
     pub(super) fn stop_rule(&self) -> Option<StopRule> {
         let Design::MonteCarlo { half_width, least, .. } = self.design else { return None };
         half_width.map(|half_width| StopRule { half_width, least })

@@ -1,4 +1,5 @@
-//! Changes of a study that keep its finished chunks: keys of chunks, and comparison with the study of a folder.
+//! Changes of a study after which its finished chunks remain valid: keys of chunks, and comparison with the
+//! study in a folder.
 
 use barrelstack_report::described;
 
@@ -13,10 +14,10 @@ use crate::scenario::quantity::plain;
 // The number of samples and the motions are not included: they identify cases and are part of the key of a chunk.
 // Further samples and motions come after the existing ones.
 described! {
-    /// Input on which every case of a study depends, with its fingerprint.
+    /// An input on which every case of a study depends.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct Common {
-        /// Name of the input in a sentence.
+        /// Name of the input, for use in a sentence.
         pub what: String,
         /// Fingerprint of the input.
         pub hash: String,
@@ -25,14 +26,14 @@ described! {
 
 /// Fingerprints from which the keys of the shards of a study are computed.
 pub(super) struct Keys {
-    /// Fingerprints of the inputs that all cases have in common.
+    /// Fingerprint of the inputs that all cases share.
     common: String,
     /// Fingerprint of each motion.
     motions: Vec<u64>,
 }
 
 impl Study {
-    /// Returns the inputs that all cases have in common.
+    /// Returns the inputs that all cases share.
     pub(super) fn common(&self) -> Result<Vec<Common>, StudyError> {
         let base = self.template.with([])?;
         let factors: Vec<String> = self
@@ -95,8 +96,8 @@ impl Study {
         self.motions.iter().map(key).collect()
     }
 
-    /// Returns the key of a chunk: a fingerprint of the inputs that all cases have in common, and of its cases with their
-    /// motions, levels and values.
+    /// Returns the key of a chunk: a fingerprint of the inputs that all cases share, and of the cases of the
+    /// chunk with their motions, levels and values.
     pub(super) fn chunk_key(&self, chunk: usize, keys: &Keys) -> u64 {
         let words = |case: &Case| {
             let settings: Vec<String> = case
@@ -115,9 +116,9 @@ impl Study {
     }
 }
 
-/// Describes the difference between the study of a folder and another study.
+/// Describes how the study in a folder differs from another study in the inputs that all cases share.
 ///
-/// Returns `None` if all inputs that the cases have in common are equal, so that finished chunks may be kept.
+/// Returns `None` if there is no such difference, so that finished chunks may be kept.
 pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<String> {
     if known.version != wanted.version {
         return Some(format!(
@@ -127,7 +128,7 @@ pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<Stri
     }
     if known.seed != wanted.seed {
         return Some(format!(
-            "its seed is {}, and that of this study is {}",
+            "its seed is {}, and the seed of this study is {}",
             known.seed, wanted.seed
         ));
     }

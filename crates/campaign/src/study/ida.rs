@@ -1,27 +1,28 @@
-//! Levels of one hunt of an incremental dynamic analysis.
+//! Choice of the levels in one hunt of an incremental dynamic analysis.
 
-/// Settings of a hunt: the search for the level at which one motion brings the stack down.
+/// Settings of a hunt: the search for the level at which one motion makes the stack collapse.
 ///
-/// The method is hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523). Levels rise in growing steps
-/// until the stack collapses. Then the gap between the highest level at which the stack stood and the lowest at which it
-/// collapsed is narrowed, each time by a run at a third of the gap. The remaining runs are placed in the middle of the
-/// widest gaps below.
-/// All levels are in SI units of the intensity measure.
+/// The method is hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523). Levels rise in
+/// growing steps until the stack collapses. Then the gap between the highest level at which the stack stood
+/// and the lowest level at which it collapsed is narrowed: each further run is placed at one third of the
+/// gap. The remaining runs are placed in the middle of the widest gaps below. All levels are in SI units of
+/// the intensity measure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hunt {
     /// Lowest level, at which the hunt starts.
     pub first: f64,
-    /// First step of the level.
+    /// First step by which the level is raised.
     pub step: f64,
     /// Amount by which each step is larger than the previous one.
     pub growth: f64,
-    /// Gap between standing and collapse, relative to the highest level that stood, at which narrowing ends.
+    /// Gap between the highest level that stood and the lowest level that collapsed, relative to the former,
+    /// at which narrowing ends.
     pub resolution: f64,
-    /// Number of runs of each hunt.
+    /// Number of runs in each hunt.
     pub runs: u32,
 }
 
-/// Level that was run, and whether the stack collapsed; `None` without a verdict.
+/// A level that was run, and whether the stack collapsed; `None` if the run has no verdict.
 pub(super) type LevelResult = (f64, Option<bool>);
 
 impl Hunt {

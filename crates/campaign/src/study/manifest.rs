@@ -1,7 +1,7 @@
-//! Manifest of a folder: the provenance of its shards, with a fingerprint that shows damage.
+//! Manifest of a folder: the provenance of its shards, with a fingerprint that reveals damage.
 //!
-//! The last field of `study.json` is the fingerprint (FNV-1a, 64 bits) of the whole file, computed with zeros in place of
-//! the fingerprint. It protects against damage, not against tampering.
+//! The last field of `study.json` is the fingerprint (FNV-1a, 64 bits) of the whole file, computed with zeros
+//! in place of the fingerprint. The fingerprint reveals damage, but it does not protect against tampering.
 
 use std::path::Path;
 
@@ -19,15 +19,16 @@ const BEHIND: &str = "\"\n}\n";
 /// Number of digits of a fingerprint.
 const DIGITS: usize = 16;
 
-/// Manifest as it was read.
+/// A manifest that has been read.
 pub(super) enum Manifest {
-    /// The manifest is unchanged since it was written.
+    /// The manifest has not changed since it was written.
     Sound(Box<Provenance>),
-    /// The manifest was changed since it was written; the reason is a clause.
+    /// The manifest has changed since it was written; the reason is a clause.
     Damaged(String),
 }
 
-/// Returns the bytes with zeros in place of the fingerprint, and the fingerprint; `None` if there is no fingerprint.
+/// Returns the bytes of a manifest with zeros in place of the fingerprint, and the fingerprint itself; `None`
+/// if there is no fingerprint.
 fn parted(bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     let rest = bytes.strip_suffix(BEHIND.as_bytes())?;
     let (head, stated) = rest.split_at_checked(rest.len().checked_sub(DIGITS)?)?;
@@ -105,7 +106,7 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     Ok(Manifest::Sound(Box::new(known)))
 }
 
-/// Returns the provenance in the manifest of a folder.
+/// Returns the provenance that the manifest of a folder states.
 pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     match read(folder)? {
         Manifest::Sound(known) => Ok(*known),

@@ -17,7 +17,7 @@ use super::error::StudyError;
 /// Motion of a study.
 #[derive(Clone, Debug)]
 pub(super) struct Motion {
-    /// Name of the motion in the table, unique in the study.
+    /// Name of the motion in the table, which is unique in the study.
     pub(super) name: String,
     /// Source of the motion.
     pub(super) shaking: Shaking,
@@ -26,15 +26,15 @@ pub(super) struct Motion {
 /// Source of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shaking {
-    /// The motion of the base scenario, with the values of the case.
+    /// The motion of the base scenario, with the changes that the factors of the case make.
     Base,
-    /// A motion as in a scenario file.
+    /// A motion that is stated as in a scenario file.
     Spec(Box<MotionSpec>),
-    /// One realization of an ensemble.
+    /// One realization of a synthetic ensemble.
     Synthetic(Box<Synthetic>),
 }
 
-/// One realization of an ensemble.
+/// One realization of a synthetic ensemble.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Synthetic {
     pub(super) maker: Making,
@@ -66,7 +66,7 @@ impl std::fmt::Display for Making {
 }
 
 impl Synthetic {
-    /// `true` if this motion differs from another only in its seed.
+    /// `true` if this motion differs from another motion in its seed only.
     pub(super) fn is_of_ensemble(&self, other: &Self) -> bool {
         Self { seed: 0, ..self.clone() } == Self { seed: 0, ..other.clone() }
     }
@@ -84,7 +84,8 @@ impl Synthetic {
 }
 
 impl Shaking {
-    /// Returns the motion for a stack of the length scale `similitude`, scaled as its source states.
+    /// Returns the motion for a stack with the length scale `similitude`; the motion is scaled as its source
+    /// states.
     pub(super) fn ground(&self, base: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
         match self {
             Self::Base => ground::of_spec(base, similitude),
@@ -100,7 +101,8 @@ impl Shaking {
         }
     }
 
-    /// Returns all components of the motion for a stack of the length scale `similitude`, scaled as its source states.
+    /// Returns all components of the motion for a stack with the length scale `similitude`; the components
+    /// are scaled as their source states.
     fn in_space(
         &self,
         base: &MotionSpec,
@@ -114,7 +116,7 @@ impl Shaking {
         }
     }
 
-    /// Describes the source in words, without numbers that are in the study file.
+    /// Describes the source in words; numbers that the study file contains are omitted.
     pub(super) fn source(&self, base: &MotionSpec) -> String {
         let spec: &MotionSpec = match self {
             Self::Base => base,
@@ -137,7 +139,7 @@ impl Shaking {
         }
     }
 
-    /// Returns a fingerprint of the source, independent of the paths and names of its files.
+    /// Returns a fingerprint of the source, which does not depend on the paths and names of its files.
     pub(super) fn key(&self) -> u64 {
         let mut made = self.clone();
         if let Self::Spec(spec) = &mut made {
@@ -167,7 +169,7 @@ impl Shaking {
     }
 }
 
-/// Returns a fingerprint of the bytes of files; `None` without files.
+/// Returns a fingerprint of the bytes of files; `None` if there are no files.
 pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {
     let mut all = Vec::new();
     for file in files {
@@ -179,12 +181,12 @@ pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, 
 }
 
 pub(super) fn unreadable(name: &str, path: &Path, reason: String) -> StudyError {
-    let obtain = "; correct the path, or take the file out of its folder".to_owned();
+    let obtain = "; correct the path, or remove the file from its folder".to_owned();
     let error = GroundError::Unreadable { path: path.to_owned(), reason, obtain };
     StudyError::Motion { name: name.to_owned(), error: Box::new(error) }
 }
 
-/// Columns of the intensity measures in a table, with the measures.
+/// Intensity measures in the table of a study, each with the name of its column.
 pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
     ("pga", IntensityMeasure::Pga),
     ("pgv", IntensityMeasure::Pgv),
@@ -197,21 +199,22 @@ pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
     ("d5_95", IntensityMeasure::D5_95),
 ];
 
-/// Scaled motion with its intensity measures.
+/// A scaled motion and its intensity measures.
 #[derive(Clone, Debug)]
 pub(super) struct Shaken {
     pub(super) ground: Arc<Ground>,
     /// Factor by which the motion was scaled to its level.
     pub(super) factor: f64,
-    /// [`MEASURES`] of the horizontal component, as scaled (SI); `None` for ground at rest.
+    /// Values (SI) of the [`MEASURES`] of the horizontal component after scaling; `None` if the ground is at
+    /// rest.
     pub(super) measures: Option<[f64; 9]>,
 }
 
-/// Cache entry: an unscaled motion that cases share.
+/// Cache entry: an unscaled motion that several cases share.
 #[derive(Debug)]
 struct Kept<T> {
     shaking: Shaking,
-    /// Motion of the base scenario, if that is the source.
+    /// Motion of the base scenario, if the source is that motion.
     base: Option<MotionSpec>,
     similitude: f64,
     /// Cached value.
@@ -230,7 +233,7 @@ impl<T> Default for Shelf<T> {
     }
 }
 
-/// Caches of the most recently used motions, so that a motion is not read again for every case.
+/// Caches of the most recently used motions, which avoid reading a motion again for every case.
 #[derive(Debug, Default)]
 pub(super) struct MotionCache {
     in_plane: Shelf<Shaken>,
@@ -241,7 +244,8 @@ pub(super) struct MotionCache {
 const CACHE: usize = 64 << 20;
 
 impl<T> Shelf<T> {
-    /// Returns the cached value of a motion; if there is none, `make` computes the value and its size (bytes).
+    /// Returns the cached value of a motion. If the cache has none, `make` computes the value and its size
+    /// (bytes).
     fn get(
         &self,
         motion: &Motion,
@@ -280,7 +284,7 @@ impl<T> Shelf<T> {
 }
 
 impl MotionCache {
-    /// Returns an unscaled motion, from the cache or read from its source.
+    /// Returns an unscaled motion from the cache, or reads it from its source.
     pub(super) fn unscaled(
         &self,
         motion: &Motion,
@@ -295,7 +299,8 @@ impl MotionCache {
         })
     }
 
-    /// Returns all components of an unscaled motion, without rotation, from the cache or read from the source.
+    /// Returns all components of an unscaled motion, without rotation, from the cache, or reads them from the
+    /// source.
     pub(super) fn in_space(
         &self,
         motion: &Motion,
@@ -309,7 +314,7 @@ impl MotionCache {
         })
     }
 
-    /// Returns a motion scaled to a level of an intensity measure; unscaled without a level.
+    /// Returns a motion scaled to a level of an intensity measure, or unscaled if there is no level.
     pub(super) fn at_level(
         &self,
         motion: &Motion,
@@ -341,9 +346,10 @@ fn measure(motion: &GroundMotion) -> Result<[f64; 9], MotionError> {
     Ok(values)
 }
 
-/// Scales intensity measures with the factor of the motion.
+/// Multiplies intensity measures by the effect of scaling the motion with `factor`.
 ///
-/// The Arias intensity scales with its square; PGV/PGA and the duration do not change; the others are proportional.
+/// The Arias intensity is proportional to the square of the factor. PGV/PGA and the duration do not change.
+/// All other measures are proportional to the factor.
 fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
     for (value, (_, measure)) in values.iter_mut().zip(MEASURES) {
         if measure == IntensityMeasure::Arias {
@@ -355,7 +361,7 @@ fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
     values
 }
 
-/// Returns the memory (bytes) of a motion: acceleration, velocity and displacement at every step.
+/// Returns the memory (bytes) that a motion takes: acceleration, velocity and displacement at every step.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples")]
 fn size(ground: &Ground) -> usize {
     let Some(motion) = &ground.motion else { return 0 };

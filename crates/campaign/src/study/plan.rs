@@ -1,4 +1,4 @@
-//! Division of the cases of a study into chunks.
+//! Divides the cases of a study into chunks.
 
 use std::collections::HashMap;
 
@@ -6,12 +6,12 @@ use super::Study;
 use super::design::{Case, Design};
 use barrelstack_report::column::Value;
 
-/// Chunk of a study: cases that are run and stored together.
+/// A chunk of a study: cases that are run and stored together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chunk {
-    /// Number of the chunk, from 0.
+    /// Number of the chunk, counted from 0.
     pub number: usize,
-    /// Number of cases; in an incremental dynamic analysis, of hunts.
+    /// Number of cases; in an incremental dynamic analysis, number of hunts.
     pub cases: usize,
     /// Number of the first case.
     pub first: u64,
@@ -19,30 +19,33 @@ pub struct Chunk {
     pub last: u64,
 }
 
-/// Sizes of chunks: as the study states, or 64 cases and twice as many after every 512 chunks.
+/// Sizes of chunks: as the study states, or 64 cases, doubled after every 512 chunks.
 ///
-/// Chunks are small enough that an interruption loses little and many workers find work, and large enough that a million
-/// cases make about 2,500 files. In a study of a million cases the last chunks are 16 times as large as the first.
-/// The size of a chunk does not depend on the number of chunks after it.
+/// Chunks are small enough that little work is lost at an interruption and that many processes can work at
+/// once. They are large enough that a study of a million cases has only about 2,500 files. In a study of a
+/// million cases the last chunks are 16 times as large as the first. The size of a chunk does not depend on
+/// the number of later chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sizes {
     /// All chunks have the given number of cases.
     Given(u32),
-    /// Chunks grow with their position.
+    /// Chunks with higher numbers have more cases.
     Growing,
 }
 
 /// Number of chunks of one size before the size doubles.
 const ALIKE: u64 = 512;
 
-/// Maximum number of doublings, which avoids overflow. Ten million cases, the maximum of a study, need eight.
+/// Maximum number of doublings, which prevents overflow. A study of ten million cases, the maximum, needs
+/// eight doublings.
 const DOUBLINGS: u64 = 40;
 
 /// Number of cases of the first chunks.
 const FIRST: u64 = 64;
 
 impl Sizes {
-    /// Returns the first case and the number of cases of a chunk, if chunks follow the order of the cases.
+    /// Returns the number of the first case and the number of cases of a chunk, if chunks follow the order of
+    /// the cases.
     fn span(self, chunk: u64) -> (u64, u64) {
         match self {
             Self::Given(size) => (chunk * u64::from(size), u64::from(size)),
@@ -54,7 +57,7 @@ impl Sizes {
         }
     }
 
-    /// Returns the number of chunks for a number of cases.
+    /// Returns the number of chunks into which a number of cases is divided.
     fn chunks(self, cases: u64) -> u64 {
         match self {
             Self::Given(size) => cases.div_ceil(u64::from(size)),
@@ -70,14 +73,14 @@ impl Sizes {
 
 /// Chunks of a study.
 ///
-/// If the design allows, all cases of a chunk have the same bodies and contacts, so that they can run in lockstep.
-/// Each case is added to the chunk of its kind that is not yet full, or to a new one, so that further cases change no
-/// full chunk.
+/// If the design allows, all cases of a chunk have models with the same bodies and contacts, so that they can
+/// run in lockstep. Each case is added to a chunk of such cases that is not yet full, or else to a new chunk.
+/// Additional cases therefore never change a full chunk.
 #[derive(Clone, Debug)]
 pub(super) enum Chunks {
     /// Chunks follow the order of the cases.
     Even { count: u64, sizes: Sizes },
-    /// Numbers of the cases of each chunk.
+    /// For each chunk, the numbers of its cases.
     Listed(Vec<Vec<u32>>),
 }
 
@@ -119,7 +122,7 @@ impl Chunks {
         }
     }
 
-    /// Returns the numbers of the cases of a chunk, ascending.
+    /// Returns the numbers of the cases in a chunk, in ascending order.
     pub(super) fn numbers(&self, chunk: usize) -> Vec<u64> {
         match self {
             Self::Even { count, sizes } => {
@@ -149,7 +152,7 @@ impl Study {
         self.chunks.len()
     }
 
-    /// Returns the values of the factors that change the bodies and contacts of the model.
+    /// Returns the values of those factors that change the bodies and contacts of the model.
     fn structure(&self, case: &Case) -> Vec<Option<Value>> {
         let structural = |index: &usize| self.factors[*index].structural;
         (0..self.factors.len())

@@ -1,4 +1,4 @@
-//! Computation of the rows of a chunk: its cases are built, run, and tabulated.
+//! Computes the rows of a chunk: builds, runs and tabulates its cases.
 
 use std::sync::Arc;
 
@@ -17,7 +17,8 @@ use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
 use crate::ground::Ground;
 use crate::outcome::Outcome;
 
-/// Maximum number of cases built at once: enough to run in lockstep, few enough to keep their motions in memory.
+/// Maximum number of cases that are built at once: enough to run in lockstep, and few enough for their
+/// motions to fit in memory.
 const BATCH: usize = 128;
 
 /// Resources for running a chunk.
@@ -32,14 +33,14 @@ pub(super) struct Resources<'a> {
     pub(super) stop: &'a dyn Fn() -> bool,
 }
 
-/// Case with its motion, ready to run, or the reason why it cannot run.
+/// A case with its motion that is ready to run, or the reason why it cannot run.
 struct Built {
     shaken: Option<Shaken>,
     prepared: Result<Prepared, String>,
 }
 
 impl Study {
-    /// Computes the rows of a chunk; `None` if canceled.
+    /// Computes the rows of a chunk; returns `None` if canceled.
     pub(super) fn compute(
         &self,
         chunk: usize,
@@ -65,7 +66,8 @@ impl Study {
         Ok(Some(table))
     }
 
-    /// Runs several hunts in parallel, one level of each at a time, and returns their rows; `None` if canceled.
+    /// Runs several hunts in parallel, one level of each hunt at a time, and returns their rows; `None` if
+    /// canceled.
     fn hunts(
         &self,
         hunt: &Hunt,
@@ -109,7 +111,7 @@ impl Study {
         Some(rows.into_iter().map(|(_, row)| row).collect())
     }
 
-    /// Builds and runs cases, and returns the motion and the result of each; `None` if canceled.
+    /// Builds and runs cases, and returns the motion and the result of each case; `None` if canceled.
     ///
     /// Cases in a plane run in lockstep. Cases that cannot be built have a result with the reason.
     fn shake(
@@ -185,7 +187,7 @@ impl Study {
         built
     }
 
-    /// Returns the base scenario with the given values of the factors.
+    /// Returns the base scenario in which the factors have the given values.
     pub(super) fn scenario(&self, settings: &[Option<Setting>]) -> Result<Scenario, ScenarioError> {
         let changes = self.factors.iter().zip(settings).flat_map(|(factor, setting)| {
             let fields = factor.fields.iter().map(String::as_str);
@@ -201,10 +203,10 @@ impl Study {
         Ok(scenario)
     }
 
-    /// Returns the names and the motions of the study, not scaled to a level.
+    /// Returns the names and the unscaled motions of the study.
     ///
     /// # Errors
-    /// If a motion cannot be read or generated; the error names the first one.
+    /// If a motion cannot be read or generated; the error names the first such motion.
     pub fn grounds(&self) -> Result<Vec<(String, Arc<Ground>)>, StudyError> {
         let (cache, base) = (MotionCache::default(), self.scenario(&[])?);
         let ground = |motion: &Motion| {
@@ -226,10 +228,10 @@ impl Study {
         cache.at_level(motion, &scenario.motion, scenario.run.similitude, level)
     }
 
-    /// Reads every motion, so that a bad file fails before any run.
+    /// Reads every motion before any run, so that an invalid file is reported early.
     ///
     /// # Errors
-    /// If a motion cannot be read or generated; the error names the first one.
+    /// If a motion cannot be read or generated; the error names the first such motion.
     pub(super) fn try_motions(&self, cache: &MotionCache) -> Result<(), StudyError> {
         let scenario = self.scenario(&[])?;
         let mut tried: Option<&Synthetic> = None;
@@ -252,7 +254,7 @@ impl Study {
     }
 }
 
-/// Returns an error for scenes that a study cannot run: a stack in both planes, and a free scene in space.
+/// Returns an error for scenarios that a study cannot run: a stack in both planes, and a free scene in space.
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {

@@ -1,4 +1,4 @@
-//! Columns of the table of a study, and the row of a case.
+//! Columns of the table of a study, and the row for a case.
 
 use super::Study;
 use super::design::Case;
@@ -12,15 +12,15 @@ use barrelstack_space::columns;
 const KEYS: [(&str, ValueKind); 3] =
     [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
 
-/// Columns that describe the motion.
+/// Columns that identify the motion of a case and its scaling.
 const MOTION: [&str; 3] = ["record", "level", "scale_factor"];
 
-/// Returns the meaning of a column, for the dictionary of the table.
+/// Returns the meaning of a column, for the data dictionary of the table.
 pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
     match (spec.role, spec.name.as_str()) {
         (Role::Key, "case") => "number of the case in its study",
         (Role::Key, "id") => "unique identifier of the case, independent of the number of cases",
-        (Role::Key, _) => "chunk that ran the case",
+        (Role::Key, _) => "chunk in which the case was run",
         (Role::Factor, _) => "value of a varied field",
         (Role::Motion, "record") => "name of the motion",
         (Role::Motion, "level") => "intensity to which the motion was scaled",
@@ -59,7 +59,7 @@ impl Study {
         fixed.chain(columns::specs().filter(|_| self.in_space)).collect()
     }
 
-    /// Returns the row of a case; `shaken` is `None` if the motion could not be read.
+    /// Returns the table row of a case; `shaken` is `None` if the motion could not be read.
     pub(super) fn row(
         &self,
         case: &Case,
@@ -84,12 +84,12 @@ impl Study {
     }
 }
 
-/// Returns a text as a table value; `None` if it is empty.
+/// Returns text as a table value; `None` if the text is empty.
 fn text(text: &str) -> Option<Value> {
     (!text.is_empty()).then(|| Value::Text(text.to_owned()))
 }
 
-/// Returns a number as a table value; `None` for NaN, which would look like a value in a table.
+/// Returns a number as a table value; `None` for NaN, which could be mistaken for a value in a table.
 fn number(value: Option<f64>) -> Option<Value> {
     value.filter(|value| !value.is_nan()).map(Value::Number)
 }

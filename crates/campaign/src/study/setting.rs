@@ -1,4 +1,4 @@
-//! Values of factors, in the form of a scenario file and in that of a table.
+//! Values of factors, in the form of a scenario file and in the form of a table.
 
 use crate::scenario::field::{Field, Kind, Named as _, Range};
 use crate::scenario::reader::Reader;
@@ -11,14 +11,14 @@ use barrelstack_report::column::{Value, ValueKind};
 /// One value of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
-    /// Value as in a scenario file, with its place there.
+    /// Value in the form of a scenario file, with its place in the study file.
     pub(super) node: Node,
-    /// Value as in the table, in SI units.
+    /// Value in the form of a table, in SI units.
     pub(super) value: Value,
 }
 
 impl Setting {
-    /// Returns the value as a number (SI); NaN for a text.
+    /// Returns the value as a number (SI); NaN if the value is text.
     pub(super) fn number(&self) -> f64 {
         match &self.value {
             Value::Number(value) => *value,
@@ -27,13 +27,13 @@ impl Setting {
         }
     }
 
-    /// Returns the value as unambiguous text, for the identity of a case.
+    /// Returns the value as unambiguous text, from which the identity of a case is derived.
     pub(super) fn word(&self) -> String {
         word(&self.value)
     }
 }
 
-/// Returns a value of a table as unambiguous text.
+/// Returns a table value as unambiguous text.
 pub(crate) fn word(value: &Value) -> String {
     match value {
         Value::Number(value) => crate::scenario::quantity::plain(*value),
@@ -42,11 +42,11 @@ pub(crate) fn word(value: &Value) -> String {
     }
 }
 
-/// Domain of a field: the values that it allows, and how they are written.
+/// Domain of a field: the allowed values and the way in which they are written.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Domain {
     kind: Kind,
-    /// Dimension of the numbers. If the field allows several dimensions, the one that the study uses.
+    /// Dimension of the numbers. If the field allows several dimensions, this is the one that the study uses.
     dimension: Dimension,
 }
 
@@ -56,7 +56,8 @@ impl PartialEq for Domain {
     }
 }
 
-/// Reads a required value whose kind depends on other fields; if it is missing, the error states that kind.
+/// Reads a required value whose kind depends on other fields. If the value is missing, the error states which
+/// kind is expected.
 pub(super) fn required(
     reader: &Reader<'_>,
     name: &'static str,
@@ -67,7 +68,7 @@ pub(super) fn required(
 }
 
 impl Domain {
-    /// Returns the domain of a field, or `None` if it does not hold a single value.
+    /// Returns the domain of a field; `None` if the field does not hold a single value.
     pub(super) fn of(field: &Field) -> Option<Self> {
         let dimension = match field.kind {
             Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) => dimensions[0],
@@ -98,7 +99,7 @@ impl Domain {
         Self { kind: Kind::Quantity(dimensions, Range::POSITIVE), dimension: dimensions[0] }
     }
 
-    /// Fixes the dimension to that of a first value.
+    /// Restricts the domain to the dimension of a first value.
     ///
     /// A field may allow several dimensions, such as acceleration or velocity, but a column holds only one.
     #[must_use]
@@ -135,7 +136,7 @@ impl Domain {
         }
     }
 
-    /// Converts a number (SI) to a value of the field.
+    /// Converts a number (SI) to a value for the field.
     pub(super) fn setting(self, number: f64, origin: Origin) -> Setting {
         let written = if let Kind::Quantity(..) = self.kind {
             Written::Text(Quantity { value: number, dimension: self.dimension }.to_string())
@@ -145,7 +146,7 @@ impl Domain {
         Setting { node: Node { origin, value: written }, value: Value::Number(number) }
     }
 
-    /// Reads a value of the field.
+    /// Reads a value for the field.
     pub(super) fn read(
         self,
         reader: &Reader<'_>,
@@ -174,7 +175,7 @@ impl Domain {
         Ok(Setting { node: node.clone(), value })
     }
 
-    /// Reads a required number (SI) with the unit of the field.
+    /// Reads a required number, whose unit must be one of the field's, and returns it in SI units.
     pub(super) fn number(
         self,
         reader: &Reader<'_>,
@@ -210,7 +211,7 @@ impl Domain {
         Ok(settings)
     }
 
-    /// Reads the values of `[….range]`.
+    /// Reads the values of a `[….range]` table.
     pub(super) fn range(
         self,
         reader: &Reader<'_>,
@@ -269,7 +270,7 @@ impl Domain {
         Ok(settings)
     }
 
-    /// Returns the value that the resolved base scenario of a study has for the field.
+    /// Returns the value that the field has in the resolved base scenario.
     pub(super) fn base_value(self, written: &Written) -> Option<Value> {
         match (self.column_kind(), written) {
             (ValueKind::Integer, Written::Integer(value)) => value.map(Value::Integer),
@@ -286,7 +287,7 @@ impl Domain {
     }
 }
 
-/// Rounds a number to twelve significant digits, such as 0.39999999999999997 to 0.4.
+/// Rounds a number to twelve significant digits, so that 0.39999999999999997 becomes 0.4.
 fn rounded(value: f64) -> f64 {
     // A number formatted with twelve digits can always be parsed.
     format!("{value:.11e}").parse().unwrap_or(value)

@@ -1,4 +1,4 @@
-//! Conversion of tables to and from Parquet files.
+//! Converts tables to and from Parquet files.
 
 use std::sync::Arc;
 
@@ -16,26 +16,26 @@ use super::table::StudyTable;
 use crate::scenario::quantity::plain;
 use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 
-/// Name of the metadata entry that holds the specifications of the columns.
+/// Name of the metadata entry with the specifications of the columns.
 const COLUMNS_KEY: &str = "barrelstack.columns";
 
 /// `true` if a column holds lists of numbers.
 ///
-/// Tables in memory and CSV files hold such lists as text, separated by semicolons. The column is recognized by its unit,
-/// which other texts do not have.
+/// Tables in memory and CSV files hold such lists as text, in which the numbers are separated by semicolons.
+/// A column of lists is recognized by its unit, since other columns of text have no unit.
 pub(super) fn holds_lists(spec: &ColumnSpec) -> bool {
     spec.kind == ValueKind::Text && !spec.unit.is_empty()
 }
 
-/// Number of rows of a row group, which is held in memory while a table is written.
+/// Number of rows in a row group, all of which are held in memory while a table is written.
 const GROUP: usize = 1 << 15;
 
-/// Writer of a table in parts.
+/// Writer that receives a table in parts.
 ///
-/// The same rows and metadata give the same bytes, however they are divided into parts.
+/// The same rows and metadata give the same bytes, regardless of the division into parts.
 pub(super) struct Writer<W: std::io::Write + Send> {
     file: SerializedFileWriter<W>,
-    /// Rows that do not fill a row group yet.
+    /// Rows that do not yet fill a row group.
     rows: StudyTable,
 }
 
@@ -71,7 +71,8 @@ impl<W: std::io::Write + Send> Writer<W> {
         group.close().map(drop)
     }
 
-    /// Writes the remaining rows and the metadata, as pairs of key and text, and closes the file.
+    /// Writes the remaining rows and the metadata `about`, which are pairs of key and text, and closes the
+    /// file.
     pub(super) fn finish(mut self, about: &[(&str, String)]) -> Result<(), ParquetError> {
         let rest = self.rows.split_off(0);
         self.group(&rest)?;
@@ -83,7 +84,7 @@ impl<W: std::io::Write + Send> Writer<W> {
     }
 }
 
-/// Returns a table as the bytes of a Parquet file, with metadata as pairs of key and text.
+/// Returns a table as the bytes of a Parquet file. The metadata `about` are pairs of key and text.
 ///
 /// The same table and metadata give the same bytes.
 pub(super) fn to_bytes(
@@ -146,7 +147,7 @@ const NUMBER: i16 = 2;
 /// Definition levels, repetition levels and numbers of a column of lists.
 type Divided = (Vec<i16>, Vec<i16>, Vec<f64>);
 
-/// Parses lists that are separated by semicolons.
+/// Parses lists of numbers that are separated by semicolons.
 fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
     let (mut defined, mut repeated, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
     for list in lists {
@@ -169,7 +170,8 @@ fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
     Ok((defined, repeated, numbers))
 }
 
-/// Appends lists to a column, separated by semicolons; the inverse of [`divided`].
+/// Appends lists of numbers to a column, as text with semicolons between the numbers; the inverse of
+/// [`divided`].
 fn joined(defined: &[i16], repeated: &[i16], numbers: Vec<f64>, into: &mut Vec<Option<String>>) {
     let mut numbers = numbers.into_iter();
     for (defined, repeated) in defined.iter().zip(repeated) {
@@ -184,7 +186,7 @@ fn joined(defined: &[i16], repeated: &[i16], numbers: Vec<f64>, into: &mut Vec<O
     }
 }
 
-/// Returns the definition levels, which are 1 for rows that have a value, and the values.
+/// Returns the definition level of every row, which is 1 if the row has a value, and the values.
 fn present<T, U>(values: &[Option<T>], as_stored: impl Fn(&T) -> U) -> (Vec<i16>, Vec<U>) {
     let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
     (levels, values.iter().flatten().map(as_stored).collect())
@@ -219,7 +221,7 @@ fn write_column<W: std::io::Write + Send>(
     writer.close()
 }
 
-/// Reads a table from the bytes of a Parquet file written by [`to_bytes`], and the metadata text with a key.
+/// Reads a table from the bytes of a Parquet file that [`to_bytes`] wrote, and the metadata text for a key.
 pub(super) fn from_bytes(
     bytes: Vec<u8>,
     key: &str,
@@ -282,7 +284,7 @@ fn read_column(
         }
         _ => {
             return Err(ParquetError::General(
-                "a column has another kind than the schema states".to_owned(),
+                "the kind of a column differs from that in the schema".to_owned(),
             ));
         }
     }

@@ -1,7 +1,7 @@
 //! Cases of stacks in space.
 //!
-//! Each case is bit-identical to a single run of its scenario, and has columns of directions in addition to those of a
-//! case in a plane.
+//! The result of each case is bit-identical to that of a single run of its scenario. A case has columns for
+//! directions in addition to the columns of a case in a plane.
 
 use std::ops::ControlFlow;
 
@@ -17,16 +17,17 @@ use crate::ensemble::CaseResult;
 use crate::scenario::Scenario;
 use crate::watch::Ending;
 
-/// Result of a case.
+/// Result of a case, with directions if the case was in space.
 pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
-    /// Heading in which the first body left its seat, and the heading of each fallen barrel from where it stood.
+    /// Heading in which the first body left its seat, and the heading of each fallen barrel from its original
+    /// place.
     ///
     /// `None` for a case in a plane, or without a verdict.
     headings: Option<(Option<Heading>, Vec<Heading>)>,
 }
 
-/// Converts the result of a case in a plane, or of one that could not run.
+/// Converts the result of a case in a plane, or of a case that could not run.
 impl From<CaseResult> for FinishedCase {
     fn from(result: CaseResult) -> Self {
         Self { result, headings: None }
@@ -41,7 +42,8 @@ impl From<InSpace> for FinishedCase {
 }
 
 impl Study {
-    /// Runs a case in space under all components of its motion, scaled by one factor; `None` if canceled.
+    /// Runs a case in space under all components of its motion, which are scaled by a common factor; `None`
+    /// if canceled.
     pub(super) fn run_in_space(
         &self,
         case: &Case,
@@ -69,7 +71,7 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
     }
 }
 
-/// Returns the values of a case in the columns of stacks in space.
+/// Returns the values of a case for the columns that only stacks in space have.
 pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
     columns::values(finished.headings.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

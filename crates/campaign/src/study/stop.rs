@@ -1,4 +1,4 @@
-//! Stop rule of a Monte Carlo design, by the interval of the collapse probability.
+//! Stopping rule of a Monte Carlo design, based on the interval of the collapse probability.
 
 use barrelstack_fragility::wilson;
 use barrelstack_report::described;
@@ -43,8 +43,8 @@ impl Tally {
         }
     }
 
-    /// Returns the share of collapse among the cases with a verdict, and its 95 % interval (Wilson); `None` without such
-    /// cases.
+    /// Returns the share of collapse among the cases with a verdict, and its 95 % interval (Wilson); `None`
+    /// if there are no such cases.
     pub fn collapse(&self) -> Option<(f64, [f64; 2])> {
         if self.judged == 0 {
             return None;
@@ -58,18 +58,19 @@ impl Tally {
 }
 
 described! {
-    /// Rule by which a Monte Carlo design stops.
+    /// Rule by which a Monte Carlo design stops before its maximum number of cases.
     #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
     pub struct StopRule {
-        /// Half-width of the 95 % interval (Wilson) of the collapse probability at which to stop.
+        /// Half-width of the 95 % interval (Wilson) of the collapse probability at which sampling stops.
         pub half_width: f64 as "1",
-        /// Number of cases before the interval is first tested.
+        /// Number of cases before the interval is tested for the first time.
         pub least: u32,
     }
 }
 
 impl StopRule {
-    /// `true` if the rule is met by the cases of all chunks up to some chunk.
+    /// `true` if the cases counted in `tally` satisfy the rule; the counted cases must be all cases up to the
+    /// end of some chunk.
     pub(super) fn met(&self, tally: Tally) -> bool {
         let half = tally.collapse().map(|(_, [low, high])| 0.5 * (high - low));
         tally.cases >= u64::from(self.least) && half.is_some_and(|half| half <= self.half_width)

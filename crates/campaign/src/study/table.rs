@@ -10,9 +10,9 @@ use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Val
 
 /// Table of a study: one row per case, in the order of the cases, with typed columns in SI units.
 ///
-/// Columns are looked up by name without the unit, such as `pgv`.
-/// A value is `None` if it does not apply (such as the mode of a stack that stood) or is unknown (such as all results of a
-/// case that could not run; the column `error` has the reason).
+/// Columns are looked up by name without the unit, such as `pgv`. A value is `None` if it does not apply,
+/// such as the mode of a stack that stood. It is also `None` if it is unknown, such as every result of a case
+/// that could not run; the column `error` then states the reason.
 ///
 /// ```no_run
 /// use barrelstack_campaign::study::{Collected, Tally};
@@ -31,7 +31,8 @@ impl StudyTable {
     /// Creates a table from columns of the same length.
     ///
     /// # Errors
-    /// If two columns have the same name, or lengths or kinds differ.
+    /// If two columns have the same name, if their lengths differ, or if a column holds values of another
+    /// kind.
     pub fn new(columns: Vec<Column>) -> Result<Self, StudyError> {
         let rows = columns.first().map_or(0, |column| column.values.len());
         for (index, column) in columns.iter().enumerate() {
@@ -60,15 +61,15 @@ impl StudyTable {
         Ok(Self { columns })
     }
 
-    /// Creates a table without rows, whose columns have unique names.
+    /// Creates a table without rows. The names of the columns must be unique.
     pub fn empty(specs: &[ColumnSpec]) -> Self {
         Self { columns: specs.iter().cloned().map(Column::empty).collect() }
     }
 
-    /// Appends a row, one value per column.
+    /// Appends a row, which has one value per column.
     ///
     /// # Errors
-    /// If a value is missing, or is of another kind than its column.
+    /// If a value is missing, or if its kind differs from that of its column.
     pub fn push(&mut self, row: Vec<Option<Value>>) -> Result<(), StudyError> {
         if row.len() != self.columns.len() {
             let (found, expected) = (row.len(), self.columns.len());
@@ -86,7 +87,7 @@ impl StudyTable {
         for (index, part) in parts.iter().enumerate() {
             if !part.specs().eq(specs.iter()) {
                 return Err(StudyError::Table(
-                    "the shards are of studies with different columns".to_owned(),
+                    "the shards belong to studies with different columns".to_owned(),
                 ));
             }
             let cases = part.integers("case").unwrap_or_default();
@@ -120,12 +121,12 @@ impl StudyTable {
         self.columns.iter().map(|column| &column.spec)
     }
 
-    /// Returns the columns with a role, such as all factors, in order.
+    /// Returns the columns that have a role, such as all factors, in order.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Column> {
         self.columns.iter().filter(move |column| column.spec.role == role)
     }
 
-    /// Returns the column with a name (without its unit); `None` if there is none.
+    /// Returns the column with a name, which does not include the unit; `None` if there is no such column.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.spec.name == name)
     }
@@ -140,18 +141,18 @@ impl StudyTable {
         if let Values::Integer(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// Returns the texts of a column; `None` if there is no such column of texts.
+    /// Returns the texts of a column; `None` if there is no such column of text.
     pub fn texts(&self, name: &str) -> Option<&[Option<String>]> {
         if let Values::Text(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// Returns the number of rows that precede a case, in a table sorted by case.
+    /// Returns the number of rows that precede a case. The table must be sorted by case.
     pub(super) fn rows_before(&self, case: i64) -> usize {
         let cases = self.integers("case").unwrap_or_default();
         cases.partition_point(|number| number.is_some_and(|number| number < case))
     }
 
-    /// Removes the rows from an index on, and returns them.
+    /// Removes all rows from index `row` on, and returns them as a table.
     pub(super) fn split_off(&mut self, row: usize) -> Self {
         let split = |column: &mut Column| Column {
             spec: column.spec.clone(),
@@ -167,12 +168,12 @@ impl StudyTable {
         pairs.try_for_each(append).map_err(StudyError::Table)
     }
 
-    /// Returns the table as CSV, as [`to_csv`] writes columns.
+    /// Returns the table as CSV text.
     pub fn to_csv(&self) -> String {
         to_csv(&self.columns)
     }
 
-    /// Returns the table as the bytes of a Parquet file; the same table gives the same bytes.
+    /// Returns the table as the bytes of a Parquet file. The same table always gives the same bytes.
     ///
     /// # Errors
     /// If the table cannot be encoded.
@@ -182,7 +183,8 @@ impl StudyTable {
 
     /// Returns a description of every column as CSV: name, unit, role, kind, and meaning.
     ///
-    /// In the CSV of the table itself, the unit follows the name, and lists of numbers are separated by semicolons.
+    /// In the CSV of the table itself, the unit follows the name of the column, and lists of numbers are
+    /// separated by semicolons.
     pub fn dictionary(&self) -> String {
         let mut text = "name,unit,role,kind,meaning\n".to_owned();
         for spec in self.specs() {
@@ -206,7 +208,7 @@ impl StudyTable {
     /// Reads a table from the bytes of a Parquet file that [`StudyTable::to_parquet`] wrote.
     ///
     /// # Errors
-    /// If the bytes are not such a file.
+    /// If the bytes are not those of such a file.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
         Ok(shard::from_bytes(bytes, "")?.0)
     }

@@ -32,8 +32,8 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Converts a name to an `OpenQuake` identifier: up to 75 letters, digits and underscores, and colons and dashes after
-/// the first character.
+/// Converts a name to an `OpenQuake` identifier of up to 75 characters: letters, digits and underscores, and
+/// colons and dashes after the first character.
 pub(super) fn identity(text: &str) -> String {
     let known = |(at, c): &(usize, char)| {
         c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && matches!(c, '-' | ':'))
@@ -48,7 +48,8 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
 
-/// Returns mean and standard deviation of a lognormal capacity, which `OpenQuake` uses to describe a curve.
+/// Returns the mean and the standard deviation of a lognormal capacity, by which `OpenQuake` describes a
+/// fragility curve.
 fn moments(curve: &Lognormal) -> (f64, f64) {
     let variance = curve.dispersion * curve.dispersion;
     let mean = curve.median * libm::exp(0.5 * variance);
@@ -93,8 +94,8 @@ pub(super) fn fragility(
     text
 }
 
-/// Returns the share of the wine of a stack that is lost in burst barrels, by the central assumption; 0 if the stack
-/// holds no wine.
+/// Returns the share of the wine of a stack that is lost in burst barrels, under the central assumption of
+/// breakage; 0 if the stack holds no wine.
 fn wine_lost(case: &Case) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
     // The sum starts from 0, since an empty sum of floats is -0.
@@ -102,18 +103,19 @@ fn wine_lost(case: &Case) -> f64 {
     if case.wine > 0.0 { lost / case.wine } else { 0.0 }
 }
 
-/// Largest variance that is written for a loss ratio, as a share of m (1 − m), the largest possible variance of a ratio
-/// between 0 and 1 with the mean m.
+/// Largest variance of a loss ratio that is written to a file, as a share of m (1 − m). This product is the
+/// largest possible variance of a ratio between 0 and 1 with the mean m.
 ///
-/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). It interpolates mean and
-/// coefficient of variation separately, so that a margin is needed between two levels.
+/// `OpenQuake` draws ratios from a beta distribution, whose variance must be below m (1 − m). `OpenQuake`
+/// interpolates the mean and the coefficient of variation separately between two levels, so that a margin is
+/// needed.
 const MOST_SCATTER: f64 = 0.99;
 
-/// Largest share of m (1 − m) that interpolation between two written levels may reach.
+/// Largest variance that interpolation between two written levels may give, as a share of m (1 − m).
 const MOST_BETWEEN: f64 = 0.999;
 
-/// Largest relative and absolute difference between a mean that `OpenQuake` interpolates linearly and ours, which is
-/// linear in the logarithm of the intensity.
+/// Maximum relative and absolute difference between two interpolated means: that of `OpenQuake`, which is
+/// linear in the intensity, and ours, which is linear in the logarithm of the intensity.
 const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-7];
 
 /// One level of a vulnerability function.
@@ -127,7 +129,8 @@ struct Level {
     variation: f64,
 }
 
-/// Loss ratios against intensity: the means m, and the variances as shares of m (1 − m), at the levels of a study.
+/// Loss ratios as a function of intensity: at each level of a study, the mean m, and the variance as a share
+/// of m (1 − m).
 struct Ratios {
     means: Vec<(f64, f64)>,
     shares: Vec<(f64, f64)>,
@@ -150,7 +153,8 @@ impl Ratios {
         Self { means, shares }
     }
 
-    /// Returns the level at an intensity, interpolated between the levels of the study linearly in the logarithm.
+    /// Returns the values at an intensity, interpolated linearly in the logarithm of the intensity between
+    /// the levels of the study.
     fn at(&self, x: f64) -> Level {
         let mean = interpolate(&self.means, x);
         // Below the lowest level the share is constant; only the mean tends to zero.
@@ -161,7 +165,8 @@ impl Ratios {
         Level { x, mean, variation }
     }
 
-    /// Returns the levels to be written: those of the study, and enough between them for linear interpolation.
+    /// Returns the levels to be written: the levels of the study, and as many levels between them as linear
+    /// interpolation requires.
     fn levels(&self) -> Vec<Level> {
         let Some((lowest, _)) = self.means.first() else { return Vec::new() };
         let first = self.at(*lowest);
@@ -178,7 +183,7 @@ impl Ratios {
         found
     }
 
-    /// Adds the levels that are needed between two levels, and the second of the two.
+    /// Adds the levels that are needed between `from` and `to`, and then `to` itself.
     fn refine(&self, from: Level, to: Level, depth: u32, found: &mut Vec<Level>) {
         let middle = self.at((from.x * to.x).sqrt());
         if depth < 20 && !self.is_fine(from, to) {
@@ -189,7 +194,8 @@ impl Ratios {
         }
     }
 
-    /// Returns `true` if linear interpolation between two levels gives a valid variance and is close to our own mean.
+    /// Returns `true` if linear interpolation between two levels gives a valid variance and a mean close to
+    /// our own.
     fn is_fine(&self, from: Level, to: Level) -> bool {
         (1..16).map(|k| f64::from(k) / 16.0).all(|t| {
             let between = |from: f64, to: f64| from + t * (to - from);
@@ -203,8 +209,8 @@ impl Ratios {
     }
 }
 
-/// Returns a vulnerability function as XML; `loss` is the kind of loss in `OpenQuake`, and `ratio` returns the share that
-/// is lost in a case.
+/// Returns a vulnerability function as XML. `loss` is the name of the kind of loss in `OpenQuake`, and
+/// `ratio` returns the share that is lost in a case.
 fn vulnerability(
     decision: &Decision,
     foreign: &Foreign,
@@ -230,7 +236,7 @@ fn vulnerability(
     )
 }
 
-/// Returns the two vulnerability functions as XML: that of the barrels and that of the wine.
+/// Returns two vulnerability functions as XML: one for the barrels and one for the wine.
 pub(super) fn vulnerabilities(
     decision: &Decision,
     foreign: &Foreign,
@@ -245,7 +251,7 @@ pub(super) fn vulnerabilities(
     ]
 }
 
-/// Returns an exposure template with one stack at 0° E, 0° N, and its taxonomy mapping.
+/// Returns an exposure template with one stack at 0° E, 0° N, and the taxonomy mapping of that stack.
 ///
 /// The wine (m³) is the contents of the stack, and the barrels are its nonstructural value.
 pub(super) fn exposure(

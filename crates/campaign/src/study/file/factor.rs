@@ -1,4 +1,4 @@
-//! Reading of a factor of a study file: the fields that it sets, and their values.
+//! Reads a factor of a study file: the fields that it sets, and their values.
 
 use barrelstack_report::column::{ColumnSpec, Role};
 
@@ -10,10 +10,11 @@ use crate::study::distribution::Distribution;
 use crate::study::setting::{Domain, Setting};
 use crate::study::{Factor, Variation, rows};
 
-/// Probability of the quantile that is tried as the low end of a distribution; the high end has 1 minus this.
+/// Probability of the quantile that is tested as the low end of a distribution. The high end has the
+/// probability 1 minus this value.
 pub(super) const LOW: f64 = 1e-6;
 
-/// Returns an error if a factor has the same column as another, or sets the same field.
+/// Returns an error if a new factor has the same column as another factor, or sets the same field.
 pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Option<ScenarioError> {
     let error = |message| Some(top.inconsistent("factor", message));
     for factor in factors {
@@ -39,12 +40,12 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     None
 }
 
-/// Remaining capacity for values of factors, which bounds memory and work before values are tried.
+/// Remaining capacity for values of factors. It limits memory and work before any value is tested.
 #[derive(Debug)]
 pub(super) struct Room {
     /// Number of values that may still be listed.
     values: usize,
-    /// Number of cases so far, and the maximum; `None` if the design does not cross the values.
+    /// Number of cases so far and maximum number of cases; `None` if the design does not combine all values.
     cases: Option<(u64, u64)>,
 }
 
@@ -52,13 +53,13 @@ pub(super) struct Room {
 const MOST_VALUES: usize = 20_000;
 
 impl Room {
-    /// Creates the capacity for a number of motions; `most` is the maximum number of cases, `None` if the design does not
-    /// cross the values.
+    /// Creates the capacity for a number of motions. `most` is the maximum number of cases; `None` if the
+    /// design does not combine all values.
     pub(super) fn new(motions: usize, most: Option<u64>) -> Self {
         Self { values: MOST_VALUES, cases: most.map(|most| (motions as u64, most)) }
     }
 
-    /// Subtracts the values of a factor; an error if they exceed the capacity.
+    /// Subtracts the values of a factor from the capacity; returns an error if they exceed it.
     fn take(&mut self, reader: &Reader<'_>, values: &[Setting]) -> Result<(), ScenarioError> {
         let key = if reader.has("range") { "range" } else { "values" };
         let Some(left) = self.values.checked_sub(values.len()) else {
@@ -175,7 +176,8 @@ fn domain_of(
     })
 }
 
-/// Returns the first value that a range or a distribution states, which fixes its dimension.
+/// Returns the first value that a range or a distribution states, which determines the dimension of the
+/// factor.
 fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
         Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
@@ -184,7 +186,8 @@ fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     }
 }
 
-/// Reads a list under the key `list`, a range or a distribution; the variation is `None` if there is none of them.
+/// Reads a list under the key `list`, a range or a distribution. The variation is `None` if none of these is
+/// present.
 pub(super) fn read_variation(
     reader: &Reader<'_>,
     domain: Domain,
