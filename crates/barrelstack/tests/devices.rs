@@ -241,7 +241,7 @@ fn devices_that_do_not_go_on_a_stack_are_refused_with_what_to_do() {
             &["stack.tie.yields_at=\"3 kN\"", "stack.tie.strength=\"2 kN\""],
             "not below the strength",
         ),
-        (&["stack.isolator.path=dish", "stack.isolator.stroke=\"60 cm\""], "up to 0.5 m"),
+        (&["stack.isolator.path=dish", "stack.isolator.stroke=\"60 cm\""], "0.5 m at most"),
         (&["stack.walking_stop.levels=12", "stack.rack=rack-on-rack"], "rack.post_spigot"),
         (
             &["stack.chock.levels=1", "stack.chock.angle=\"80 deg\"", "stack.rack.width=\"1 m\""],

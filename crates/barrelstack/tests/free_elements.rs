@@ -125,7 +125,7 @@ fn what_is_wrong_with_an_element_is_told_at_its_place() {
     let said = refused(
         "name = \"a\"\nkind = \"strap\"\nstiffness = \"0 N/m\"\nbetween = [\"ball\", \"ground\"]",
     );
-    assert!(said.contains("holds nothing"), "{said}");
+    assert!(said.contains("carries no force"), "{said}");
     let guide = "name = \"a\"\nkind = \"guide\"\nstiffness = \"1 kN/m\"\nbetween = [\"ground\", \"ball\"]\n";
     let said = refused(&format!("{guide}gap = \"1 cm\""));
     assert!(said.contains("stop_stiffness"), "{said}");

@@ -126,7 +126,11 @@ fn the_share_counts_what_became_of_the_variants_and_of_nothing_else() {
 #[test]
 fn the_range_over_unmeasured_constants_comes_from_the_draws_of_the_variants() {
     let scenario = |more: &[&str]| {
-        two_levels(&[&["motion.scale.factor=0.7", "imperfections.variants=32"], more].concat())
+        let mut scenario = two_levels(&[&["motion.scale.factor=0.7"], more].concat());
+        if let Scene::Stack { imperfections, .. } = &mut scenario.scene {
+            imperfections.variants = 32;
+        }
+        scenario
     };
     let spread = |more: &[&str]| found(&planes(&scenario(more)).unwrap()).remove(0).spread;
     let whole = spread(&[]);

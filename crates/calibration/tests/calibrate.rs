@@ -324,7 +324,7 @@ fn a_table_is_refused_at_its_place() {
             "depth (mm),force (kN)\n1,2\n",
             "t.csv, line 1: expected a column `penetration (m)`, found \"depth\", \"force\"",
         ),
-        ("penetration (mm),force (kN)\n", "t.csv: it has a header and no measurements"),
+        ("penetration (mm),force (kN)\n", "t.csv: it has a header but no measurements"),
         ("", "t.csv: it is empty"),
         (
             "penetration (mm),force (kN)\n1,2\n2,1\n3,0\n",

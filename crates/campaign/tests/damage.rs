@@ -216,7 +216,7 @@ fn a_manifest_that_states_fewer_chunks_is_refused_by_name_and_written_anew() {
     fs::write(&path, text.replace("\"chunks\": 3", "\"chunks\": 1")).unwrap();
     let said = Collected::read(place.path()).unwrap_err().to_string();
     assert!(
-        said.contains("holds a damaged study.json") && said.contains("once more into this folder"),
+        said.contains("holds a damaged study.json") && said.contains("again into this folder"),
         "{said}"
     );
     let progress = run(&study, place.path()).unwrap();

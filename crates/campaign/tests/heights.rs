@@ -34,7 +34,7 @@ fn an_unknown_rack_is_refused_with_those_there_are() {
     let said = stopped_at_once(&request).0.expect_err("no such rack").to_string();
     assert_eq!(
         said,
-        "there is no rack `shelf`; those are two-barrel, two-barrel-feet, single-bar, four-barrel, rack-on-rack, two-barrel-inclined, candia-2008"
+        "there is no rack `shelf`; use one of two-barrel, two-barrel-feet, single-bar, four-barrel, rack-on-rack, two-barrel-inclined, candia-2008"
     );
 }
 

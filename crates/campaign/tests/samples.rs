@@ -65,7 +65,7 @@ fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
     // Measured: 0.489 to 0.502.
     let median = found.curves[0].median.unwrap();
     assert!(median.holds(0.5) && median.high - median.low < 0.02, "{median:?}");
-    assert!(html(&found.document).contains("counted in 16 bins of about 625 neighbors"));
+    assert!(html(&found.document).contains("counted in 16 bins of about 625 neighboring cases"));
     if let Ok(folder) = std::env::var("BARRELSTACK_PAGES") {
         std::fs::write(std::path::Path::new(&folder).join("samples.html"), html(&found.document))
             .unwrap();

@@ -174,7 +174,7 @@ fn what_space_does_not_know_is_a_row_with_its_reason() {
     let table =
         study(&format!("{PULSE}{wine}[design]\nkind = \"full-factorial\"")).table().unwrap();
     let error = table.texts("error").unwrap()[0].as_deref().unwrap();
-    assert!(error.contains("wine that sloshes is known in a plane"), "{error}");
+    assert!(error.contains("sloshing wine is supported only in a plane"), "{error}");
     assert_eq!(table.integers("debris_near").unwrap()[0], None);
 }
 

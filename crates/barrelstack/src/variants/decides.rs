@@ -86,15 +86,12 @@ impl Unknown {
     pub fn test(&self) -> Option<&'static str> {
         match self.field {
             FRICTION_BARREL_RACK => Some(
-                "tilt a rack with an empty barrel on it until the barrel slips, read the angle, and run `barrelstack \
-                 calibrate friction`",
+                "tilt a rack with an empty barrel on it until the barrel slips, and read the angle",
             ),
-            FRICTION_RACK_GROUND => Some(
-                "pull an empty rack over the floor with a luggage scale, and run `barrelstack calibrate friction`",
-            ),
-            STIFFNESS => Some(
-                "set a full barrel down on a rack, read how far it sinks, and run `barrelstack calibrate stiffness`",
-            ),
+            FRICTION_RACK_GROUND => {
+                Some("pull an empty rack over the floor, and read the force on a luggage scale")
+            }
+            STIFFNESS => Some("set a full barrel down on a rack, and read how far it sinks"),
             _ => None,
         }
     }
