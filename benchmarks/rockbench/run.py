@@ -243,7 +243,7 @@ def command(path):
 
 def engines():
     folder = HERE / "engines"
-    return {p.stem: p for p in sorted(folder.iterdir()) if p.is_file() and p.suffix not in (".md", ".pyc", ".txt")}
+    return {p.stem: p for p in sorted(folder.iterdir()) if p.is_file() and p.name[0] not in "._"}
 
 
 def build(paths):

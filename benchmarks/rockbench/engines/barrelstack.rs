@@ -1,4 +1,4 @@
-//! RockBench adapter of this engine: reads a case on standard input, writes the answer on standard output.
+//! Adapter of this engine for `RockBench`: reads a case on standard input, writes the answer on standard output.
 
 use std::io::Read;
 use std::ops::ControlFlow;
@@ -45,9 +45,9 @@ fn main() -> ExitCode {
 /// Returns the answer to a case, or the reason why there is none.
 pub(crate) fn answer(case: &Value) -> Value {
     let made = if case["space"] == "planar" { planar(case) } else { spatial(case) };
-    let mut made = made.unwrap_or_else(|refusal| {
-        json!({ "cannot": [{ "what": "case", "why": refusal.to_string() }] })
-    });
+    let mut made = made.unwrap_or_else(
+        |refusal| json!({ "cannot": [{ "what": "case", "why": refusal.to_string() }] }),
+    );
     made["engine"] = json!("barrelstack");
     made["version"] = json!(env!("CARGO_PKG_VERSION"));
     made
@@ -137,8 +137,7 @@ where
 
     fn within(&self, cell: usize, time: f64) -> (V, V) {
         let (start, end) = (self.times[cell], self.times[cell + 1]);
-        let (a, v, x) =
-            (self.accelerations[cell], self.velocities[cell], self.displacements[cell]);
+        let (a, v, x) = (self.accelerations[cell], self.velocities[cell], self.displacements[cell]);
         let (s, slope) = (time - start, (self.accelerations[cell + 1] - a) * (1.0 / (end - start)));
         let velocity = v + a * s + slope * (0.5 * s * s);
         (x + v * s + a * (0.5 * s * s) + slope * (s * s * s / 6.0), velocity)
@@ -220,7 +219,10 @@ fn interface<S: Space<Real = f64>>(
         } else {
             let ratio = restitution::kelvin_voigt_damping_ratio(rebound)
                 .ok_or("restitution beyond 0 to 1")?;
-            NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, ratio, mass) }
+            NormalLaw::KelvinVoigt {
+                stiffness,
+                damping: restitution::damping(stiffness, ratio, mass),
+            }
         };
         (law, stiffness, 0.5 * dead)
     } else {
@@ -388,8 +390,7 @@ fn planar_body(spec: &Value) -> Result<Made<Planar>, Refusal> {
     let mut body = Body::free(name(&spec["name"]), mass(spec), inertia, pose);
     body.motion = motion(spec);
     if body.motion == Motion::Free {
-        body.twist =
-            Twist { linear: vector2(&spec["velocity"])?, angular: number(&spec["spin"])? };
+        body.twist = Twist { linear: vector2(&spec["velocity"])?, angular: number(&spec["spin"])? };
     }
     let mut pieces = Vec::new();
     for shape in list(&spec["shapes"]) {
@@ -472,8 +473,7 @@ fn spatial_body(spec: &Value) -> Result<Made<Spatial>, Refusal> {
         orientation: if revolved { turn.after(AXIS) } else { turn },
     };
     let fixed = motion(spec) == Motion::Prescribed;
-    let inertia =
-        if fixed { Vec3::new(1.0, 1.0, 1.0) } else { vector3(&spec["inertia"])? };
+    let inertia = if fixed { Vec3::new(1.0, 1.0, 1.0) } else { vector3(&spec["inertia"])? };
     // The engine's axes x, y, z are z, x, y of a case.
     let inertia = if revolved { Vec3::new(inertia.z, inertia.x, inertia.y) } else { inertia };
     let mut body = Body::free(name(&spec["name"]), mass(spec), inertia, pose);

@@ -16,7 +16,7 @@ import numpy as np
 
 
 # Damping ratio of contacts that do not rebound, at a given step.
-RATIO = 1
+RATIO = 3
 
 
 def damping_ratio(e):
@@ -44,6 +44,7 @@ class Scene:
         self.free = [b for b in case["bodies"] if not b.get("fixed")]
         step = case.get("step")
         self.accurate = step is not None
+        self.soft = all(law["normal"] != "rigid" for law in case["interfaces"])
         assets, bodies, pairs = [], [], []
         self.pairs, self.kinds = [], {}
         geoms = {}
@@ -89,7 +90,7 @@ class Scene:
         # Defaults as they come: step of 2 ms, pyramidal cone, contacts with a time constant of ten steps.
         option = '<option><flag warmstart="enable"/></option>'
         if self.accurate:
-            option = (f'<option timestep="{step!r}" cone="elliptic" impratio="10" tolerance="1e-12" iterations="200"/>')
+            option = (f'<option timestep="{step!r}" cone="elliptic" impratio="{100 if self.soft else 10}" tolerance="1e-12" iterations="200"/>')
         xml = (f'<mujoco><compiler angle="radian" balanceinertia="true" boundmass="1e-9"/>{option}<asset>{"".join(assets)}</asset>'
                f'<worldbody>{"".join(bodies)}</worldbody><contact>{"".join(pairs)}</contact></mujoco>')
         self.model = mujoco.MjModel.from_xml_string(xml)

@@ -1,4 +1,4 @@
-//! RockBench adapter of Rapier, in the plane and in space, in double precision.
+//! Adapter of Rapier for `RockBench`, in the plane and in space, in double precision.
 
 use std::collections::HashMap;
 use std::io::Read;
@@ -39,9 +39,9 @@ fn answer(case: &Value) -> Value {
     } else {
         spatial::run(case)
     };
-    let mut made = made.unwrap_or_else(|refusal| {
-        json!({ "cannot": [{ "what": "case", "why": refusal.to_string() }] })
-    });
+    let mut made = made.unwrap_or_else(
+        |refusal| json!({ "cannot": [{ "what": "case", "why": refusal.to_string() }] }),
+    );
     made["engine"] = json!("Rapier");
     made["version"] = json!(VERSION);
     made
@@ -300,8 +300,7 @@ fn spatial_body(spec: &Value, accurate: bool) -> Result<space::RigidBody, Refusa
         return Ok(space::RigidBodyBuilder::fixed().pose(pose).build());
     }
     let inertia = spatial::vector(&spec["inertia"])?;
-    let matter =
-        space::MassProperties::new(space::Vector::ZERO, number(&spec["mass"])?, inertia);
+    let matter = space::MassProperties::new(space::Vector::ZERO, number(&spec["mass"])?, inertia);
     let builder = space::RigidBodyBuilder::dynamic()
         .pose(pose)
         .linvel(spatial::vector(&spec["velocity"])?)
@@ -322,12 +321,19 @@ fn spatial_piece(shape: &Value) -> Result<space::ColliderBuilder, Refusal> {
         "cylinder" => {
             let (radius, length) = (number(&shape["radius"])?, number(&shape["length"])?);
             // Its axis is y, that of a case z.
-            space::ColliderBuilder::cylinder(0.5 * length, radius)
-                .rotation(space::Vector::new(std::f64::consts::FRAC_PI_2, 0.0, 0.0))
+            space::ColliderBuilder::cylinder(0.5 * length, radius).rotation(space::Vector::new(
+                std::f64::consts::FRAC_PI_2,
+                0.0,
+                0.0,
+            ))
         }
         other => return Err(format!("no shape `{other}` in space").into()),
     };
-    Ok(if shape["at"].is_null() { piece } else { piece.translation(spatial::vector(&shape["at"])?) })
+    Ok(if shape["at"].is_null() {
+        piece
+    } else {
+        piece.translation(spatial::vector(&shape["at"])?)
+    })
 }
 
 fn spatial_row(body: &space::RigidBody) -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! The cases of RockBench (`benchmarks/rockbench`): well formed, and answered by this engine within their tolerances.
+//! The cases of `benchmarks/rockbench`: well formed, and answered by this engine within their tolerances.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use std::collections::HashSet;
@@ -153,21 +153,25 @@ impl Trace<'_> {
     }
 
     fn axis(&self, name: &Value) -> usize {
-        let axes = if self.case["space"] == "planar" { ["x", "z", "angle"] } else { ["x", "y", "z"] };
+        let axes =
+            if self.case["space"] == "planar" { ["x", "z", "angle"] } else { ["x", "y", "z"] };
         axes.iter().position(|axis| name == axis).unwrap()
     }
 
     /// Returns the component of the initial pose.
     fn initial(&self, body: &str, axis: &Value) -> f64 {
         let body = list(&self.case["bodies"]).iter().find(|spec| spec["name"] == body).unwrap();
-        if axis == "angle" { number(&body["angle"]) } else { number(&body["position"][self.axis(axis)]) }
+        if axis == "angle" {
+            number(&body["angle"])
+        } else {
+            number(&body["position"][self.axis(axis)])
+        }
     }
 
     fn window(&self, quantity: &Value) -> impl Iterator<Item = usize> {
         let [from, to] = [&quantity["between"][0], &quantity["between"][1]].map(number);
-        (0..self.samples()).filter(move |sample| {
-            (from - 1e-9..=to + 1e-9).contains(&self.time(*sample))
-        })
+        (0..self.samples())
+            .filter(move |sample| (from - 1e-9..=to + 1e-9).contains(&self.time(*sample)))
     }
 
     /// Returns a quantity, a verdict as 0 or 1; `None` for the kinds that only the scorer knows.
@@ -206,9 +210,8 @@ impl Trace<'_> {
             }
             "crossing" if axis != "lean" => {
                 let value = |sample| self.state(body, sample, self.axis(axis));
-                let mut crossings = (1..self.samples()).filter(|sample| {
-                    value(sample - 1) * value(*sample) < 0.0
-                });
+                let mut crossings =
+                    (1..self.samples()).filter(|sample| value(sample - 1) * value(*sample) < 0.0);
                 let rank = quantity["number"].as_u64().unwrap();
                 let after = crossings.nth(usize::try_from(rank - 1).unwrap())?;
                 let (from, to) = (value(after - 1), value(after));
@@ -233,7 +236,8 @@ impl Trace<'_> {
                 }
             }
             "force" => {
-                let pair = list(&self.case["forces"]).iter().position(|p| *p == quantity["pair"])?;
+                let pair =
+                    list(&self.case["forces"]).iter().position(|p| *p == quantity["pair"])?;
                 let forces: Vec<f64> = self
                     .window(quantity)
                     .map(|sample| number(&self.answer["forces"][sample][pair]))
