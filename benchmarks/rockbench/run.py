@@ -235,7 +235,9 @@ def score(case, answer):
 def command(path):
     """The command of an engine: a Python file, a Rust file of Cargo.toml beside this one, or a program."""
     if path.suffix == ".py":
-        return [sys.executable, str(path)]
+        # The folder of the file stays out of the path of modules, since a file may be named as the package it imports.
+        return [sys.executable, "-c", "import runpy, sys; sys.path.pop(0); runpy.run_path(sys.argv[1], run_name='__main__')",
+                str(path)]
     if path.suffix == ".rs":
         return [str(HERE / "target" / "release" / path.stem)]
     return [str(path)]
@@ -383,6 +385,14 @@ def cost(rows):
     return sum(c for c, _ in cases.values()) / simulated if simulated else math.nan
 
 
+def whole_cases(rows):
+    """Cost of each case of which every quantity is passed."""
+    cases = {}
+    for row in rows:
+        cases.setdefault(row["case"], []).append(row)
+    return {c: float(part[0]["cpu_seconds"] or 0) for c, part in cases.items() if all(r["outcome"] == "passed" for r in part)}
+
+
 def milliseconds(seconds):
     if math.isnan(seconds):
         return "–"
@@ -442,6 +452,24 @@ def page(rows):
                 cells.append(f"{t['passed']}" + (f" ({t['cannot']} cannot)" if t["cannot"] else ""))
             text.append(f"| {words} | {total} | " + " | ".join(cells) + " |")
         text.append("")
+    text += ["## Cost by category", "", "Time of the processor for a simulated second, at the default step → settled.", "",
+             "| category | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
+    for key, words in CATEGORIES.items():
+        cells = [" → ".join(milliseconds(cost(of(name, s, key))) for s in SETTINGS) for name in names]
+        text.append(f"| {words} | " + " | ".join(cells) + " |")
+    text += ["", "Cases of which an engine passes every quantity, and among these the ones for which no other engine that does so is "
+             "cheaper:", "", "| engine | default: cases | cheapest | settled: cases | cheapest |", "|---|---:|---:|---:|---:|"]
+    whole = {(n, s): whole_cases(of(n, s)) for n in names for s in SETTINGS}
+    for name in names:
+        line = [name]
+        for s in SETTINGS:
+            best = [c for c, spent in whole[name, s].items() if all(spent <= whole[n, s].get(c, math.inf) for n in names)]
+            line += [str(len(whole[name, s])), str(len(best))]
+        text.append("| " + " | ".join(line) + " |")
+    text.append("")
+    notes = HERE / "NOTES.md"
+    if notes.exists():
+        text += [notes.read_text(encoding="utf-8").strip(), ""]
     text += ["## What an engine cannot state", ""]
     for name in names:
         reasons = {}

@@ -107,7 +107,7 @@ fn between<'a>(case: &'a Value, names: [&str; 2]) -> Option<&'a Value> {
 }
 
 macro_rules! engine {
-    ($module:ident, $rapier:ident, $dimension:literal, $pieces:ident, $body:ident, $row:ident, $tune:ident) => {
+    ($module:ident, $rapier:ident, $dimension:literal, $pieces:ident, $body:ident, $row:ident) => {
         mod $module {
             use super::*;
             use $rapier::prelude::*;
@@ -166,7 +166,6 @@ macro_rules! engine {
                     parameters.normalized_allowed_linear_error = 1e-5;
                     parameters.num_solver_iterations = 8;
                     parameters.contact_recycling = false;
-                    $tune(&mut parameters);
                 }
                 let ground = Ground::<$dimension>::read(case)?;
                 let gravity = vector(&case["gravity"])?;
@@ -239,13 +238,11 @@ macro_rules! engine {
     };
 }
 
-engine!(planar, rapier2d_f64, 2, planar_piece, planar_body, planar_row, planar_tune);
-engine!(spatial, rapier3d_f64, 3, spatial_piece, spatial_body, spatial_row, spatial_tune);
+engine!(planar, rapier2d_f64, 2, planar_piece, planar_body, planar_row);
+engine!(spatial, rapier3d_f64, 3, spatial_piece, spatial_body, spatial_row);
 
 use rapier2d_f64::prelude as plane;
 use rapier3d_f64::prelude as space;
-
-fn planar_tune(_: &mut plane::IntegrationParameters) {}
 
 fn planar_body(spec: &Value, _: bool) -> Result<plane::RigidBody, Refusal> {
     let at = planar::vector(&spec["position"])?;
@@ -286,10 +283,6 @@ fn planar_piece(shape: &Value) -> Result<plane::ColliderBuilder, Refusal> {
 fn planar_row(body: &plane::RigidBody) -> Vec<f64> {
     let (at, v) = (body.translation(), body.linvel());
     vec![at.x, at.y, body.rotation().angle(), v.x, v.y, body.angvel()]
-}
-
-fn spatial_tune(parameters: &mut space::IntegrationParameters) {
-    parameters.friction_model = rapier3d_f64::dynamics::FrictionModel::Coulomb;
 }
 
 fn spatial_body(spec: &Value, accurate: bool) -> Result<space::RigidBody, Refusal> {

