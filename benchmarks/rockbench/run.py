@@ -543,6 +543,9 @@ def main():
                 rows += done
                 if trial:
                     show(done)
+        if all(r["outcome"] == "failed" and r["note"] for r in rows):
+            print(f"{path.stem} does not run: {rows[0]['note']}", flush=True)
+            continue
         for setting in SETTINGS:
             part = [r for r in rows if r["setting"] == setting]
             if part:
