@@ -3,7 +3,7 @@
 
     python3 run.py                          every engine, every case: hours of none, minutes of some
     python3 run.py --engine mujoco          one engine; the rows of the others are kept
-    python3 run.py --case rock-free         cases whose names begin so; prints, writes nothing
+    python3 run.py --case rock-free         cases whose names begin so; prints, and with --write keeps their rows
     python3 run.py --check my_engine.py     one file anywhere, on every case at its default step; prints, writes nothing
     python3 run.py --page                   writes the page again from results.csv
 """
@@ -16,6 +16,7 @@ import pathlib
 import platform
 import subprocess
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
 HERE = pathlib.Path(__file__).parent.resolve()
@@ -24,8 +25,9 @@ COLUMNS = ["engine", "version", "case", "quantity", "setting", "step", "outcome"
            "cpu_seconds", "simulated", "note"]
 # The answer has settled once a halved step changes it by less than this share of its tolerance.
 SETTLED = 0.25
+# The first step (s), and the number of steps, each half of the one before.
 COARSEST = 1 / 240
-HALVINGS = 9
+HALVINGS = 10
 # No finer step once a run has taken this long (s of the processor); no run may take longer than the limit (s).
 ENOUGH, LIMIT = 15.0, 300.0
 
@@ -203,7 +205,9 @@ def score(case, answer):
     cannot = {c["what"]: c["why"] for c in answer.get("cannot", [])}
     rows = []
     trace, fault = None, ""
-    if "case" not in cannot:
+    if "fault" in answer:
+        fault = answer["fault"]
+    elif "case" not in cannot:
         try:
             trace = Trace(case, answer)
         except (ValueError, KeyError, TypeError, IndexError) as error:
@@ -262,7 +266,9 @@ def once(path, case, step):
     if step is not None:
         request["step"] = step
     try:
-        done = subprocess.run(command(path), input=json.dumps(request), capture_output=True, text=True, timeout=LIMIT)
+        # Elsewhere, since some engines write logs where they run.
+        done = subprocess.run(command(path), input=json.dumps(request), capture_output=True, text=True, timeout=LIMIT,
+                              cwd=tempfile.gettempdir())
     except subprocess.TimeoutExpired:
         return {"fault": f"no answer in {LIMIT:g} s"}
     try:
@@ -298,23 +304,29 @@ def rows_of(name, case, answer, setting, note=""):
 
 
 def measure(path, case, fine=True):
-    """Rows at the default step, and at the coarsest step from which a halved one changes nothing."""
+    """Rows at the default step, and at the first step that changes nothing beside one twice as long."""
     name = path.stem
     answer = once(path, case, None)
     rows = rows_of(name, case, answer, "default")
     if not fine or any(c["what"] == "case" for c in answer.get("cannot", [])):
         return rows + [{**row, "setting": "settled"} for row in rows] if fine else rows
-    step = min(answer.get("step") or COARSEST, COARSEST)
-    # A step that divides the times of the quantities.
-    step = COARSEST / 2**max(0, math.ceil(math.log2(COARSEST / step) - 1e-9)) if step > 1e-4 else step
-    before = None
+    step, before, same = COARSEST, None, 0
+    # From the default step on, or from the next of the steps 1/240 s, 1/480 s, … below it; steps below 0.1 ms divide
+    # the times of the quantities anyhow.
+    default = answer.get("step") or COARSEST
+    while step > default * 1.000001 and step > 1e-4:
+        step /= 2
+    step = default if default <= 1e-4 else step
+    # Two wrong verdicts in a row are no convergence: a verdict has to stay for one halving more.
+    enough = 2 if any(w["kind"] in ("exceeds", "first_exceeds") for w in case["quantities"]) else 1
     for _ in range(HALVINGS):
         answer = once(path, case, step)
         now = rows_of(name, case, answer, "settled")
-        if before and settled(before, now):
+        same = same + 1 if before and settled(before, now) else 0
+        if same == enough:
             return rows + now
         before = now
-        if (answer.get("cpu_seconds") or 0) > ENOUGH or "fault" in answer:
+        if (answer.get("cpu_seconds") or 0) > ENOUGH:
             break
         step /= 2
     return rows + [{**row, "note": row["note"] or "not settled"} for row in before]
@@ -421,8 +433,9 @@ def page(rows):
             "A quantity is passed if its error is at most its tolerance, failed if it is larger or if the run broke, and "
             "“cannot state” where the engine has no way to state the case or to return the quantity; the last is not a failure.",
             "*Default* is an engine as it comes, with its own step where it has one.",
-            "*Settled* is the coarsest step from which a halved step changes every quantity of the case by less than a quarter of its "
-            "tolerance; an adapter may then also choose its engine's most accurate settings.", "",
+            "*Settled* is halving the step, from the default one on and from 1/240 s at most, until every quantity of the case changes by less "
+            "than a quarter of its tolerance (for a verdict, twice in a row); an adapter may then also choose its engine's most "
+            "accurate settings.", "",
             "## Scores", "",
             "| engine | default: passed | failed | cannot state | cost | settled: passed | failed | cannot state | not settled | median step | cost |",
             "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|"]
@@ -517,6 +530,7 @@ def main():
     parser.add_argument("--case", default="", help="beginning of the names of cases")
     parser.add_argument("--check", metavar="FILE", help="an engine anywhere")
     parser.add_argument("--fine", action="store_true", help="with --check or --case: halve the step, too")
+    parser.add_argument("--write", action="store_true", help="with --case: replace the rows of these cases")
     parser.add_argument("--jobs", type=int, default=2, help="runs at the same time")
     parser.add_argument("--page", action="store_true", help="writes the page alone")
     words = parser.parse_args()
@@ -535,7 +549,7 @@ def main():
     cases = load_cases(words.case)
     if not cases:
         sys.exit(f"no case begins with `{words.case}`")
-    trial = bool(words.check or words.case)
+    trial = bool(words.check or words.case and not words.write)
     for path in paths:
         rows = []
         with ThreadPoolExecutor(words.jobs) as pool:
@@ -553,7 +567,8 @@ def main():
                 print(f"{path.stem}, {setting}: {t['passed']} passed, {t['failed']} failed, {t['cannot']} cannot state; "
                       f"{milliseconds(cost(part))} of the processor for a simulated second", flush=True)
         if not trial:
-            write_results([r for r in read_results() if r["engine"] != path.stem] + rows)
+            again = {case["id"] for case in cases}
+            write_results([r for r in read_results() if r["engine"] != path.stem or r["case"] not in again] + rows)
     if not trial:
         page(read_results())
 

@@ -9,8 +9,6 @@ import math
 import sys
 import time
 
-# This file is named as the package.
-sys.path = [p for p in sys.path if not p.rstrip("/").endswith("engines")]
 import mujoco
 import numpy as np
 
