@@ -32,6 +32,7 @@ tasks:
   python     the Python package in an environment of its own under target/: its tests, its notebooks, its site;
              `heavy` also those that need ObsPy, OpenQuake, Pelicun, Dask and Slurm; `site` the site alone
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
+  field      hindcasts of real earthquakes, validation/field.md; `--records DIR`, `--only TEXT`, `--page`
   bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (the work of runs beside that of the last release; `history keep` writes it down)
   lines      lines of product code and comments by crate, and the longest files
@@ -53,6 +54,9 @@ fn main() -> ExitCode {
         }
         ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
+        ["field", rest @ ..] => {
+            release(&["--package", "barrelstack-validation", "--example", "field"], rest)
+        }
         ["bench", rest @ ..] => release(&["--manifest-path", "benchmarks/Cargo.toml"], rest),
         ["fuzz", rest @ ..] => {
             release(&["--package", "barrelstack-motion", "--example", "fuzz"], rest)
