@@ -32,6 +32,7 @@ tasks:
   python     builds the Python package in an environment under target/ and runs its tests, notebooks and site;
              `heavy`: also the tests that need ObsPy, OpenQuake, Pelicun, Dask and Slurm; `site`: only the site
   validate   runs every problem with an exact answer and writes a report; `--out DIR`, `--only TEXT`, `--fast`
+  field      runs the hindcasts of real earthquakes, validation/field.md; `--records DIR`, `--only TEXT`, `--page`
   bench      measures speed, and that of a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (counts of work compared with the last release; `history keep` saves them)
   lines      counts lines of code and comments by crate, and lists the longest files
@@ -53,6 +54,9 @@ fn main() -> ExitCode {
         }
         ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
+        ["field", rest @ ..] => {
+            release(&["--package", "barrelstack-validation", "--example", "field"], rest)
+        }
         ["bench", rest @ ..] => release(&["--manifest-path", "benchmarks/Cargo.toml"], rest),
         ["fuzz", rest @ ..] => {
             release(&["--package", "barrelstack-motion", "--example", "fuzz"], rest)

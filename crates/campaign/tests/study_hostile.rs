@@ -56,7 +56,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         2,
         "[[factor]]\nfield = \"stack\" # HERE\nvalues = [0.3]\n",
-        &["`stack` holds a table; a factor varies a single value"],
+        &["`stack` holds a table, but a factor varies a single value"],
     ),
     (2, "[[factor]]\nfield = \"title\" # HERE\nvalues = [\"x\"]\n", &["`title` changes nothing"]),
     (

@@ -220,7 +220,7 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
     let stands = "  Shaken along the barrels, the stack stands until 1.0 s, where the run ends, 34.0 s before the motion does.\n";
     assert!(stdout(&output).contains(stands), "{}", stdout(&output));
     let warning = stderr(&output);
-    assert!(warning.starts_with("warning: the run ends at 1.0 s, the motion at "), "{warning}");
+    assert!(warning.starts_with("warning: the run ends at 1.0 s, but the motion at "), "{warning}");
     assert_eq!(warning.lines().count(), 1);
     // In JSON the same warning is part of the document, and standard error is silent.
     let arguments = [
@@ -325,7 +325,7 @@ fn both_planes_are_printed_and_written() {
 fn a_rack_that_walks_takes_the_levels_above_with_it() {
     let stop = "--set=run.stop_after_collapse=0 s";
     let text = stdout(&barrelstack(["run", "candia-8-barrels-longitudinal", ONE, stop]));
-    let walk = "Rack R2 walks along the barrels below until it is off them, and takes levels 2 to 4 \
+    let walk = "Rack R2 slides along the barrels below until it leaves them, and takes levels 2 to 4 \
                 with it.";
     assert!(text.contains(walk), "{text}");
 }

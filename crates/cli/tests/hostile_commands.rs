@@ -286,7 +286,7 @@ fn studies_beyond_all_memory_are_refused_at_the_field_before_their_cases_are_mad
             pairs.iter().map(|pair| drawn(pair)).collect::<String>()
                 + "[design]\nkind = \"latin-hypercube\"\ncount = 10000000\n",
             "count = 10000000",
-            "take 7142857 at most",
+            "use at most 7142857",
         ),
     ];
     let count = studies.len();

@@ -169,7 +169,11 @@ fn records_of_pages_are_refused_by_the_option_that_names_them() {
         (&[("bad.csv", "")][..], "found an empty file", &all[..]),
         (&[("bad.csv", "To be added.\n")], "as first line", &all),
         (&[("bad.csv", unit)], "`barrelstack motion convert` with --unit", &all),
-        (&[("a.at2", &good), ("a.txt", &good)], "the name \"a\"; give each its own", &[FOLDER]),
+        (
+            &[("a.at2", &good), ("a.txt", &good)],
+            "the name \"a\"; give each a name of its own",
+            &[FOLDER],
+        ),
         (&[], "no file in the folder", &[FOLDER]),
         (&[], "there is no such file; correct the path", &FILES),
     ] {

@@ -239,8 +239,7 @@ fn the_verdict_is_kept_where_the_search_behind_it_is_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let weak = ["run", "demo-napa", "--set=stack.view=longitudinal", "--variants=8"];
     let brief = ["--set=run.stop_after_collapse=0.1 s", "--out=out", "--json"];
-    let said =
-        stops_at("2:would have helped:1", &[&weak[..], &brief].concat(), folder.path(), true);
+    let said = stops_at("2:changed stacks:1", &[&weak[..], &brief].concat(), folder.path(), true);
     let summary = json(&said);
     assert_eq!(summary["outcome"]["kind"], "collapse");
     assert_eq!(summary["ensemble"]["variants"], 8);

@@ -105,7 +105,7 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let other = ["info", text(&records), "--out", text(&out), "--table-periods", "1,2"];
     refused(
         &other.map(str::to_owned),
-        "holds the table of another command, of the same command with other options, or of another version: name",
+        "contains the table of another command, of the same command with other options, or of another version: give",
     );
     refused(&["info", text(&records)].map(str::to_owned), "--out DIR");
 

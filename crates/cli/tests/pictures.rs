@@ -66,7 +66,7 @@ fn render_refuses_what_it_cannot_mean() {
         refused(option, &output, &out, words);
     }
     let late = barrelstack(BLOCK.into_iter().chain(["--from=3", "--out", out.to_str().unwrap()]));
-    refused("--from", &late, &out, &["from 3 s on", "the run ends at 0.50 s"]);
+    refused("--from", &late, &out, &["after 3 s", "the run ends at 0.50 s"]);
 }
 
 #[test]

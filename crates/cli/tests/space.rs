@@ -52,9 +52,9 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
 #[test]
 fn what_space_does_not_know_is_refused_before_any_work() {
     for (more, message) in [
-        (&["--verify"][..], "--verify is known in a plane"),
+        (&["--verify"][..], "--verify is available for planar models"),
         (&["--set=stack.rack=rack-on-rack"], "has posts"),
-        (&["--set=stack.barrel.fill=part"], "wine that sloshes is known in a plane"),
+        (&["--set=stack.barrel.fill=part"], "sloshing wine is supported only in a plane"),
         (&["--set=stack.columns_along=3", "--set=stack.rack=four-barrel"], "stack.columns_along"),
     ] {
         let output = barrelstack([&SOLID[..], more].concat());
@@ -142,10 +142,7 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("out").display().to_string();
     for (command, message) in [
-        (
-            &["run", "rolling-ball", "--verify"][..],
-            "--verify is known in a plane, not yet in space",
-        ),
+        (&["run", "rolling-ball", "--verify"][..], "--verify is available for planar models"),
         (&["run", "rolling-ball", "--variants=3"], "a free scene has no variants"),
         (&["render", "rolling-ball", "--only=animation", "--out", &place], "use --only paraview"),
         (

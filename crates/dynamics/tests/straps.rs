@@ -217,7 +217,7 @@ fn two_bodies_on_a_strap_keep_momentum_spin_and_energy() {
 fn what_is_no_strap_is_refused_with_its_name() {
     let wrong = [
         (Strap { link: Link { bodies: [1, 1], ..hung().link }, ..hung() }, "itself"),
-        (Strap { link: Link { bodies: [0, 7], ..hung().link }, ..hung() }, "not there"),
+        (Strap { link: Link { bodies: [0, 7], ..hung().link }, ..hung() }, "does not exist"),
         (Strap { stiffness: 0.0, ..hung() }, "stiffness"),
         (Strap { stiffness: f64::NAN, ..hung() }, "stiffness"),
         (Strap { damping: -1.0, ..hung() }, "damping"),

@@ -22,7 +22,7 @@ fn columns_without_time_are_channels_only_if_named() {
     // strongly.
     let bare = format!("unit: cm/s2\n{rows}");
     let error = read(bare.as_bytes(), "bare.txt", &given).unwrap_err();
-    assert!(error.to_string().contains("no single series"), "{error}");
+    assert!(error.to_string().contains("do not form a single series"), "{error}");
     let wave = |k: i32| format!("{:.4}", (f64::from(k) * 0.1).sin());
     let rows: String = (0..60)
         .map(|row| format!("{} {} {}\n", wave(3 * row), wave(3 * row + 1), wave(3 * row + 2)))
@@ -269,7 +269,7 @@ fn times_are_taken_in_their_unit_and_every_fault_has_its_own_reason() {
             lines[row] = format!("{:.6},{word}", 0.005 * row as f64);
             let file = format!("time (s),acc (g)\n{}", lines.join("\n"));
             let error = read(file.as_bytes(), "a.txt", &GIVEN_G).unwrap_err().to_string();
-            assert!(error.contains("no number there"), "{word} in row {row}: {error}");
+            assert!(error.contains("no number here"), "{word} in row {row}: {error}");
         }
     }
     let mut empty = lines.clone();

@@ -73,7 +73,7 @@ fn times_in_days_hours_and_minutes_are_not_read_as_seconds() {
     }
     let days = rows(|_, t, a| format!("{:.10},{a:.6}\n", t / 86_400.0));
     let (_, said) = refusal(&format!("Time (s),Acceleration (m/s2)\n{days}"));
-    assert!(said.contains("days times 86400"), "{said}");
+    assert!(said.contains("multiply days by 86400"), "{said}");
 }
 
 #[test]

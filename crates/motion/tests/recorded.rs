@@ -333,7 +333,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
         ReadOptions { instruments: station_xml(STATION_XML).unwrap(), ..ReadOptions::default() };
     // Metadata that state m/s are sufficient; no option is needed.
     let stated = read(&bytes, "a.mseed", &known).unwrap();
-    assert!(stated.warnings.iter().any(|w| w.message.contains("a sensor of velocity")));
+    assert!(stated.warnings.iter().any(|w| w.message.contains("velocity sensor")));
     let both = [bytes.clone(), seed(b'E', 0, *b"00")].concat();
     let record = read(&both, "both.mseed", &known).unwrap();
     assert_eq!(record.channels.len(), 1);
@@ -508,5 +508,5 @@ fn dates_of_first_samples_are_read_as_esm_and_tadas_write_them() {
     }
     let unread = with("on a Friday");
     assert_eq!(start(&unread), "none");
-    assert!(unread.warnings.iter().any(|w| w.message.contains("no date and time")));
+    assert!(unread.warnings.iter().any(|w| w.message.contains("is not a date and time")));
 }

@@ -122,6 +122,6 @@ fn a_long_past_leaves_room_for_the_numbers() {
 #[test]
 fn a_name_that_occurs_twice_is_refused() {
     let twice = [("a".to_owned(), &[1.0][..]), ("a".to_owned(), &[2.0][..])];
-    assert!(archive(&twice).is_err_and(|error| error.to_string().contains("called a")));
+    assert!(archive(&twice).is_err_and(|error| error.to_string().contains("named a")));
     assert!(archive(&twice[1..]).is_ok());
 }

@@ -87,7 +87,7 @@ fn hostile_text_in_markdown_opens_nothing() {
     let bare = text.replace("\\<", "").replace("\\>", "").replace("\\`", "").replace("\\*", "");
     assert!(!bare.contains('<') && !bare.contains('`'));
     assert!(text.contains("- \\- nested"));
-    let row = text.lines().rfind(|l| l.starts_with("| ")).unwrap();
+    let row = text.lines().rfind(|l| l.starts_with("| ") && !l.ends_with("| |")).unwrap();
     assert_eq!(cells(row).len(), 2);
 }
 

@@ -22,6 +22,7 @@
 pub mod cases;
 pub mod counting;
 pub mod execute;
+pub mod field;
 pub mod ode;
 pub mod oracle;
 pub mod page;

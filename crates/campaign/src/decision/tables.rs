@@ -121,6 +121,6 @@ mod tests {
     fn no_interval_of_an_index_loses_its_width_when_it_is_printed() {
         assert_eq!(known(Interval { low: 0.0, high: 0.003 }), "0.00 to 0.01");
         assert_eq!(known(Interval { low: 0.996, high: 1.0 }), "0.99 to 1.00");
-        assert_eq!(known(Interval { low: 0.0, high: 1.0 }), "too few blocks to say");
+        assert_eq!(known(Interval { low: 0.0, high: 1.0 }), "too few blocks");
     }
 }

@@ -1,0 +1,54 @@
+//! Hindcasts: what was observed of barrel stacks in real earthquakes beside what the model says, and what that says of
+//! the unknowns.
+//!
+//! ```text
+//! observations.toml ─┐
+//! cases/*.csv ───────┴─▶ fit of the chance to fall ─▶ likelihoods, posterior ─▶ field.md, tables, figure
+//! ```
+//!
+//! [`evaluate`] is a function of the observations and the simulated cases alone, so that a test can hold the page to
+//! them; the cases are made by `cargo xtask field`.
+
+mod cases;
+mod chance;
+mod figure;
+mod observations;
+mod page;
+mod results;
+mod weigh;
+
+pub use cases::{COLUMNS, Case, Cases, UNKNOWNS};
+pub use chance::{Chance, MEDIANS, Point};
+pub use observations::{Earthquake, Kind, Likelihood, Observation, Observations};
+pub use results::{Bin, Posterior, Results, Share};
+pub use weigh::Range;
+
+/// Error of a file of observations or of cases.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct FieldError(pub String);
+
+/// Returns the files of the hindcasts by their paths in `validation`: the page, its tables and its figure.
+///
+/// `cases` are the names of the studies and their cases as CSV.
+///
+/// # Errors
+/// If a file cannot be read, or the cases of a study are missing.
+pub fn evaluate(
+    observations: &str,
+    cases: &[(String, String)],
+) -> Result<Vec<(String, String)>, FieldError> {
+    let observations = Observations::read(observations)?;
+    let cases = cases
+        .iter()
+        .map(|(name, text)| Cases::read(name, text))
+        .collect::<Result<Vec<Cases>, FieldError>>()?;
+    let results = Results::of(&observations, &cases)?;
+    Ok(vec![
+        ("field.md".to_owned(), page::page(&observations, &cases, &results)),
+        ("field.svg".to_owned(), figure::figure(&results).to_svg()),
+        ("field/shares.csv".to_owned(), results.shares_csv()),
+        ("field/posterior.csv".to_owned(), results.posterior_csv()),
+        ("field/likelihood.csv".to_owned(), results.likelihood_csv()),
+    ])
+}

@@ -1,0 +1,129 @@
+//! Simulated cases of a study, as its CSV file holds them.
+
+use super::FieldError;
+
+/// Columns of a file of cases.
+pub const COLUMNS: [&str; 14] = [
+    "levels",
+    "azimuth (deg)",
+    "friction barrel-rack",
+    "friction rack-ground",
+    "stiffness of a seat (MN/m)",
+    "record",
+    "factor",
+    "pgv (m/s)",
+    "outcome",
+    "mode",
+    "first loss (s)",
+    "barrels",
+    "barrels fallen",
+    "heading",
+];
+
+/// Number of unknowns that a case draws: friction barrel–rack, friction rack–ground, stiffness, factor on the motion.
+pub const UNKNOWNS: usize = 4;
+
+/// One simulated stack.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Levels.
+    pub levels: usize,
+    /// Azimuth (rad) of a stack in space.
+    pub azimuth: Option<f64>,
+    /// Friction barrel–rack, friction rack–ground, stiffness of a seat (MN/m), factor on the motion.
+    pub unknowns: [f64; UNKNOWNS],
+    /// `true` if it fell.
+    pub falls: bool,
+    /// Mode of a collapse.
+    pub mode: String,
+    /// Share of its barrels that fell.
+    pub fallen: f64,
+    /// Direction in which the first body left, in space.
+    pub heading: String,
+}
+
+/// All cases of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cases {
+    /// Name of the study.
+    pub study: String,
+    /// The cases with a verdict.
+    pub cases: Vec<Case>,
+    /// Number of cases without one.
+    pub unjudged: usize,
+}
+
+impl Cases {
+    /// Reads a file of cases.
+    ///
+    /// # Errors
+    /// If its columns are others, or a cell is no number.
+    pub fn read(study: &str, text: &str) -> Result<Self, FieldError> {
+        let mut lines = text.lines();
+        if lines.next() != Some(COLUMNS.join(",").as_str()) {
+            return Err(FieldError(format!(
+                "{study}.csv: expected the columns {}",
+                COLUMNS.join(",")
+            )));
+        }
+        let (mut cases, mut unjudged) = (Vec::new(), 0);
+        for (line, at) in lines.zip(2..) {
+            let cells: Vec<&str> = line.split(',').collect();
+            let fault = |what: String| FieldError(format!("{study}.csv, line {at}: {what}"));
+            if cells.len() != COLUMNS.len() {
+                return Err(fault(format!(
+                    "expected {} cells, found {}",
+                    COLUMNS.len(),
+                    cells.len()
+                )));
+            }
+            let number = |column: usize| {
+                let expected = || fault(format!("expected a number, found {:?}", cells[column]));
+                cells[column].parse::<f64>().map_err(|_| expected())
+            };
+            let falls = match cells[8] {
+                "collapse" => true,
+                "stable" => false,
+                _ => {
+                    unjudged += 1;
+                    continue;
+                }
+            };
+            let azimuth = if cells[1].is_empty() { None } else { Some(number(1)?.to_radians()) };
+            cases.push(Case {
+                levels: cells[0].parse().map_err(|_| fault("levels are no number".to_owned()))?,
+                azimuth,
+                unknowns: [number(2)?, number(3)?, number(4)?, number(6)?],
+                falls,
+                mode: cells[9].to_owned(),
+                fallen: number(12)? / number(11)?,
+                heading: cells[13].to_owned(),
+            });
+        }
+        Ok(Self { study: study.to_owned(), cases, unjudged })
+    }
+
+    /// Returns the cases of a height.
+    pub fn of(&self, levels: usize) -> impl Iterator<Item = &Case> {
+        self.cases.iter().filter(move |case| case.levels == levels)
+    }
+
+    /// Returns the number of cases of some that fall, and their number.
+    pub fn count<'a>(cases: impl Iterator<Item = &'a Case>) -> (u32, u32) {
+        cases.fold((0, 0), |(falls, all), case| (falls + u32::from(case.falls), all + 1))
+    }
+
+    /// Returns the share of the barrels that fell in those stacks of a height that fell; of all heights if none of
+    /// that one fell, and 0 if none of any.
+    pub fn fallen(&self, levels: usize) -> f64 {
+        let mean = |cases: &mut dyn Iterator<Item = &Case>| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for case in cases.filter(|case| case.falls) {
+                sum += case.fallen;
+                count += 1.0;
+            }
+            (count > 0.0).then(|| sum / count)
+        };
+        mean(&mut self.of(levels)).or_else(|| mean(&mut self.cases.iter())).unwrap_or(0.0)
+    }
+}
