@@ -172,7 +172,7 @@ fn crushed_staves_are_in_the_verdict_of_a_stack_in_space() {
     };
     let (headline, load) = said("100 N");
     assert!(load > 1.0, "{load}");
-    let stated = format!("they bear up to {:.0} % of what they are stated to bear.", 100.0 * load);
+    let stated = format!("they carry up to {:.0} % of their stated capacity.", 100.0 * load);
     assert_eq!(headline, format!("This stack stands, but staves are crushed: {stated}"));
     assert_eq!(said("1 MN").0, "This stack stands.");
 }
