@@ -18,8 +18,8 @@ const STACKS: [(&str, &[&str]); 3] = [
     ("five levels, half the motion", &["motion.scale.factor=0.5"]),
 ];
 
-fn run(changes: Vec<String>) -> Result<Vec<Variants>, Box<dyn std::error::Error>> {
-    let scenario = Scenario::builtin("demo-napa", &changes)?;
+fn run(changes: &[String]) -> Result<Vec<Variants>, Box<dyn std::error::Error>> {
+    let scenario = Scenario::builtin("demo-napa", changes)?;
     let planes = variants::planes(&scenario)?;
     let found = variants::run(&planes, &|_, _| ControlFlow::Continue(()))?;
     found.ok_or_else(|| "stopped".into())
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let own = |more: Vec<String>| {
             changes.iter().map(|&change| change.to_owned()).chain(more).collect::<Vec<_>>()
         };
-        let stated = run(own(Vec::new()))?;
+        let stated = run(&own(Vec::new()))?;
         let mut shares = vec![Vec::new(); stated.len()];
         for truth in 1..=truths {
             // The constants of a variant drawn with another seed, and none of its places and masses.
@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 .map(|one| format!("{}={}", one.path, one.value));
             let hair =
                 ["imperfections.kind=hair".to_owned(), format!("imperfections.seed={truth}")];
-            let found = run(own(drawn.chain(hair).collect()))?;
+            let found = run(&own(drawn.chain(hair).collect()))?;
             for (shares, one) in shares.iter_mut().zip(&found) {
                 shares.extend(one.spread.share);
             }

@@ -22,8 +22,8 @@ use crate::{
 /// is up, and lengths are in m.
 ///
 /// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
-/// (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
-/// carry `displacement` (m) from the first frame. Bodies without a finite pose are left out.
+///   (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
+///   carry `displacement` (m) from the first frame. Bodies without a finite pose are left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);

@@ -43,20 +43,7 @@ pub fn document(answer: &Answer) -> Document {
         ground: ground_histories(run),
     })];
     let heading = |text: &str| Block::heading(2, text);
-    if let Some(table) = variants(summary) {
-        blocks.extend([heading("Results of all variants"), Block::Table(table)]);
-    }
-    let decides = summary.ensemble.as_ref().map(|spread| unknowns(&[("", spread)]));
-    if let Some(decides) = decides.filter(|blocks| !blocks.is_empty()) {
-        blocks.push(heading("What decides"));
-        blocks.extend(decides);
-    }
-    if let Some(found) = &summary.remedy {
-        blocks.extend([
-            heading("What would have kept the stack up"),
-            Block::Table(found.table(false)),
-        ]);
-    }
+    blocks.extend(of_variants(summary));
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
     for (sight, scene) in &scenes {
@@ -120,6 +107,28 @@ pub fn document(answer: &Answer) -> Document {
         words: WORDS.to_vec(),
         warnings: run.warnings.clone(),
     }
+}
+
+/// Returns the sections on all variants: their statistics, the constants that decide, and what would have kept the stack
+/// up.
+fn of_variants(summary: &Summary) -> Vec<Block> {
+    let heading = |text: &str| Block::heading(2, text);
+    let mut blocks = Vec::new();
+    if let Some(table) = variants(summary) {
+        blocks.extend([heading("Results of all variants"), Block::Table(table)]);
+    }
+    let decides = summary.ensemble.as_ref().map(|spread| unknowns(&[("", spread)]));
+    if let Some(decides) = decides.filter(|blocks| !blocks.is_empty()) {
+        blocks.push(heading("What decides"));
+        blocks.extend(decides);
+    }
+    if let Some(found) = &summary.remedy {
+        blocks.extend([
+            heading("What would have kept the stack up"),
+            Block::Table(found.table(false)),
+        ]);
+    }
+    blocks
 }
 
 /// Returns a table with the statistics of all variants; `None` without variants.
