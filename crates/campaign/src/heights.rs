@@ -230,7 +230,7 @@ pub fn heights(
         let name = plan::name(*view, *recorded);
         let place = folder.join(&name);
         system::folder_below(folder, Path::new(&name))
-            .map_err(StudyError::system("make the folder", &place))?;
+            .map_err(StudyError::system("create the folder", &place))?;
         found.push((*view, *recorded, study.run(&place, options, &overall)?));
         before += study.cases();
     }

@@ -252,7 +252,7 @@ pub fn score(
         let below = Path::new(&slug(&state.name)).join(view.name());
         let place = folder.join(&below);
         system::folder_below(folder, &below)
-            .map_err(StudyError::system("make the folder", &place))?;
+            .map_err(StudyError::system("create the folder", &place))?;
         let overall = |progress: &Progress| report(before + progress.tally.cases, all);
         let cases = Cases::read(&study.run(&place, options, &overall)?)?;
         before += study.cases();

@@ -58,7 +58,11 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         "[[factor]]\nfield = \"stack\" # HERE\nvalues = [0.3]\n",
         &["`stack` holds a table, but a factor varies a single value"],
     ),
-    (2, "[[factor]]\nfield = \"title\" # HERE\nvalues = [\"x\"]\n", &["`title` changes nothing"]),
+    (
+        2,
+        "[[factor]]\nfield = \"title\" # HERE\nvalues = [\"x\"]\n",
+        &["`title` has no effect on the stack"],
+    ),
     (
         2,
         "[[factor]]\nfield = \"stack.levels\" # NOT\n",

@@ -44,8 +44,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Protection of a stack with the best benefit for its cost: levels, racks, devices, or pairs
-    /// of these.
+    /// Protection with the best benefit for its cost: levels, racks, devices, or pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
@@ -53,8 +52,7 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
-    /// Run every case of the paper on which the model is based, and compare the numbers of the
-    /// paper with those of the program.
+    /// Run every case of the paper, and compare its numbers with those of the program.
     Reproduce(ReproduceArgs),
     /// Read, inspect, change and make ground motions.
     Motion(Box<crate::commands::motion::MotionArgs>),
@@ -62,8 +60,7 @@ pub(crate) enum Command {
     Calibrate(crate::commands::calibrate::CalibrateArgs),
     /// Run a scenario and write its figures, the report as PDF, animations and a ParaView series.
     Render(crate::commands::render::RenderArgs),
-    /// Run a scenario many times, with varied values and motions, and collect the results in one
-    /// table.
+    /// Run a scenario many times, with varied values and motions, and tabulate the results.
     Study(crate::commands::study::StudyArgs),
     /// List the built-in scenarios, or print one.
     Scenarios(ScenariosArgs),

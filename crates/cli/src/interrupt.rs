@@ -73,7 +73,7 @@ impl std::str::FromStr for Place {
     }
 }
 
-/// Stops the program at a point of the work, as a signal would.
+/// Makes the program stop when its work reaches `place`, as if by a signal.
 pub(crate) fn stop_at(place: Option<Place>) {
     // Only the first call has an effect, and there is only one.
     let _ = PLACE.set(place);

@@ -102,7 +102,7 @@ pub struct Model<S: Space> {
     pub(crate) substepping: Substepping<S::Real>,
 }
 
-/// Error of an invalid model.
+/// Reason why a model is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// Two bodies have the same name.

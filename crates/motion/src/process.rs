@@ -261,7 +261,7 @@ impl Processing {
         match self.pads {
             Pads::Kept => {
                 *a = padded;
-                steps.push(format!("zero pads of {pad:.2} s at each end kept"));
+                steps.push(format!("kept the zero padding of {pad:.2} s at each end"));
                 pad
             }
             Pads::Removed => {

@@ -223,8 +223,8 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     added(a, &wavelets, &amplitudes)
 }
 
-/// Returns the weighted response at every demand to every wavelet of amplitude 1, one row per
-/// demand.
+/// Returns the weighted responses to wavelets with an amplitude of 1: one row for each demand, one column for each
+/// wavelet.
 fn rows(
     work: &Work<'_>,
     oscillators: &[Oscillator],

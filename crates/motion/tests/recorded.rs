@@ -337,7 +337,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     let both = [bytes.clone(), seed(b'E', 0, *b"00")].concat();
     let record = read(&both, "both.mseed", &known).unwrap();
     assert_eq!(record.channels.len(), 1);
-    assert!(record.warnings.iter().any(|w| w.message.ends_with("accelerometer: HHE")));
+    assert!(record.warnings.iter().any(|w| w.message.ends_with("were ignored: HHE")));
     let recorded_as = |quantity| ReadOptions { recorded: Some(quantity), ..options() };
     let velocity = read(&bytes, "a.mseed", &recorded_as(Quantity::Velocity)).unwrap();
     assert!(velocity.notes.join("\n").contains("velocity differentiated once"));

@@ -16,7 +16,7 @@ use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
 /// Builds the whole report.
 pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) -> Document {
     Document {
-        title: "Candia, de la Llera and Almazán (2008): published against ours".into(),
+        title: "Candia, de la Llera and Almazán (2008): published results compared with ours".into(),
         verdict: Headline {
             headline: headline(rows),
             sentences: vec![

@@ -79,7 +79,7 @@ pub fn document(answer: &Answer) -> Document {
             ]);
             let table = interface_table(
                 "Force on the upper body, or on the body that is named first: the largest magnitude until the first loss of \
-                 seat, and over the whole run, falls included. Horizontal forces are those in any direction.",
+                 seat, and over the whole run, falls included. Horizontal forces are resultants, whatever their direction.",
                 &summary.interfaces,
             );
             blocks.extend([heading("Forces at the seats"), Block::Table(table)]);

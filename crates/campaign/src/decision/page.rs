@@ -157,8 +157,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
             ));
             said.push(match curve.band_kind {
                 BandKind::Records => {
-                    "The band is computed by omitting one record at a time (with Student's t), so that \
-                     cases of one record may depend on each other."
+                    "The band is computed by omitting one record at a time (with Student's t), which allows for dependence between cases of the same record."
                         .to_owned()
                 }
                 BandKind::None => {

@@ -382,8 +382,7 @@ fn chart(all: &Heights) -> Figure {
     }
     Figure::new(
         "height-chart",
-        "Chance of collapse against height in the weaker direction, at three strengths of shaking. Each end of a vertical bar \
-         holds with 95 % confidence.",
+        "Chance of collapse in the weaker direction as a function of height, at three strengths of shaking. Each end of a vertical bar is a bound with 95 % confidence.",
         Plot {
             x: level_axis(all),
             y: chance_axis("chance of collapse"),

@@ -103,7 +103,7 @@ impl Search<'_> {
                     Path::new(&trials[*at].protection.key).join(plan::name(view.name(), round));
                 let folder = self.folder.join(&below);
                 system::folder_below(self.folder, &below)
-                    .map_err(StudyError::system("make the folder", &folder))?;
+                    .map_err(StudyError::system("create the folder", &folder))?;
                 studies.push((*at, direction, folder, study));
             }
         }

@@ -380,7 +380,7 @@ fn read_design(
                 (quantiles.collect::<Result<_, _>>()?, reader.integer("draws")?);
             if draws > 0 && factors.iter().all(|factor| factor.crossed().is_none()) {
                 return refuse(
-                    "every factor is drawn, so that no factor is changed one at a time: give at least one of \
+                    "every factor is drawn at random, which leaves none to change one at a time: give at least one of \
                      them `values`, or use \"stripes\"",
                 );
             }

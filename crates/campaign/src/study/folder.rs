@@ -182,7 +182,7 @@ impl Folder {
             ));
         }
         system::folder_below(path, Path::new(SHARDS))
-            .map_err(StudyError::system("make the folder", &shards))?;
+            .map_err(StudyError::system("create the folder", &shards))?;
         folder.describe(study)?;
         Ok(folder)
     }

@@ -115,7 +115,7 @@ impl Chunks {
         match self {
             #[expect(
                 clippy::cast_possible_truncation,
-                reason = "at most the ten million cases of a study"
+                reason = "at most ten million, the limit of cases in a study"
             )]
             Self::Even { count, sizes } => sizes.chunks(*count) as usize,
             Self::Listed(chunks) => chunks.len(),

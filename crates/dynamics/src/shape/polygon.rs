@@ -9,8 +9,9 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// Distance (m) outside of a side at which a node of a flush body still touches: about a nanometer. The value is not a
-/// round decimal number, since at such a distance rounding errors would decide whether the nodes of a scene touch.
+/// Distance (m) from the outside of a side within which a node of a flush body still touches: about a nanometer. The
+/// value is not a round decimal number: scenes may place nodes at exactly a round distance, where rounding errors
+/// would decide whether they touch.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Maximum angle (rad) of one part of a rounded corner that is divided into parts.

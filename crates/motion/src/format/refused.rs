@@ -72,7 +72,7 @@ pub(crate) const SLAMMER: Format = Format {
             0,
             "an acceleration history",
             "SLAMMER's table of records",
-            "give a record file with unit g and the step stated in this table",
+            "use a record file, and state g as its unit and the time step of this table as its step",
         ))
     },
 };

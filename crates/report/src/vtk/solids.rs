@@ -120,7 +120,7 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     [x + along(0), y + along(1), z + along(2)]
 }
 
-/// Returns the velocity of a point of a body at a position.
+/// Returns the velocity of the point of a body that is at `place`.
 fn velocity(pose: [f64; 7], [u, v, w, a, b, c]: [f64; 6], place: [f64; 3]) -> [f64; 3] {
     let arm = [place[0] - pose[0], place[1] - pose[1], place[2] - pose[2]];
     let turning = cross([a, b, c], arm);

@@ -42,7 +42,7 @@ section! {
     /// Angle of the top of a chock from the vertical through the center of the barrel: an assumption.
     angle: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(0.1, 1.4)), Default::Value("\"55 deg\"");
-    /// Free distance between a chock and its barrel: an assumption.
+    /// Clearance between a chock and its barrel: an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.2)), Default::Value("\"5 mm\"");
 }
 

@@ -239,8 +239,7 @@ pub const RACKS: &[CatalogRack] = &[
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
         seats: ON_BARRELS,
         help: "Two racks end to end.",
-        source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one rack are those of \
-            `two-barrel`, the mass is an assumption",
+        source: "two two-barrel racks, joined end to end (Wines & Vines 2016); each has the dimensions of `two-barrel`, and the mass is an assumption",
     },
     CatalogRack {
         rack: Rack {

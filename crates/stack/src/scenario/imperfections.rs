@@ -47,10 +47,7 @@ section! {
     /// and cut off at three standard deviations (assumption: 3 L of missing wine, or of water in the wood, in a full
     /// barrel).
     mass: f64 = SHARE, Default::Value("0.01");
-    /// Ignorance: standard deviation of ln μ where racks or barrels touch each other, lognormal, one draw for each pair
-    /// of materials (the friction coefficient of wood on steel ranges from 0.1 to 0.6 with moisture and finish, pallets
-    /// on steel racks from 0.37 to 0.45 in tests; with 0.35, nine in ten variants lie within a factor of 1.8; the
-    /// number is an assumption).
+    /// Ignorance: standard deviation of ln μ where racks or barrels touch each other; lognormal, with one draw for each pair of materials. Wood on steel ranges from 0.1 to 0.6 with moisture and finish, pallets on steel racks from 0.37 to 0.45 in tests. A standard deviation of 0.35, which is an assumption, puts nine in ten variants within a factor of 1.8.
     friction: f64 = DISPERSION, Default::Value("0.35");
     /// Ignorance: standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured; the
     /// value is then the scatter of ln μ between racks and barrels.

@@ -138,7 +138,7 @@ section! {
     pub static OUTCOME = "outcome";
     /// Distance of the center of a barrel from its position in the rack, in barrel radii, beyond which the barrel has lost its seat.
     seat_loss_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("0.5");
-    /// Distance of the center of a body below its position at rest beyond which the body has fallen.
+    /// A body counts as fallen when its center is more than this distance below its position at rest.
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
     /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the

@@ -179,8 +179,7 @@ const OWN: [Field; 9] = fields! {
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
-    /// Number of barrels per level in the plane of the model, a multiple of the number that one rack carries; counted
-    /// across the barrels if the model is in both planes or in space.
+    /// Number of barrels per level, a multiple of the number that one rack carries: those in the plane of the model, or, with both planes or in space, those that lie side by side.
     columns = COLUMNS, Default::Required;
     /// Number of barrels per level along the barrels, if the model is in both planes or in space.
     columns_along = COLUMNS,

@@ -20,7 +20,7 @@ pub const COLUMNS: [&str; 14] = [
     "heading",
 ];
 
-/// Number of unknowns that a case draws: friction barrel–rack, friction rack–ground, stiffness, factor on the motion.
+/// Number of unknowns that a case draws: barrel–rack friction, rack–ground friction, stiffness, and factor on the motion.
 pub const UNKNOWNS: usize = 4;
 
 /// One simulated stack.

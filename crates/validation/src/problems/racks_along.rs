@@ -160,7 +160,7 @@ fn slides(degrees: f64, side: f64) -> Problem {
     let exact = sliding(degrees.to_radians(), side);
     let (name, words) = match (degrees > 0.0, side > 0.0) {
         (false, _) => ("level", "on level rails"),
-        (true, true) => ("up", "toward the end that its rails raise by 3.5°"),
+        (true, true) => ("up", "toward the end that is raised by the slope of its rails, 3.5°"),
         (true, false) => ("down", "away from the end that its rails raise by 3.5°"),
     };
     setting(

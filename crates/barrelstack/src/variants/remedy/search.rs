@@ -168,8 +168,8 @@ impl<E> Search<'_, '_, E> {
         self.first_of(0..self.plan.heights)
     }
 
-    /// Tries straps from loose to tight; bisection skips straps that are rejected by their first
-    /// block.
+    /// Finds the loosest straps that suffice, by bisection. Straps whose first block of variants already collapses too
+    /// often are rejected without further runs.
     fn straps(&mut self) -> Result<ControlFlow<()>, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {

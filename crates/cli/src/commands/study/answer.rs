@@ -78,7 +78,7 @@ impl Answer {
 /// Name under which all further reasons are counted.
 const OTHERS: &str = "others";
 
-/// Sorts counts in descending order, with further reasons last.
+/// Sorts counts in descending order, with the entry for all other reasons last.
 fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
     let mut counts: Vec<(&str, usize)> = counts.iter().map(|(k, n)| (k.as_str(), *n)).collect();
     counts.sort_by_key(|(name, count)| (*name == OTHERS, Reverse(*count), *name));

@@ -28,7 +28,7 @@ pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
     let (decision, made) = decide_folder(&args.folder, &Request::default())?;
     let found = exported(&decision, &made, &args.asset)?;
     std::fs::create_dir_all(&args.out)
-        .with_context(|| format!("cannot make {}", args.out.display()))?;
+        .with_context(|| format!("cannot create {}", args.out.display()))?;
     for (name, text) in &found.files {
         let path = args.out.join(name);
         store(&path, text.as_bytes())?;

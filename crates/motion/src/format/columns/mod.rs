@@ -80,7 +80,7 @@ fn refuse_spectrum(
         line,
         "an acceleration history, not a spectrum",
         quoted(&source.text(line)),
-        "give the file with the time history of this spectrum",
+        "give the file with the time history from which this spectrum was computed",
     ))
 }
 

@@ -151,7 +151,7 @@ pub(crate) struct StressWatch<R: Real = f64> {
     pairs: Vec<Pair<R>>,
     /// Index of the first entry of every pair in `bounds`.
     first: Vec<usize>,
-    /// One entry for every contact element and body of every pair that has touched.
+    /// One entry for each combination of a contact element and one of its two bodies, for all pairs that have touched.
     bounds: Vec<Bounds<R>>,
     /// Sum of the normal contact forces (N) on every body: the sum in the current step, and the maximum of the sum so
     /// far.
