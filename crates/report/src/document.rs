@@ -57,6 +57,24 @@ pub struct Verdict {
     pub tone: Tone,
 }
 
+/// Length (bytes) of a headline that is shown as one heading.
+const ONE_HEADING: usize = 180;
+
+/// Least length (bytes) of the sentences that open a longer headline.
+const OPENING: usize = 60;
+
+impl Verdict {
+    /// Returns the sentences of the headline that open a page, and the other ones, which follow in smaller type.
+    pub(crate) fn opening(&self) -> (&str, &str) {
+        let whole = self.headline.as_str();
+        let end = whole.match_indices(". ").map(|(at, _)| at + 1).find(|end| *end >= OPENING);
+        match end.filter(|_| whole.len() > ONE_HEADING) {
+            Some(end) => (&whole[..end], whole[end..].trim_start()),
+            None => (whole, ""),
+        }
+    }
+}
+
 /// The kind of verdict; always shown as a sign and a word, never by color alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {

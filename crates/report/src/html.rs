@@ -149,7 +149,11 @@ impl<'a> Writer<'a> {
         self.put(&format!("<header class=\"verdict {}\">\n", tone.class()));
         self.element("<p class=\"title\">", &document.title, "</p>");
         self.put(&badge(tone));
-        self.element("<h1>", &verdict.headline, "</h1>");
+        let (opening, rest) = verdict.opening();
+        self.element("<h1>", opening, "</h1>");
+        if !rest.is_empty() {
+            self.explained("<p class=\"rest\">", rest, "</p>");
+        }
         if !verdict.advice.is_empty() {
             self.element("<p class=\"advice\">", &verdict.advice, "</p>");
         }

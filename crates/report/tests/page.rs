@@ -56,6 +56,20 @@ fn hostile_page() -> String {
 }
 
 #[test]
+fn a_long_headline_opens_with_its_verdict_and_continues_in_smaller_type() {
+    let verdict = "Not safe. Shaken along the barrels 53 of 64 variants fall (72–90 %), across them 12 of 64 fall.";
+    let rest = "Depending on constants that nobody has measured, 17 to 100 % fall along the barrels; the stiffness decides.";
+    let shown = |headline: String| {
+        let mut doc = document(Vec::new());
+        doc.verdict.headline = headline;
+        markup(&html(&doc))
+    };
+    let page = shown(format!("{verdict} {rest}"));
+    assert!(page.contains(&format!("<h1>{verdict}</h1>\n<p class=\"rest\">{rest}</p>")), "{page}");
+    assert!(shown(verdict.to_owned()).contains(&format!("<h1>{verdict}</h1>")));
+}
+
+#[test]
 fn advice_stands_under_the_headline_and_the_numbers_behind_it_are_folded() {
     let mut doc = document(vec![Block::Paragraph("Its drift is 2 %.".into())]);
     doc.verdict.advice = "Three levels would have stood.".into();

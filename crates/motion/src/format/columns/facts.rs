@@ -482,7 +482,8 @@ pub(super) fn refuse_other_quantities(
     for line in lines.clone() {
         let lower = folded(source.raw(line));
         if is_spectrum(&lower) {
-            let remedy = "give the file with the time history from which this spectrum was computed";
+            let remedy =
+                "give the file with the time history from which this spectrum was computed";
             return refuse(line, "an acceleration history, not a spectrum", remedy);
         }
         acceleration |= says_acceleration(&lower);
