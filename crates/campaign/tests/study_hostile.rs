@@ -69,7 +69,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
         &["needs one of", "values", "range", "distribution"],
     ),
     (2, "[[factor]]\nfield = \"stack.levels\"\nvalues = [] # HERE\n", &["is an empty list"]),
-    (2, "[[factor]]\nfield = \"stack.levels\"\nvalues = [2, 2] # HERE\n", &["holds 2 twice"]),
+    (2, "[[factor]]\nfield = \"stack.levels\"\nvalues = [2, 2] # HERE\n", &["contains 2 twice"]),
     (
         2,
         "[[factor]]\nfield = \"stack.levels\"\nvalues = [2, 3.5] # HERE\n",
@@ -233,15 +233,15 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
 fn every_mistake_is_one_error_at_its_place() {
     let good = [HEAD, SCENE, FACTOR, INTENSITY, DESIGN];
     Study::parse("case.toml", &whole(good)).unwrap_or_else(|error| panic!("{error}"));
+    let mut wrong = Vec::new();
     for (part, mistake, words) in MISTAKES {
         let mut parts = good;
         parts[*part] = mistake;
         let text = whole(parts);
         let error = Study::parse("case.toml", &text).expect_err(mistake).to_string();
         println!("---- {}\n{error}\n", mistake.trim());
-        for word in *words {
-            assert!(error.contains(word), "no {word:?} in:\n{error}");
-        }
+        let missing = words.iter().filter(|word| !error.contains(**word));
+        wrong.extend(missing.map(|word| format!("no {word:?} in:\n{error}\n")));
         let here = text.lines().position(|line| line.ends_with("# HERE"));
         if let Some(line) = here {
             assert!(
@@ -252,6 +252,7 @@ fn every_mistake_is_one_error_at_its_place() {
         }
         assert!(!error.contains("default value"), "{error}");
     }
+    assert!(wrong.is_empty(), "{}", wrong.concat());
 }
 
 #[test]

@@ -93,7 +93,7 @@ fn a_raw_record_comes_to_rest_and_every_step_is_listed() {
         assert!(end.displacement.abs() < 1e-2 * motion.pgd()); // measured 1e-14
     }
     let steps = motion.provenance.join("\n");
-    for word in ["mean", "taper", "high-pass", "pads", "brought to zero", "ends with"] {
+    for word in ["mean", "taper", "high-pass", "padding", "brought to zero", "ends with"] {
         assert!(steps.contains(word), "{word} is missing in\n{steps}");
     }
 }
