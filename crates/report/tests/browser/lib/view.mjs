@@ -55,7 +55,7 @@ export async function panels(page) {
   const dialog = page.locator(".player dialog").first();
   demand(await dialog.isVisible(), "? does not show the keys");
   const text = await dialog.textContent();
-  for (const word of ["plays", "camera", "full screen", "closer"]) demand(text.includes(word), `the keys do not say how to: ${word}`);
+  for (const word of ["play", "camera", "full screen", "zoom in"]) demand(text.includes(word), `the keys do not say how to: ${word}`);
   await page.keyboard.press("Escape");
   demand(!(await dialog.isVisible()), "escape does not close the keys");
   const high = (await page.locator(".player canvas.scene").first().boundingBox()).height;
