@@ -54,7 +54,7 @@ function listenEverywhere(players) {
     const inSight = players.find(({ screen }) => {
       const { top, bottom } = screen.getBoundingClientRect();
       const middle = 0.5 * (top + bottom);
-      return middle > 0 && inSight.top < window.innerHeight;
+      return middle > 0 && top < window.innerHeight;
     });
     if (!inSight) return;
     event.preventDefault();
