@@ -1,4 +1,4 @@
-//! Whether the stated range over unmeasured constants holds the true share: `cargo run --release -p barrelstack
+//! Compares the stated range over uncertain constants with shares under known constants: `cargo run --release -p barrelstack
 //! --example unknowns -- TRUTHS`.
 //!
 //! The constants are drawn from their distributions, many times. Under each draw, 64 stacks that differ in places and
@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 use barrelstack::variants::{self, Variants};
 use barrelstack::{Scenario, scenario::View};
 
-/// Stacks: name in the table, and changes of the demo.
+/// Stacks: name in the table, and changes to the demo.
 const STACKS: [(&str, &[&str]); 3] = [
     ("five levels", &[]),
     ("three levels", &["stack.levels=3"]),

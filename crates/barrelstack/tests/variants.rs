@@ -124,7 +124,7 @@ fn the_share_counts_what_became_of_the_variants_and_of_nothing_else() {
 }
 
 #[test]
-fn the_range_over_unmeasured_constants_comes_from_the_draws_of_the_variants() {
+fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
     let scenario = |more: &[&str]| {
         let mut scenario = two_levels(&[&["motion.scale.factor=0.7"], more].concat());
         if let Scene::Stack { imperfections, .. } = &mut scenario.scene {
@@ -145,8 +145,8 @@ fn the_range_over_unmeasured_constants_comes_from_the_draws_of_the_variants() {
     assert_eq!(names.len(), 4);
     assert!(whole.decides.is_sorted_by(|a, b| a.total >= b.total));
     for one in &whole.decides {
-        let [first, last] = one.ends().unwrap();
-        let median = one.shares[4].value;
+        let [first, median, last] = one.low_median_high().unwrap();
+        let median = median.value;
         // The 5 % and the 95 % fractile of a lognormal distribution.
         let reach = (1.644_854 * one.dispersion).exp();
         assert!((last.value / median / reach - 1.0).abs() < 1e-6, "{one:?}");

@@ -35,7 +35,7 @@ pub(crate) fn rows(
             ),
         );
         if let Some([low, high]) = spread.range.map(|range| range.map(percent)) {
-            row("", format!("{low} to {high} over constants that nobody has measured"));
+            row("", format!("{low} to {high} over the uncertain constants of the seats"));
         }
         if spread.first_loss.is_some() {
             row("", course(spread));

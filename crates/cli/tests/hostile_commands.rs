@@ -328,7 +328,7 @@ fn folders_in_which_nothing_can_be_written_are_known_before_the_work() {
     cases.end(33);
 }
 
-/// Commands that read, with IN for what; `m.txt`, `m.csv`, `seen.csv` and `study` lie beside it.
+/// Commands that read, with IN in the place of the input; `m.txt`, `m.csv`, `observed.csv` and `study` exist in the same folder.
 const READERS: [&[&str]; 44] = [
     &["run", "IN"],
     &["run", "demo-napa", "--record=IN"],
@@ -353,7 +353,7 @@ const READERS: [&[&str]; 44] = [
     &["calibrate", "drop", "IN"],
     &["calibrate", "friction", "IN"],
     &["calibrate", "collapse", "candia-8-barrels", "IN"],
-    &["calibrate", "collapse", "IN", "seen.csv"],
+    &["calibrate", "collapse", "IN", "observed.csv"],
     &["calibrate", "response", "candia-8-barrels", "IN"],
     &["study", "run", "IN", "--out=o"],
     &["study", "run-chunk", "IN", "--chunk=0", "--out=o"],
@@ -382,7 +382,7 @@ fn what_is_no_file_is_refused_by_every_command_that_reads() {
     let mut cases = Cases::new();
     let made = ["motion", "synth", "ricker", "--peak=0.3 g", "--period=0.5 s", "-o", "m.txt"];
     assert!(cases.run(&made).unwrap().status.success());
-    cases.file("seen.csv", b"mode,until (s)\nstands,8\n");
+    cases.file("observed.csv", b"mode,until (s)\nstands,8\n");
     cases.file("m.csv", b"penetration (mm),force (kN)\n1,1\n2,2\n3,3\n");
     fs::create_dir(cases.at("study")).unwrap();
     let pipe = std::process::Command::new("mkfifo").arg(cases.at("pipe")).status().unwrap();

@@ -5,7 +5,7 @@ const BEFORE = 0.5, AFTER = 1.0; // extent of the loop before and after the mome
 const SLOW = 0.25; // speed of the loop
 const HOLD = 0.9; // time for which the last picture is held (s)
 
-// `show` draws a time of the run; `marked` is told whether the loop runs.
+// `show` draws a time of the run; `marked` receives whether the loop runs.
 function makeLoop(screen, time, [start, end], show, marked) {
   const from = Math.max(time - BEFORE, start), to = Math.min(time + AFTER, end);
   const whole = (to - from) / SLOW + HOLD;

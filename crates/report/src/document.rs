@@ -26,7 +26,7 @@ pub struct Document {
 
 /// Scope of a result, stated after the provenance.
 pub(crate) const SCOPE: &str = "This page states what a model computes from the inputs that it lists. It does not replace the \
-                         judgment of an engineer who has seen the stack, its racks and its floor.";
+                         judgment of an engineer who has inspected the stack, its racks and its floor.";
 
 /// Lines to fill in by hand after the provenance.
 pub(crate) const SIGNATURE: [&str; 4] = ["project", "prepared by", "checked by", "date"];

@@ -58,7 +58,7 @@ fn hostile_page() -> String {
 #[test]
 fn a_long_headline_opens_with_its_verdict_and_continues_in_smaller_type() {
     let verdict = "Not safe. Shaken along the barrels most of all variants fall, across the barrels some of all fall.";
-    let rest = "Depending on constants that nobody has measured, hardly any or nearly all fall; the stiffness decides.";
+    let rest = "Depending on the friction of the seats, which is uncertain, hardly any or nearly all fall; the stiffness decides.";
     let shown = |headline: String| {
         let mut doc = document(Vec::new());
         doc.verdict.headline = headline;

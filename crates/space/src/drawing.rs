@@ -235,7 +235,7 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns invisible points that enlarge the picture: around a stack seen from above, where the picture shows no floor,
+/// Returns invisible points that enlarge the picture: around a stack viewed from above, where the picture shows no floor,
 /// and around the paths of all bodies of a free scene.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::stack::Stack;
 
-/// Horizontal direction of a motion, as seen by a viewer in front of the heads of the barrels: `x` points to the right
+/// Horizontal direction of a motion, for a viewer in front of the heads of the barrels: `x` points to the right
 /// and `y` away from the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]

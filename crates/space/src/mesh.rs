@@ -13,7 +13,7 @@ use crate::run::Run;
 const FINE: u32 = 6;
 const COARSE: u32 = 3;
 
-/// Points (m) of a surface, and its triangles. Seen from outside, the corners of a triangle are in counterclockwise
+/// Points (m) of a surface, and its triangles. Viewed from outside, the corners of a triangle are in counterclockwise
 /// order.
 type Mesh = (Vec<Vec3>, Vec<[usize; 3]>);
 

@@ -159,7 +159,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     if let Some([low, high]) =
         spread.range.map(|range| range.map(barrelstack::variants::words::percent))
     {
-        row("range of the share over unmeasured constants", format!("{low} to {high}"));
+        row("range of the share over uncertain constants", format!("{low} to {high}"));
     }
     let range = |Range { p05, p95, .. }: Range, decimals: usize| {
         format!("{p05:.decimals$} to {p95:.decimals$}")

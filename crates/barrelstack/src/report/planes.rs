@@ -111,7 +111,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         let [low, high] = spread.interval.map(percent);
         spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
     });
-    row("range of the share over unmeasured constants", &|spread| {
+    row("range of the share over uncertain constants", &|spread| {
         let [low, high] = spread.range?.map(percent);
         Some(format!("{low} to {high}"))
     });

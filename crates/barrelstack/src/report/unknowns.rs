@@ -1,4 +1,4 @@
-//! Page section on the constants that nobody has measured, and on their effects on the share of
+//! Page section on the uncertain constants of the seats, and on their effects on the share of
 //! collapses.
 
 use barrelstack_report::{Axis, Block, Cell, Figure, Plot, Series, Table, significant};
@@ -6,7 +6,7 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Plot, Series, Table, signifi
 use crate::variants::words::percent;
 use crate::variants::{Spread, Unknown};
 
-/// Returns a table of the unknown constants for each plane, and a figure of the share of collapses
+/// Returns a table of the uncertain constants for each plane, and a figure of the share of collapses
 /// as a function of the most influential constant. Planes without a known range are omitted. Each
 /// spread is given with the words for its plane, such as "along the barrels", which are empty in
 /// space.
@@ -21,31 +21,32 @@ pub fn unknowns(planes: &[(&str, &Spread)]) -> Vec<Block> {
     let first = known
         .iter()
         .filter_map(|(_, spread)| spread.decides.first())
-        .max_by(|a, b| effect(a).total_cmp(&effect(b)));
+        .max_by(|a, b| a.effect().total_cmp(&b.effect()));
     blocks.extend(first.map(|one| Block::Figure(figure(one, &known))));
     blocks
-}
-
-fn effect(one: &Unknown) -> f64 {
-    one.ends().map_or(0.0, |[first, last]| (last.share - first.share).abs())
 }
 
 fn table(place: &str, spread: &Spread) -> Table {
     let range = spread.range.map(|range| range.map(percent)).unwrap_or_default();
     let shaken = if place.is_empty() { String::new() } else { format!("Shaken {place}: ") };
     let stated = spread.share_as_stated.map(percent).unwrap_or_default();
+    let at = |one: &Unknown, place: usize| one.low_median_high().map(|three| *three[place]);
+    let value = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| one.words(at.value)));
+    let share = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| percent(at.share)));
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse, depending on the constants that nobody has measured; {stated} collapse with all of these constants as stated. Each constant is given at its 5 % and its 95 % fractile, with the share of collapses averaged over the other constants, and the 95 % interval of the change. The last column is the average width of the range once the constant is measured.",
+            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} collapse with all of these constants as stated. Each constant is given at its 5 % fractile, median and 95 % fractile, with the share of collapses averaged over the other constants. The change is the 95 % interval of the largest less the smallest share over the constant. The last column is the average width of the range once the constant is measured.",
             range[0], range[1]
         ),
         &spread.decides,
         &[
             ("constant", "", &|one| Cell::text(one.name)),
-            ("from", "", &|one| Cell::maybe(one.ends().map(|[end, _]| one.words(end.value)))),
-            ("collapse", "", &|one| Cell::maybe(one.ends().map(|[end, _]| percent(end.share)))),
-            ("to", "", &|one| Cell::maybe(one.ends().map(|[_, end]| one.words(end.value)))),
-            ("collapse", "", &|one| Cell::maybe(one.ends().map(|[_, end]| percent(end.share)))),
+            ("5 % fractile", "", &|one| value(one, 0)),
+            ("collapse", "", &|one| share(one, 0)),
+            ("median", "", &|one| value(one, 1)),
+            ("collapse", "", &|one| share(one, 1)),
+            ("95 % fractile", "", &|one| value(one, 2)),
+            ("collapse", "", &|one| share(one, 2)),
             ("change", "percentage points", &|one| {
                 let [low, high] = one.difference.map(|end| format!("{:+.0}", 100.0 * end));
                 Cell::text(format!("{low} to {high}"))
@@ -59,9 +60,8 @@ fn table(place: &str, spread: &Spread) -> Table {
 }
 
 fn figure(one: &Unknown, planes: &[&(&str, &Spread)]) -> Figure {
-    let mega = one.unit != "1";
-    let scale = if mega { 1e-6 } else { 1.0 };
-    let unit = if mega { format!("M{}", one.unit) } else { String::new() };
+    let (unit, scale) = one.shown_unit();
+    let log = !unit.is_empty();
     let series = planes.iter().filter_map(|(place, spread)| {
         let same = spread.decides.iter().find(|other| other.field == one.field)?;
         Some(Series {
@@ -77,11 +77,11 @@ fn figure(one: &Unknown, planes: &[&(&str, &Spread)]) -> Figure {
     Figure::new(
         "decides",
         format!(
-            "Share of stacks that collapse, as a function of the {}, averaged over all other unknown constants, with its 95 % interval.",
+            "Share of stacks that collapse, as a function of the {}, averaged over all other uncertain constants, with its 95 % interval.",
             one.name
         ),
         Plot {
-            x: if mega { x.log() } else { x },
+            x: if log { x.log() } else { x },
             y: Axis { range: Some([0.0, 100.0]), ..Axis::new("stacks that collapse", "%") },
             series: series.collect(),
             ..Plot::default()

@@ -1,5 +1,5 @@
-//! Range of the share of collapses over the constants that nobody has measured, and the constant
-//! that decides the result.
+//! Range of the share of collapses over the uncertain constants of the seats, and the constant that
+//! decides the result.
 
 use barrelstack_fragility::{Influence, Trial, conditional, normal_quantile};
 use barrelstack_motion::Random;
@@ -13,15 +13,14 @@ use crate::scenario::{
     Basis, Damping, Friction, Imperfection, Imperfections, Interface, NormalLaw, StackInterfaces,
 };
 
-/// Smallest difference between the shares of collapses at the 5 % and the 95 % fractile of a
-/// decisive constant.
+/// Smallest change of the share of collapses over a decisive constant.
 const DECISIVE: f64 = 0.2;
 
 /// Fractiles of a constant at which the share of collapses is given.
 const FRACTILES: [f64; 9] = [0.05, 0.1625, 0.275, 0.3875, 0.5, 0.6125, 0.725, 0.8375, 0.95];
 
 described! {
-    /// A constant that nobody has measured on this stack, and its effect on the share of variants that collapse.
+    /// An uncertain constant of the seats, and its effect on the share of variants that collapse.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Unknown {
         /// Name of the constant.
@@ -36,7 +35,7 @@ described! {
         /// Share of collapses as a function of the constant, from its 5 % to its 95 % fractile,
         /// averaged over all other constants.
         pub shares: Vec<ShareAt>,
-        /// 95 % interval of the difference between the last and the first value of `shares`.
+        /// 95 % interval of the difference between the largest and the smallest value of `shares`.
         pub difference: [f64; 2] as "1",
         /// Total-effect index: fraction of the variance of the share that remains if all other
         /// constants are known.
@@ -59,26 +58,43 @@ described! {
 }
 
 impl Unknown {
-    /// Returns the values at the 5 % and the 95 % fractile, each with the share there.
-    pub fn ends(&self) -> Option<[&ShareAt; 2]> {
-        Some([self.shares.first()?, self.shares.last()?])
+    /// Returns the constant at its 5 % fractile, median and 95 % fractile, each with the share there.
+    pub fn low_median_high(&self) -> Option<[&ShareAt; 3]> {
+        Some([self.shares.first()?, self.shares.get(FRACTILES.len() / 2)?, self.shares.last()?])
     }
 
-    /// Returns `true` if the shares at the 5 % and at the 95 % fractile differ by at least a fifth,
-    /// and the 95 % interval of the difference excludes zero.
+    /// Returns the difference between the largest and the smallest of `shares`.
+    pub fn effect(&self) -> f64 {
+        let shares = || self.shares.iter().map(|at| at.share);
+        shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
+    }
+
+    /// Returns `true` if the share changes by at least a fifth over the constant, and the 95 % interval of
+    /// this change excludes zero.
     pub fn is_decisive(&self) -> bool {
-        let [low, high] = self.difference;
-        let far = |[first, last]: [&ShareAt; 2]| (last.share - first.share).abs() >= DECISIVE;
-        self.ends().is_some_and(far) && (low > 0.0 || high < 0.0)
+        self.effect() >= DECISIVE && self.difference[0] > 0.0
     }
 
-    /// Formats a value with its unit, such as "μ = 0.22" or "3.1 MN/m".
-    pub fn words(&self, value: f64) -> String {
+    /// Returns the unit in which pages state the constant, empty for a pure number, and the factor
+    /// from the SI unit.
+    pub fn shown_unit(&self) -> (String, f64) {
         match self.unit {
-            "1" if self.field.ends_with("friction.coefficient") => format!("μ = {value:.2}"),
-            "1" if self.field == RESTITUTION => format!("e = {value:.2}"),
-            "1" => format!("{value:.2}"),
-            unit => format!("{} M{unit}", barrelstack_report::significant(1e-6 * value, 2)),
+            "1" => (String::new(), 1.0),
+            unit if self.field == DAMPING => (format!("k{unit}"), 1e-3),
+            unit => (format!("M{unit}"), 1e-6),
+        }
+    }
+
+    /// Formats a value of the constant (SI) with its symbol or unit, such as "μ = 0.22" or
+    /// "3.1 MN/m".
+    pub fn words(&self, value: f64) -> String {
+        let (unit, factor) = self.shown_unit();
+        match self.field {
+            RESTITUTION => format!("e = {value:.2}"),
+            DAMPING | STIFFNESS => {
+                format!("{} {unit}", barrelstack_report::significant(factor * value, 2))
+            }
+            _ => format!("μ = {value:.2}"),
         }
     }
 
@@ -171,7 +187,11 @@ fn drawn(laws: &StackInterfaces, spread: &Imperfections, posts: bool) -> Vec<Dra
             axis: Shared::SeatDamping,
             name: "damping of seats",
             field: if seat.states_restitution() { RESTITUTION } else { DAMPING },
-            unit: if seat.states_restitution() { "1" } else { "N·s/m" },
+            unit: match (seat.states_restitution(), seat.basis) {
+                (true, _) => "1",
+                (false, Basis::Length) => "N·s/m²",
+                (false, Basis::Node | Basis::Seat) => "N·s/m",
+            },
             dispersion: spread.damping,
             change: Interface::damp,
             value: damping,
@@ -234,7 +254,7 @@ fn unit(law: &Interface) -> &'static str {
     }
 }
 
-/// Range of the share over the unknown constants, share with all constants as stated, and the
+/// Range of the share over the uncertain constants, share with all constants as stated, and the
 /// constants, the most influential first.
 pub(super) struct Fitted {
     pub(super) range: [f64; 2],
@@ -266,8 +286,7 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let fitted = conditional(&trials, || random.uniform())?;
     let whole = fitted.range(LEVEL);
     let unknown = |(at, (one, influence)): (usize, (&Drawn, Influence))| {
-        let share_at = |fractile: f64| {
-            let deviate = normal_quantile(fractile);
+        let share_at = |deviate: f64| {
             let (share, interval) = fitted.at(at, deviate, LEVEL);
             Some(ShareAt {
                 value: one.at(deviate)?,
@@ -275,13 +294,19 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
                 interval: [interval.low, interval.high],
             })
         };
+        let deviates = FRACTILES.map(normal_quantile);
+        let shares: Vec<ShareAt> = deviates.into_iter().filter_map(share_at).collect();
+        let by_share = |a: &usize, b: &usize| shares[*a].share.total_cmp(&shares[*b].share);
+        let least = (0..shares.len()).min_by(by_share).unwrap_or(0);
+        let most = (0..shares.len()).max_by(by_share).unwrap_or(0);
+        let difference = fitted.difference(at, [deviates[least], deviates[most]], LEVEL);
         Unknown {
             name: one.name,
             field: one.field,
             unit: one.unit,
             dispersion: one.dispersion,
-            shares: FRACTILES.into_iter().filter_map(share_at).collect(),
-            difference: [influence.difference.low, influence.difference.high],
+            shares,
+            difference: [difference.low, difference.high],
             total: influence.total,
             width_if_measured: influence.width_if_known,
         }

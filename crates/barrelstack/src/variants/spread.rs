@@ -33,15 +33,15 @@ described! {
         /// Wilson's 95 % interval of the share that collapses, widened so that it holds regardless
         /// of whether the variants without a verdict stand or collapse.
         pub interval: [f64; 2] as "1",
-        /// Range of the share of stacks that collapse, over the constants that nobody has measured:
+        /// Range of the share of stacks that collapse, over the uncertain constants of the seats:
         /// it contains 95 % of the shares if these constants are drawn from their distributions,
         /// sampling error included. Null if there are fewer than 16 variants, if one of them has no
         /// verdict, or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of stacks that collapse if all unmeasured constants are as stated; null if `range`
+        /// Share of stacks that collapse if all uncertain constants are as stated; null if `range`
         /// is null.
         pub share_as_stated: Option<f64> as "1",
-        /// The constants that nobody has measured, the most influential first; empty if `range` is
+        /// The uncertain constants of the seats, the most influential first; empty if `range` is
         /// null.
         pub decides: Vec<Unknown>,
         /// Time of the first loss of a seat, over the variants that collapse while shaken.

@@ -1,10 +1,15 @@
 //! Sentences about the results of variants.
 
+mod range;
+
 use barrelstack_report::{Tone, capital};
 
 use super::{Range, Spread};
 use crate::scenario::{Imperfection, Imperfections, View};
 use crate::summary::Summary;
+
+use range::depends_on;
+pub use range::measure;
 
 /// Smallest share of collapsing variants for which the verdict is "Falls".
 const FALLS: f64 = 0.9;
@@ -93,7 +98,7 @@ pub fn headline_in_space(spread: &Spread) -> String {
 fn answer(planes: &[Placed<'_>]) -> String {
     let mut sentences: Vec<String> = planes.iter().flat_map(|plane| before(*plane)).collect();
     sentences.extend(verdict(planes));
-    sentences.extend(worst(planes).and_then(hangs_on));
+    sentences.extend(worst(planes).and_then(depends_on));
     if let [(_, spread)] = planes
         && spread.collapsed > spread.cannot_stand
     {
@@ -114,48 +119,6 @@ fn worst_first<'a>(planes: &[Placed<'a>]) -> Vec<Placed<'a>> {
 
 fn worst<'a>(planes: &[Placed<'a>]) -> Option<Placed<'a>> {
     worst_first(planes).into_iter().next()
-}
-
-/// Widest range of shares for which the unknown constants are said to matter little.
-const NARROW: f64 = 0.1;
-
-/// Describes the range of the share over the unknown constants, and the decisive constant, such as
-/// "Depending on constants that nobody has measured, 31 to 100 % fall along the barrels; the
-/// stiffness of seats decides: …".
-fn hangs_on((view, spread): Placed<'_>) -> Option<String> {
-    let [low, high] = spread.range?;
-    let place = view.map_or_else(String::new, |view| format!(" {}", view.words()));
-    let (from, to) = (percent(low), percent(high));
-    let range = format!("{} to {to}", from.trim_end_matches(" %"));
-    if high - low <= NARROW {
-        return Some(format!(
-            "Constants that nobody has measured matter little: over their ranges {range} fall{place}."
-        ));
-    }
-    let decisive = spread.decisive().and_then(|one| Some((one, one.ends()?)));
-    let which = decisive.map_or_else(
-        || "none of them decides alone".to_owned(),
-        |(one, ends)| {
-            let [first, last] =
-                ends.map(|end| format!("{} at {}", percent(end.share), one.words(end.value)));
-            format!("the {} decides: {first}, {last}", one.name)
-        },
-    );
-    Some(format!("Depending on constants that nobody has measured, {range} fall{place}; {which}."))
-}
-
-/// Describes the measurement that narrows the range of the share most; `None` if no measurement
-/// narrows it.
-pub fn measure(spread: &Spread) -> Option<String> {
-    let [low, high] = spread.range?;
-    let (one, left) = spread.worth_measuring()?;
-    Some(format!(
-        "To narrow that range, measure the {}: {}. On average, this leaves a range of {:.0} percentage points instead of {:.0}.",
-        one.name,
-        one.test()?,
-        100.0 * left,
-        100.0 * (high - low)
-    ))
 }
 
 /// Returns the verdict and the counts that support it; the counts of the worst plane come first.
@@ -600,37 +563,45 @@ mod tests {
     }
 
     #[test]
-    fn the_range_over_unmeasured_constants_follows_the_verdict_of_the_worst_plane() {
+    fn the_range_over_uncertain_constants_follows_the_verdict_of_the_worst_plane() {
         let at = |value: f64, share: f64| ShareAt { value, share, interval: [share, share] };
         let unknown = |difference| Unknown {
             name: "stiffness of seats",
             field: "interface.barrel-rack.stiffness",
             unit: "N/m",
             dispersion: 0.6,
-            shares: vec![at(1.118e6, 0.96), at(8.049e6, 0.59)],
+            shares: [0.96, 0.95, 0.9, 0.88, 0.82, 0.8, 0.7, 0.65, 0.59]
+                .into_iter()
+                .zip([1.118e6, 1.5e6, 2e6, 2.5e6, 3e6, 3.6e6, 4.3e6, 5.4e6, 8.049e6])
+                .map(|(share, value)| at(value, share))
+                .collect(),
             difference,
             total: 0.8,
             width_if_measured: 0.55,
         };
         let mut one = spread(64, 53);
         one.range = Some([0.17, 1.0]);
-        one.decides = vec![unknown([-0.6, -0.1])];
+        one.decides = vec![unknown([0.1, 0.6])];
         let said = headline(&[(View::Transverse, &spread(64, 3)), (View::Longitudinal, &one)]);
-        let range =
-            "Depending on constants that nobody has measured, 17 to 100 % fall along the barrels; ";
+        let range = "Depending on the friction, stiffness and damping of the seats, which are uncertain, 17 to 100 % fall \
+             along the barrels; ";
         let decides = "the stiffness of seats decides: 96 % at 1.1 MN/m, 59 % at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
         let left = "On average, this leaves a range of 55 percentage points instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // An effect that may be none decides nothing, nor does a small one that is certain.
-        one.decides = vec![unknown([-0.6, 0.1])];
+        one.decides = vec![unknown([-0.1, 0.6])];
         let said = headline(&[(View::Longitudinal, &one)]);
-        assert!(said.contains(&format!("{range}none of them decides alone.")), "{said}");
+        assert!(said.contains(&format!("{range}none of these decides alone.")), "{said}");
+        // A share with its minimum in the middle is stated there, too.
+        one.decides = vec![unknown([0.1, 0.6])];
+        one.decides[0].shares[4].share = 0.25;
+        let said = headline(&[(View::Longitudinal, &one)]);
+        assert!(said.contains("96 % at 1.1 MN/m, 25 % at 3.0 MN/m, 59 % at 8.0 MN/m."), "{said}");
         one.range = Some([0.94, 1.0]);
         let said = headline_in_space(&one);
-        let little =
-            "Constants that nobody has measured matter little: over their ranges 94 to 100 % fall.";
+        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: 94 to 100 % fall.";
         assert!(said.contains(little), "{said}");
         // What narrows nothing is not recommended.
         one.range = Some([0.4, 1.0]);

@@ -12,7 +12,7 @@ use crate::utc::Utc;
 /// rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 
-/// Options of the caller, as seen by a reader.
+/// Options of the caller, as a reader uses them.
 ///
 /// A reader queries only information that the file does not state. Unused options are ignored and
 /// reported.

@@ -83,8 +83,8 @@ class SpatialRun:
 
     @property
     def ensemble(self) -> dict[str, Any] | None:
-        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, its ``range`` over the constants that
-        nobody has measured, the effects of these constants (``decides``), modes; None without any."""
+        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, its ``range`` over the uncertain
+        constants of the seats, the effects of these constants (``decides``), modes; None without any."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property

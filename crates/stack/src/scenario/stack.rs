@@ -127,7 +127,7 @@ impl StackSpec {
 pub struct InSpace {
     /// Number of barrels per level along the barrels.
     pub columns_along: u32,
-    /// Angle (rad) by which the stack is turned, counterclockwise as seen from above; at zero, the component of the
+    /// Angle (rad) by which the stack is turned, counterclockwise viewed from above; at zero, the component of the
     /// scenario acts across the barrels.
     pub azimuth: f64,
 }
@@ -184,7 +184,7 @@ const OWN: [Field; 9] = fields! {
     /// Number of barrels per level along the barrels, if the model is in both planes or in space.
     columns_along = COLUMNS,
         Default::Derived("in both planes and in space, the number that one rack carries; must not be given otherwise");
-    /// Angle by which the stack is turned, counterclockwise as seen from above; at zero, `motion.component` shakes the
+    /// Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes the
     /// stack across the barrels, and the other horizontal component shakes it along the barrels.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
         Default::Derived("in space, 0 deg; must not be given otherwise");

@@ -114,7 +114,7 @@ fn plain(text: &str) -> &str {
     text.trim_start_matches(['#', '%', '!', '/', ' ', '|']).trim_end_matches(['|', ' ', ',', ';'])
 }
 
-/// Splits a line in several ways, one for each possible separator. The flag is `true` if the
+/// Splits a line once for each possible separator. The flag is `true` if the
 /// separator does not occur in prose.
 fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     let tidy = |part: &str| part.trim().trim_matches(['"', '\'']).trim().to_owned();
