@@ -270,7 +270,7 @@ fn of_values(heading: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Values> {
         }
         let kind = value.get_type().name()?;
         Err(PyTypeError::new_err(format!(
-            "the column `{heading}` contains a {kind}; expected numbers, booleans or texts"
+            "the column `{heading}` contains values of type {kind}; expected numbers, booleans or texts"
         )))
     };
     values.iter().map(text).collect::<PyResult<_>>().map(Values::Text)

@@ -73,7 +73,7 @@ def test_errors_of_a_row_are_raised_before_the_work() -> None:
         ensemble([{"stack.levels": 3}], "demo-napa")
     with pytest.raises(ValueError, match="no case changes the base"):
         ensemble([{}], BASE)
-    with pytest.raises(TypeError, match="`stack.levels` contains a object"):
+    with pytest.raises(TypeError, match="`stack.levels` contains values of type object"):
         ensemble([{"stack.levels": object()}], BASE)
 
 

@@ -97,7 +97,7 @@ def test_an_error_of_a_value_names_its_path() -> None:
     with pytest.raises(ScenarioError) as caught:
         Scenario(scene)
     assert caught.value.value == 'body.1.mass="3 N"'
-    with pytest.raises(TypeError, match="`levels` is a object"):
+    with pytest.raises(TypeError, match="`levels` has the type object"):
         Scenario({"stack": {"levels": object()}})
 
 
