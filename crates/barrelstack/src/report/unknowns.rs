@@ -35,7 +35,7 @@ fn table(place: &str, spread: &Spread) -> Table {
     let share = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| percent(at.share)));
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} collapse with all of these constants as stated. Each constant is given at its 5 % fractile, median and 95 % fractile, with the share of collapses averaged over the other constants. The change is the 95 % interval of the largest less the smallest share over the constant. The last column is the average width of the range once the constant is measured.",
+            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} collapse with all of these as stated. Each constant is given at its 5 % fractile, median and 95 % fractile, with the share of collapses averaged over the other constants. Change: 95 % interval of the largest less the smallest share over the constant. Variance: part of the variance of the share that remains if all other constants are known. Range left: average width of the range once the constant is measured.",
             range[0], range[1]
         ),
         &spread.decides,
@@ -47,14 +47,13 @@ fn table(place: &str, spread: &Spread) -> Table {
             ("collapse", "", &|one| share(one, 1)),
             ("95 % fractile", "", &|one| value(one, 2)),
             ("collapse", "", &|one| share(one, 2)),
-            ("change", "percentage points", &|one| {
-                let [low, high] = one.difference.map(|end| format!("{:+.0}", 100.0 * end));
+            ("change", "%", &|one| {
+                let [low, high] =
+                    one.difference.map(|end| format!("{:+.0}", 100.0 * end).replace('-', "−"));
                 Cell::text(format!("{low} to {high}"))
             }),
-            ("share of the variance", "", &|one| Cell::text(significant(one.total, 2))),
-            ("range if measured", "percentage points", &|one| {
-                Cell::Measured(100.0 * one.width_if_measured, 0)
-            }),
+            ("variance", "", &|one| Cell::text(significant(one.total, 2))),
+            ("range left", "%", &|one| Cell::Measured(100.0 * one.width_if_measured, 0)),
         ],
     )
 }
