@@ -88,6 +88,7 @@ fn page(
         title: run.scenario.title.clone(),
         verdict: Verdict {
             headline: headline(run, summary),
+            dots: variants::words::dots(&summary.spreads()),
             advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
             command: words::command(summary),
             fine: fine(run, summary),

@@ -5,8 +5,8 @@
 use std::{error::Error, f64::consts::TAU, fs, path::PathBuf, sync::Arc};
 
 use barrelstack_report::{
-    Animation, Axis, Band, Block, BoundarySample, Cell, ContactForce, Document, Envelope, Event,
-    EventKind, Figure, FigureKind, Film, Frames, History, Mark, Panel, Paper, Player, Plot,
+    Animation, Axis, Band, Block, BoundarySample, Cell, ContactForce, Document, Dots, Envelope,
+    Event, EventKind, Figure, FigureKind, Film, Frames, History, Mark, Panel, Paper, Player, Plot,
     Polyline, Role, Scene, SceneBody, Series, SeriesStyle, Strip, Table, Tone, Trace, Verdict,
     attachments, document_pdf, html, markdown,
 };
@@ -459,6 +459,12 @@ fn document() -> Document {
                 "Barrel B8 leaves its cradle 14.0 s into the shaking and hits the floor 0.8 s later.".into(),
                 "The other seven stay on their racks; the bottom rack ends 2 cm from where it stood.".into(),
             ],
+            dots: vec![Dots {
+                direction: "along the barrels".into(),
+                fell: 53,
+                stood: 10,
+                open: 1,
+            }],
             tone: Tone::Falls,
             ..Verdict::default()
         },

@@ -1,6 +1,6 @@
 //! A document: a verdict, blocks in reading order, warnings and provenance.
 
-use crate::{Figure, Player, Players, Table};
+use crate::{Dots, Figure, Player, Players, Table};
 
 /// The content of a report or page, independent of the output format.
 ///
@@ -45,6 +45,8 @@ pub struct Word {
 pub struct Verdict {
     /// One short sentence, the largest text of the page.
     pub headline: String,
+    /// Outcomes of all variants, one entry for each direction; empty for a single run.
+    pub dots: Vec<Dots>,
     /// Recommended action, as one sentence; may be empty.
     pub advice: String,
     /// A command that shows the effect of the advice; may be empty.

@@ -154,6 +154,12 @@ impl<'a> Writer<'a> {
         if !rest.is_empty() {
             self.explained("<p class=\"rest\">", rest, "</p>");
         }
+        for dots in &verdict.dots {
+            if let Some(drawing) = dots.draw() {
+                self.element("<p class=\"dots\">", &dots.words(), "</p>");
+                self.put(&format!("<div class=\"dots\">{}</div>\n", drawing.inline()));
+            }
+        }
         if !verdict.advice.is_empty() {
             self.element("<p class=\"advice\">", &verdict.advice, "</p>");
         }

@@ -5,7 +5,7 @@ use pdf_writer::types::StructRole;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, EventKind, Figure, Panel, Player, Strip, Table, Tone,
+    Block, Document, Dots, EventKind, Figure, Panel, Player, Strip, Table, Tone,
     document::FINE,
     drawing::{Anchor, Drawing, Item},
     escape,
@@ -231,6 +231,9 @@ impl<'a> Flow<'a> {
         let headline = |flow: &mut Self| flow.text("page-headline", 0.0, &verdict.headline);
         self.tagged(StructRole::H1, None, headline);
         self.y += 4.0;
+        for dots in &verdict.dots {
+            self.dots(dots);
+        }
         if !verdict.advice.is_empty() {
             self.paragraph("page-bold", &verdict.advice);
         }
@@ -247,6 +250,21 @@ impl<'a> Flow<'a> {
             self.heading("page-part", FINE, 28.0);
             self.paragraph("page-text", &verdict.fine.join(" "));
         }
+    }
+
+    /// Draws the outcomes of the variants at 0.7 points for each px.
+    fn dots(&mut self, dots: &Dots) {
+        const SCALE: f64 = 0.7;
+        let Some(drawing) = dots.draw() else { return };
+        let height = SCALE * drawing.height;
+        self.need(height + 14.0);
+        self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &dots.words()));
+        let at = [MARGIN[0], self.y + 1.0];
+        let words = dots.words();
+        self.tagged(StructRole::Figure, Some(&words), |flow| {
+            flow.page().drawing.push(Item::Nested { at, scale: SCALE, drawing });
+        });
+        self.y += height + GAP;
     }
 
     fn warnings(&mut self) {

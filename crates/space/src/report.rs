@@ -2,6 +2,7 @@
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend, unknowns};
+use barrelstack::variants::words::dots_of;
 use barrelstack::variants::{Range, Remedy};
 use barrelstack_report::{
     Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
@@ -96,6 +97,7 @@ pub fn document(answer: &Answer) -> Document {
         title: summary.title.clone(),
         verdict: Verdict {
             headline: headline(run, summary),
+            dots: summary.ensemble.iter().map(|spread| dots_of(None, spread)).collect(),
             advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
             command: String::new(),
             sentences: sentences(run, summary),

@@ -2,7 +2,7 @@
 
 mod range;
 
-use barrelstack_report::{Tone, capital};
+use barrelstack_report::{Dots, Tone, capital};
 
 use super::{Range, Spread};
 use crate::scenario::{Imperfection, Imperfections, View};
@@ -153,6 +153,24 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
         spread.variants,
         100.0 * load
     )))
+}
+
+/// Returns the outcomes of the variants in each plane, for dots below the headline; the plane with
+/// the largest share of collapses comes first, as in the headline.
+pub fn dots(planes: &[(View, &Spread)]) -> Vec<Dots> {
+    let placed: Vec<Placed<'_>> =
+        planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
+    worst_first(&placed).into_iter().map(|(view, spread)| dots_of(view, spread)).collect()
+}
+
+/// Returns the outcomes of the variants in one plane, or in space without a plane.
+pub fn dots_of(view: Option<View>, spread: &Spread) -> Dots {
+    Dots {
+        direction: view.map(|view| view.words().to_owned()).unwrap_or_default(),
+        fell: spread.collapsed,
+        stood: spread.variants - spread.collapsed,
+        open: spread.broken,
+    }
 }
 
 /// Returns the tone of the verdict of the worst plane.

@@ -1,0 +1,116 @@
+//! Variants of a verdict, drawn as one dot each.
+
+use crate::drawing::{Drawing, Item};
+
+/// Outcomes of the variants in one plane or in space, drawn below the headline as one dot for each
+/// variant.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dots {
+    /// Direction of the shaking, such as "along the barrels"; empty in space.
+    pub direction: String,
+    /// Number of variants that fall.
+    pub fell: u32,
+    /// Number of variants that stand.
+    pub stood: u32,
+    /// Number of variants without a verdict.
+    pub open: u32,
+}
+
+/// Number of dots in a row.
+const ROW: u32 = 64;
+/// Largest number of dots; more than that are not drawn.
+const MOST: u32 = 4 * ROW;
+/// Distance between the centers of two dots (px).
+const PITCH: f64 = 10.0;
+/// Radius of a dot (px).
+const RADIUS: f64 = 3.6;
+
+impl Dots {
+    /// Returns the counts with the appearance of their dots, such as "Along the barrels: 53 fall
+    /// (filled), 11 stand (rings)".
+    pub(crate) fn words(&self) -> String {
+        let counts: Vec<String> = [
+            (self.fell, ["falls", "fall"], "filled"),
+            (self.open, ["has no verdict", "have no verdict"], "gray"),
+            (self.stood, ["stands", "stand"], "rings"),
+        ]
+        .into_iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, verbs, look)| format!("{count} {} ({look})", verbs[usize::from(count != 1)]))
+        .collect();
+        let place = if self.direction.is_empty() { "variants" } else { &self.direction };
+        format!("{}: {}", crate::capital(place), counts.join(", "))
+    }
+
+    /// Draws the dots in rows, first those of variants that fall; `None` if there are too many dots
+    /// or none.
+    pub(crate) fn draw(&self) -> Option<Drawing> {
+        let all = self.fell + self.open + self.stood;
+        if all == 0 || all > MOST {
+            return None;
+        }
+        let columns = all.min(ROW);
+        let size = [columns, all.div_ceil(ROW)].map(|count| PITCH * f64::from(count));
+        let mut drawing = Drawing::new(size[0], size[1], &self.words());
+        for dot in 0..all {
+            let class = match dot {
+                fell if fell < self.fell => "variant fell",
+                open if open < self.fell + self.open => "variant open",
+                _ => "variant stood",
+            };
+            let center = [dot % ROW, dot / ROW].map(|at| PITCH * (f64::from(at) + 0.5));
+            drawing.push(Item::Circle { class: class.to_owned(), center, radius: RADIUS });
+        }
+        Some(drawing)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Dots;
+    use crate::drawing::Item;
+
+    fn dots(fell: u32, open: u32, stood: u32) -> Dots {
+        Dots { direction: "along the barrels".into(), fell, stood, open }
+    }
+
+    #[test]
+    fn each_variant_has_one_dot_and_those_that_fall_come_first() {
+        let drawing = dots(53, 1, 76).draw().unwrap();
+        let classes: Vec<&str> = drawing
+            .items
+            .iter()
+            .map(|item| match item {
+                Item::Circle { class, center, radius } => {
+                    assert!((0..2).all(|axis| center[axis] - radius >= 0.0));
+                    assert!(center[0] + radius <= drawing.width);
+                    assert!(center[1] + radius <= drawing.height);
+                    class.as_str()
+                }
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(classes.len(), 130);
+        assert!(classes[..53].iter().all(|class| *class == "variant fell"));
+        assert_eq!(classes[53], "variant open");
+        assert!(classes[54..].iter().all(|class| *class == "variant stood"));
+    }
+
+    #[test]
+    fn counts_are_stated_in_words() {
+        assert_eq!(
+            dots(53, 0, 11).words(),
+            "Along the barrels: 53 fall (filled), 11 stand (rings)"
+        );
+        assert_eq!(dots(0, 0, 1).words(), "Along the barrels: 1 stands (rings)");
+        let in_space = Dots { direction: String::new(), ..dots(1, 2, 0) };
+        assert_eq!(in_space.words(), "Variants: 1 falls (filled), 2 have no verdict (gray)");
+    }
+
+    #[test]
+    fn no_dots_are_drawn_where_they_would_be_too_many() {
+        assert!(dots(0, 0, 0).draw().is_none());
+        assert!(dots(100, 0, 156).draw().is_some());
+        assert!(dots(100, 0, 157).draw().is_none());
+    }
+}
