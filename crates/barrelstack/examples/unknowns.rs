@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for truth in 1..=truths {
             // The constants of a variant drawn with another seed, and none of its places and masses.
             let draw = own(vec![
-                "imperfections.kind=ignorance".to_owned(),
+                "imperfections.drawn=false".to_owned(),
                 "imperfections.seed=1000".to_owned(),
             ]);
             let scenario = Scenario::builtin("demo-napa", &draw)?;
@@ -56,9 +56,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                         .any(|end| one.path.ends_with(&format!(".{end}")))
                 })
                 .map(|one| format!("{}={}", one.path, one.value));
-            let hair =
-                ["imperfections.kind=hair".to_owned(), format!("imperfections.seed={truth}")];
-            let found = run(&own(drawn.chain(hair).collect()))?;
+            let places = ["unknowns.drawn=false".to_owned(), format!("imperfections.seed={truth}")];
+            let found = run(&own(drawn.chain(places).collect()))?;
             for (shares, one) in shares.iter_mut().zip(&found) {
                 shares.extend(one.spread.share);
             }

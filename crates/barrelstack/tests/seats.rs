@@ -107,7 +107,7 @@ fn mean(values: &[f64]) -> (f64, f64) {
 fn walks(division: &[&str], spread: &[&str], count: u32) -> Vec<f64> {
     let mut shaken = changes(PLANES[0], 2, SHAKE, "5 s");
     shaken.extend(spread.iter().map(|&one| one.to_owned()));
-    shaken.push("imperfections.kind=\"hair\"".to_owned());
+    shaken.push("unknowns.drawn=false".to_owned());
     let shaken: Vec<&str> = shaken.iter().map(String::as_str).collect();
     let planes = planes(&scenario(division, &shaken)).unwrap();
     (1..=count).map(|number| walk(&planes[0].variant(number).run().unwrap())).collect()

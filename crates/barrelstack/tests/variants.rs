@@ -154,7 +154,7 @@ fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
         assert!(one.width_if_measured <= high - low + 0.05, "{one:?}");
     }
     // A measured friction is drawn from its own scatter.
-    let measured = spread(&["imperfections.friction_barrel_rack=0.05"]);
+    let measured = spread(&["unknowns.friction_barrel_rack=0.05"]);
     let friction = |spread: &Spread| {
         let all = spread.decides.iter();
         all.clone()
@@ -165,7 +165,7 @@ fn the_range_over_uncertain_constants_comes_from_the_draws_of_the_variants() {
     assert_eq!(friction(&measured).dispersion, 0.05);
     assert_ne!(friction(&whole).dispersion, 0.05);
     // Places and masses alone have no range, nor have few variants.
-    assert_eq!(spread(&["imperfections.kind=hair"]).range, None);
+    assert_eq!(spread(&["unknowns.drawn=false"]).range, None);
     assert_eq!(found(&planes(&two_levels(&[])).unwrap()).remove(0).spread.range, None);
 }
 

@@ -93,7 +93,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     };
     if let Some(field) = field {
         let scatter = rounded(dispersion(slide.as_deref().unwrap_or(&rest)).min(1.0));
-        let _ = write!(scenario, "\n[imperfections]\n{field} = {scatter}\n");
+        let _ = write!(scenario, "\n[unknowns]\n{field} = {scatter}\n");
     }
     warnings.extend(estimates.iter().filter(|estimate| estimate.low <= 0.0).map(|estimate| {
         format!("the interval of {} reaches zero: repeat the test", estimate.name)

@@ -1,11 +1,11 @@
 //! Unmeasured parameters of a stack (friction, stiffness, damping) as factors of a study.
 //!
-//! The medians and the scatter of these factors are those of `[imperfections]`. Variants of a run, studies of
+//! The medians and the scatter of these factors are those of `[unknowns]`. Variants of a run, studies of
 //! heights, rankings of protections and scores all use the same factors for a stack.
 
 use std::fmt::Write as _;
 
-use crate::scenario::{Imperfection, Scenario, Scene, Setting};
+use crate::scenario::{Scenario, Scene, Setting};
 
 /// Interfaces of seats. Each is paired with the interface of fallen bodies that has the same materials, if
 /// there is one.
@@ -24,12 +24,12 @@ fn toml(value: &str) -> String {
 /// Returns the `[[factor]]` tables of a scenario, which vary the friction, stiffness and damping of its seats
 /// around the stated values.
 ///
-/// The text is empty for a free scene, and for a scenario in which variants differ in positions and masses
-/// only.
+/// The text is empty for a free scene, and for a scenario in which no constants are
+/// drawn.
 pub(crate) fn factors(scenario: &Scenario) -> String {
     let mut text = String::new();
-    let Scene::Stack { stack, imperfections: spread, .. } = &scenario.scene else { return text };
-    if spread.kind == Imperfection::Hair {
+    let Scene::Stack { stack, unknowns: spread, .. } = &scenario.scene else { return text };
+    if !spread.drawn {
         return text;
     }
     let settings = scenario.settings();

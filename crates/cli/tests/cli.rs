@@ -68,6 +68,30 @@ fn the_summary_says_what_happened_in_words_and_rows() {
 }
 
 #[test]
+fn a_former_key_gives_the_same_run_with_a_warning() {
+    let with = |change: &str| {
+        let change = format!("--set={change}");
+        barrelstack(SHORT.into_iter().chain([change.as_str(), "--json", "--quiet"]))
+    };
+    let (former, present) = (with("imperfections.kind=hair"), with("unknowns.drawn=false"));
+    let (mut former, present) = (json(&stdout(&former)), json(&stdout(&present)));
+    let warning = "override `imperfections.kind=hair`: `imperfections.kind` is a former name, which a later version \
+                   will refuse: write `unknowns.drawn = false` instead";
+    assert_eq!(former["warnings"].as_array_mut().unwrap().remove(0), warning);
+    for key in ["warnings", "ensemble", "outcome", "bodies"] {
+        assert!(!present[key].is_null(), "{key}");
+        assert_eq!(former[key], present[key], "{key}");
+    }
+    let hash = |summary: &Value| summary["provenance"]["scenario_hash"].clone();
+    assert!(hash(&present).is_string() && hash(&former) == hash(&present));
+    assert_eq!(present["ensemble"]["kind"], "imperfections");
+    // The terminal prints the warning, too.
+    let set = "--set=imperfections.damping=0.2";
+    let error = stderr(&barrelstack(SHORT.into_iter().chain([set])));
+    assert!(error.contains("write `unknowns.damping` instead"), "{error}");
+}
+
+#[test]
 fn json_is_one_document_and_the_same_twice() {
     let arguments = || SHORT.into_iter().chain(["--json"]);
     let (first, second) = (barrelstack(arguments()), barrelstack(arguments()));

@@ -59,6 +59,17 @@ def test_what_would_have_helped_is_what_the_command_finds(command: str) -> None:
     assert found == printed
 
 
+def test_a_former_key_is_read_with_a_warning() -> None:
+    short = Scenario.load("candia-8-barrels").set(
+        {"stack.levels": 1, "imperfections.variants": 2, "run.duration": "1 s"}
+    )
+    former = short.set({"imperfections.stiffness": 0.3})
+    run = former.run(variant=0)
+    assert any("write `unknowns.stiffness` instead" in text for text in run.summary["warnings"])
+    present = short.set({"unknowns.stiffness": 0.3}).run(variant=0)
+    assert run.summary["ensemble"] == present.summary["ensemble"]
+
+
 STUDY = """
 schema = 1
 title = "Friction under two motions"

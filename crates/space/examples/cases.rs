@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         changes.push(format!("imperfections.variants={count}"));
         return write(folder, 1, &changes);
     }
-    changes.extend(["imperfections.variants=1", "imperfections.kind='hair'"].map(str::to_owned));
+    changes.extend(["imperfections.variants=1", "unknowns.drawn=false"].map(str::to_owned));
     let mut number = 1;
     for levels in 2..=5 {
         for friction in [0.22, 0.35, 0.5] {

@@ -50,7 +50,7 @@ fn walk(shown: Shown, stiffness: f64, friction: f64, cycle: Cycle) -> Result<f64
         ),
         format!("run.duration=\"{} s\"", cycle.period + 1.0),
         "run.until=\"duration\"".to_owned(),
-        "imperfections.kind=\"hair\"".to_owned(),
+        "unknowns.drawn=false".to_owned(),
     ];
     if shown == Shown::Along {
         changes.push("stack.columns=1".to_owned());

@@ -32,7 +32,9 @@ impl Ground {
     /// # Errors
     /// If the motion cannot be read, or cannot be scaled as the scenario requires.
     pub fn of(scenario: &Scenario) -> Result<Self, GroundError> {
-        Ok(Self::of_spec(&scenario.motion, scenario.run.similitude)?.under(scenario))
+        let mut ground = Self::of_spec(&scenario.motion, scenario.run.similitude)?.under(scenario);
+        ground.warnings.splice(0..0, scenario.warnings().iter().cloned());
+        Ok(ground)
     }
 
     /// Returns the ground motion without rotation, for a stack built at the length scale `similitude`. The specified

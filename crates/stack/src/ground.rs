@@ -32,12 +32,15 @@ described! {
 }
 
 impl Scenario {
-    /// Reads or generates the ground motion of the scenario, and scales it.
+    /// Reads or generates the ground motion of the scenario, and scales it. Its warnings include those about the text
+    /// of the scenario.
     ///
     /// # Errors
     /// If a record cannot be read, lacks the requested component, or cannot be scaled.
     pub fn ground(&self) -> Result<Ground, GroundError> {
-        of_spec(&self.motion, self.run.similitude)
+        let mut ground = of_spec(&self.motion, self.run.similitude)?;
+        ground.warnings.splice(0..0, self.warnings().iter().cloned());
+        Ok(ground)
     }
 
     /// Returns the ground motion of a record in memory, in place of the scenario's own motion.

@@ -195,7 +195,7 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     };
     let mut sentences: Vec<String> =
         summary.motion.iter().filter(|motion| motion.pga > 0.0).map(strength).collect();
-    sentences.extend(variants::words::fine(summary, run.scenario.imperfections()));
+    sentences.extend(variants::words::fine(summary, &run.scenario));
     sentences
 }
 

@@ -9,9 +9,7 @@ use super::draw::{self, Shared};
 use super::spread::{LEVEL, collapsed, judged};
 use super::{Plane, Spread};
 use crate::ensemble::CaseResult;
-use crate::scenario::{
-    Basis, Damping, Friction, Imperfection, Imperfections, Interface, NormalLaw, StackInterfaces,
-};
+use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw, StackInterfaces, Unknowns};
 
 /// Smallest change of the share of collapses over a decisive constant.
 const DECISIVE: f64 = 0.2;
@@ -144,9 +142,9 @@ impl Drawn {
 }
 
 /// Returns the constants that may decide whether a seat is lost: friction, stiffness and damping of
-/// seats. The constants of impacts, and of bodies that have fallen, count as random imperfections,
-/// like positions and masses.
-fn drawn(laws: &StackInterfaces, spread: &Imperfections, posts: bool) -> Vec<Drawn> {
+/// seats. The constants of impacts, and of bodies that have fallen, count as sampling error, like
+/// positions and masses.
+fn drawn(laws: &StackInterfaces, spread: &Unknowns, posts: bool) -> Vec<Drawn> {
     let seat = laws.barrel_rack;
     let friction = |axis, name, field, dispersion, law| Drawn {
         axis,
@@ -263,16 +261,17 @@ pub(super) struct Fitted {
 }
 
 /// Fits the share of collapses to the results of the nominal case and of its variants, which are in
-/// the order of their numbers. Returns `None` if the variants differ only in positions and masses,
+/// the order of their numbers. Returns `None` if the variants do not differ in their constants,
 /// if a variant has no verdict, or if there are too few variants.
 pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let imperfections = plane.scenario.imperfections()?;
+    let unknowns = plane.scenario.unknowns()?;
     let stack = plane.scenario.stack()?;
     let variants = results.get(1..)?;
-    if imperfections.kind == Imperfection::Hair || !variants.iter().all(judged) {
+    if !unknowns.drawn || !variants.iter().all(judged) {
         return None;
     }
-    let constants = drawn(&stack.interfaces, imperfections, stack.rack.posts.is_some());
+    let constants = drawn(&stack.interfaces, unknowns, stack.rack.posts.is_some());
     let trial = |(number, result): (u32, &CaseResult)| Trial {
         deviates: constants
             .iter()

@@ -3,8 +3,8 @@
 use barrelstack_fragility::{normal_quantile, sobol};
 
 use crate::scenario::{
-    BodyOverride, Imperfection, Imperfections, Interface, Scenario, Scene, StackBody,
-    StackInterfaces, StackSpec,
+    BodyOverride, Imperfections, Interface, Scenario, Scene, StackBody, StackInterfaces, StackSpec,
+    Unknowns,
 };
 
 /// Random quantities that the whole stack shares, in the order of their axes in the sequence of
@@ -12,7 +12,8 @@ use crate::scenario::{
 ///
 /// The axes of the shared quantities are followed by two axes per body. In space, these are
 /// followed by one more axis per body, for the position along the barrels; the first row of the
-/// stack therefore draws the same values as in the plane across the barrels.
+/// stack therefore draws the same values as in the plane across the barrels. Quantities that were
+/// added later have axes beyond those of any body, so that all others keep their values.
 #[derive(Clone, Copy)]
 pub(super) enum Shared {
     FrictionGround,
@@ -25,6 +26,9 @@ pub(super) enum Shared {
     SeatDamping,
     Sign,
     Count,
+    StaticFriction = 1 << 20,
+    Stick,
+    RailSpacing,
 }
 
 /// Truncation of normal deviates, in standard deviations.
@@ -64,23 +68,27 @@ pub(super) fn deviate(imperfections: &Imperfections, axis: Shared, number: u32) 
 /// unchanged.
 pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     let mut changed = scenario.clone();
-    let Scene::Stack { stack, imperfections, .. } = &mut changed.scene else { return changed };
+    let Scene::Stack { stack, imperfections, unknowns, .. } = &mut changed.scene else {
+        return changed;
+    };
     let point = Point::of(imperfections, number);
     if imperfections.sign && point.uniform(Shared::Sign as usize) < 0.5 {
         stack.mirror = !stack.mirror;
     }
-    if imperfections.kind != Imperfection::Hair {
-        ignorance(&mut stack.interfaces, imperfections, &point);
+    if unknowns.drawn {
+        constants(&mut stack.interfaces, unknowns, &point);
+        stack.rack.rail_half_spacing +=
+            unknowns.rails * (2.0 * point.uniform(Shared::RailSpacing as usize) - 1.0);
     }
-    if imperfections.kind != Imperfection::Ignorance {
-        hair(stack, imperfections, &point);
+    if imperfections.drawn {
+        places(stack, imperfections, &point);
     }
     changed
 }
 
 /// Draws friction and contact constants at random; all pairs of bodies of the same materials have
 /// the same friction factor.
-fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
+fn constants(laws: &mut StackInterfaces, spread: &Unknowns, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, dispersion);
         for interface in interfaces {
@@ -102,9 +110,15 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
     ]
     .map(|(axis, dispersion)| point.lognormal(axis, dispersion));
     let damping = point.lognormal(Shared::SeatDamping, spread.damping);
+    let stick = point.lognormal(Shared::Stick, spread.stick);
+    let hold = 1.0 + spread.static_friction * point.uniform(Shared::StaticFriction as usize);
+    for wood in [&mut laws.barrel_rack, &mut laws.fallen_barrel_rack] {
+        wood.hold(hold);
+    }
     for seat in [&mut laws.rack_ground, &mut laws.barrel_rack, &mut laws.rack_rack] {
         seat.stiffen(stiffness[0]);
         seat.damp(damping);
+        seat.stick(stick);
     }
     for impact in [
         &mut laws.barrel_barrel,
@@ -118,7 +132,7 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
 }
 
 /// Draws the position and the mass of every rack and barrel at random.
-fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
+fn places(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
     let rows = |body: StackBody| {
         let many = match (body, stack.space) {
             (_, None) => return vec![None],
@@ -127,18 +141,18 @@ fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
         };
         (1..=many).map(Some).collect()
     };
-    let mut places = Vec::new();
+    let mut bodies = Vec::new();
     for (body, columns) in
         [(StackBody::Rack, stack.racks_per_level()), (StackBody::Barrel, stack.columns)]
     {
         for row in rows(body) {
             for level in 1..=stack.levels {
-                places.extend((1..=columns).map(|column| (body, level, column, row)));
+                bodies.extend((1..=columns).map(|column| (body, level, column, row)));
             }
         }
     }
     // The first row of all bodies uses the same axes as a stack in the plane.
-    places.sort_by_key(|(.., row)| row.unwrap_or(1));
+    bodies.sort_by_key(|(.., row)| row.unwrap_or(1));
     let first = Shared::Count as usize;
     let aside = |axis: usize| spread.placement * (2.0 * point.uniform(axis) - 1.0);
     let draw = |(at, (body, level, column, row)): (usize, &(StackBody, u32, u32, Option<u32>))| {
@@ -152,10 +166,10 @@ fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
             mass: Some(mass(stack, *body, *level, *column, *row) * factor),
             fill: None,
             offset_x: aside(axis),
-            offset_y: row.map_or(0.0, |_| aside(first + 2 * places.len() + at)),
+            offset_y: row.map_or(0.0, |_| aside(first + 2 * bodies.len() + at)),
         }
     };
-    let drawn: Vec<BodyOverride> = places.iter().enumerate().map(draw).collect();
+    let drawn: Vec<BodyOverride> = bodies.iter().enumerate().map(draw).collect();
     stack.overrides.extend(drawn);
 }
 
@@ -215,16 +229,57 @@ mod tests {
     }
 
     #[test]
-    fn hair_leaves_what_is_not_known_and_ignorance_what_is_placed() {
+    fn places_and_constants_are_drawn_apart_from_each_other() {
         let stated = Scenario::builtin("candia-8-barrels", &[]).unwrap();
-        let hair = drawn(&["imperfections.kind=hair"], 3);
-        assert_eq!(hair.stack().unwrap().interfaces, stated.stack().unwrap().interfaces);
-        let ignorance = drawn(&["imperfections.kind=ignorance"], 3);
-        assert!(ignorance.stack().unwrap().overrides.is_empty());
+        let places = drawn(&["unknowns.drawn=false"], 3);
+        assert_eq!(places.stack().unwrap().interfaces, stated.stack().unwrap().interfaces);
+        let constants = drawn(&["imperfections.drawn=false"], 3);
+        assert!(constants.stack().unwrap().overrides.is_empty());
         let both = drawn(&[], 3);
-        assert_eq!(both.stack().unwrap().overrides, hair.stack().unwrap().overrides);
-        assert_eq!(both.stack().unwrap().interfaces, ignorance.stack().unwrap().interfaces);
+        assert_eq!(both.stack().unwrap().overrides, places.stack().unwrap().overrides);
+        assert_eq!(both.stack().unwrap().interfaces, constants.stack().unwrap().interfaces);
         assert_ne!(both, drawn(&["imperfections.seed=2"], 3));
+    }
+
+    #[test]
+    fn draws_are_those_of_every_earlier_program() {
+        let stack = drawn(&[], 3);
+        let stack = stack.stack().unwrap();
+        println!("{:?} {:?}", stack.interfaces.barrel_rack, stack.overrides[4]);
+        assert_eq!(friction(&drawn(&[], 3)).to_bits(), 0);
+        assert_eq!(stack.overrides[4].offset_x.to_bits(), 0);
+    }
+
+    #[test]
+    fn constants_that_are_not_drawn_by_default_leave_all_others() {
+        let (plain, number) = (drawn(&[], 3), 3);
+        let changes = ["unknowns.static_friction=0.4", "unknowns.stick=0.5", "unknowns.rails=5 mm"];
+        let all = drawn(&changes, number);
+        let (plain, stack) = (plain.stack().unwrap(), all.stack().unwrap());
+        assert_eq!(plain.overrides, stack.overrides);
+        let laws = [&plain.interfaces.barrel_rack, &stack.interfaces.barrel_rack];
+        assert_eq!(laws[0].normal, laws[1].normal);
+        let [before, after] = laws.map(|law| match law.friction {
+            Friction::Coulomb {
+                coefficient,
+                static_coefficient,
+                tangential_stiffness_ratio,
+                ..
+            } => [coefficient, static_coefficient / coefficient, tangential_stiffness_ratio],
+            Friction::Regularized { .. } | Friction::None => panic!("no Coulomb friction"),
+        });
+        assert_eq!(before[0], after[0]);
+        assert!((1.0..1.4).contains(&after[1]) && before[1] == 1.0, "{after:?}");
+        assert!(after[2] != before[2] && (after[2] / before[2]).ln().abs() < 1.5, "{after:?}");
+        // Over all variants, the draws are spread evenly.
+        let mean = (1..=64).map(|number| {
+            let one = drawn(&changes, number);
+            let stack = one.stack().unwrap();
+            let off = stack.rack.rail_half_spacing - plain.rack.rail_half_spacing;
+            assert!(off.abs() < 5e-3, "{off}");
+            off / 64.0
+        });
+        assert!(mean.sum::<f64>().abs() < 1e-4);
     }
 
     #[test]

@@ -10,7 +10,6 @@ use super::decides::{self, Unknown};
 use super::typical::Order;
 use crate::ensemble::CaseResult;
 use crate::outcome::Outcome;
-use crate::scenario::field::Named as _;
 
 /// Confidence level of all intervals of single shares.
 pub const LEVEL: f64 = 0.95;
@@ -19,9 +18,10 @@ described! {
     /// Statistics of all variants, without the nominal case.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Spread {
-        /// Kind of the imperfections by which the variants differ.
-        pub kind: &'static str ["hair", "ignorance", "both"],
-        /// Seed of the drawn imperfections.
+        /// What the variants differ in: positions and masses ("imperfections"), uncertain
+        /// constants ("unknowns"), both, or neither.
+        pub kind: &'static str ["imperfections", "unknowns", "both", "neither"],
+        /// Seed of the sequence that draws the variants.
         pub seed: u32,
         /// Number of variants with a verdict.
         pub variants: u32,
@@ -119,6 +119,7 @@ impl Spread {
     /// for a scene without variants.
     pub fn of(plane: &Plane, results: &[CaseResult]) -> Option<Self> {
         let imperfections = plane.scenario.imperfections()?;
+        let unknown = plane.scenario.unknowns()?;
         let variants = results.get(1..).unwrap_or_default();
         let judged = || variants.iter().filter(|result| judged(result));
         let falling = || judged().filter(|result| collapsed(result));
@@ -142,7 +143,12 @@ impl Spread {
         let cut = cut.filter_map(|result| Some(result.end_time? - loss(result)?));
         let cut = cut.filter(|time| after.is_none_or(|after| *time < after - 1e-9));
         Some(Self {
-            kind: imperfections.kind.name(),
+            kind: match (imperfections.drawn, unknown.drawn) {
+                (true, false) => "imperfections",
+                (false, true) => "unknowns",
+                (true, true) => "both",
+                (false, false) => "neither",
+            },
             seed: imperfections.seed,
             variants: count,
             collapsed: falls,

@@ -5,7 +5,7 @@ mod range;
 use barrelstack_report::{Dots, Tone, capital};
 
 use super::{Range, Spread};
-use crate::scenario::{Imperfection, Imperfections, View};
+use crate::scenario::{Scenario, View};
 use crate::summary::Summary;
 
 use range::depends_on;
@@ -232,8 +232,10 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
 }
 
 /// Describes the shown run and how the variants differ, for the governing plane.
-pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> Vec<String> {
-    let (Some(spread), Some(imperfections)) = (&summary.ensemble, imperfections) else {
+pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
+    let (Some(spread), Some(imperfections), Some(unknowns)) =
+        (&summary.ensemble, scenario.imperfections(), scenario.unknowns())
+    else {
         return Vec::new();
     };
     let mut sentences = Vec::new();
@@ -264,14 +266,13 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
         tenths(100.0 * imperfections.mass)
     );
     let constants = "in friction and contact constants within their uncertainty";
-    sentences.push(format!(
-        "The stack as stated {stated}; the variants differ from it {}.",
-        match imperfections.kind {
-            Imperfection::Hair => places,
-            Imperfection::Ignorance => constants.to_owned(),
-            Imperfection::Both => format!("{places}, and {constants}"),
-        }
-    ));
+    let differ = match (imperfections.drawn, unknowns.drawn) {
+        (true, false) => format!("differ from it {places}"),
+        (false, true) => format!("differ from it {constants}"),
+        (true, true) => format!("differ from it {places}, and {constants}"),
+        (false, false) => "draw no differences".to_owned(),
+    };
+    sentences.push(format!("The stack as stated {stated}; the variants {differ}."));
     sentences
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::error::{Place, Problem, ScenarioError};
 use super::reader::{Reader, nearest};
 use super::tree::{Entry, Node, Origin, SourceFile, Sources, Table, Value};
-use super::{Scenario, Written, builtin, merge, root};
+use super::{Scenario, Written, builtin, merge, renamed, root};
 use crate::system;
 
 /// Maximum size of a scenario file (bytes).
@@ -148,7 +148,7 @@ impl Scenario {
             tree.set(Entry { key: "schema".to_owned(), origin: Origin::Whole(0), node });
         }
         let table = extend(&mut sources, tree, 0, Access::Files)?;
-        finished(sources, table)
+        finished(sources, table, Vec::new())
     }
 
     /// Returns the scenario with further overrides as in [`Scenario::parse`]. They replace earlier overrides of the
@@ -176,7 +176,7 @@ impl Scenario {
         let first = sources.overrides.len();
         sources.overrides.extend_from_slice(overrides);
         merge::apply_overrides(&mut table, &root::ROOT, &sources, first)?;
-        finished(sources, table)
+        finished(sources, table, self.written.1.clone())
     }
 
     /// Reads a built-in scenario.
@@ -235,17 +235,22 @@ fn read(
     add_source(&mut sources, name, bytes, folder)?;
     let mut table = chain(&mut sources, access)?;
     merge::apply_overrides(&mut table, &root::ROOT, &sources, 0)?;
-    finished(sources, table)
+    finished(sources, table, Vec::new())
 }
 
-/// Builds the scenario from a table to which all overrides have been applied.
-fn finished(sources: Sources, mut table: Table) -> Result<Scenario, ScenarioError> {
+/// Builds the scenario from a table to which all overrides have been applied, with earlier warnings about it.
+fn finished(
+    sources: Sources,
+    mut table: Table,
+    mut warnings: Vec<String>,
+) -> Result<Scenario, ScenarioError> {
+    warnings.extend(renamed::renew(&mut table, &sources)?);
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
     let mut scenario = root::read(reader, &stem(&sources.files[0].name))?;
     // A title from an extended file, or from before an override, may be outdated.
-    let parts = ["run.", "record.", "imperfections."];
+    let parts = ["run.", "record.", "imperfections.", "unknowns."];
     let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
     let unchanged = sources.overrides.iter().all(kept);
     let written = table.get("title").map(|title| title.node.origin);
@@ -257,7 +262,7 @@ fn finished(sources: Sources, mut table: Table) -> Result<Scenario, ScenarioErro
     if !own {
         scenario.retitle();
     }
-    scenario.written = Written(Some(Arc::new((sources, table))));
+    scenario.written = Written(Some(Arc::new((sources, table))), warnings);
     Ok(scenario)
 }
 

@@ -47,6 +47,7 @@ pub mod nodes;
 pub mod pair;
 pub mod rack;
 pub mod reference;
+mod renamed;
 mod root;
 pub mod run;
 pub mod schema;
@@ -56,6 +57,7 @@ pub mod stack;
 pub mod template;
 pub mod title;
 pub mod uniform;
+pub mod unknowns;
 
 pub use barrelstack_input::{
     Dimension, FileRef, Place, Problem, Quantity, QuantityError, Setting, Source, dimension, field,
@@ -74,7 +76,7 @@ pub use error::ScenarioError;
 pub use free::{
     Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
 };
-pub use imperfections::{Imperfection, Imperfections};
+pub use imperfections::Imperfections;
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
@@ -88,6 +90,7 @@ pub use shape::Shape;
 pub use spatial::{SpatialGround, SpatialScene};
 pub use stack::{InSpace, StackSpec, View};
 pub use uniform::Uniform;
+pub use unknowns::Unknowns;
 
 /// Errors of a scenario, with the problem, its place, and what to change.
 pub mod error {
@@ -120,9 +123,10 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Sources of the values of a scenario, from which errors determine their place in a file. Ignored in comparisons.
+/// Sources of the values of a scenario, from which errors determine their place in a file, and warnings about them.
+/// Ignored in comparisons.
 #[derive(Clone, Default)]
-struct Written(Option<Arc<(tree::Sources, tree::Table)>>);
+struct Written(Option<Arc<(tree::Sources, tree::Table)>>, Vec<String>);
 
 impl PartialEq for Written {
     fn eq(&self, _: &Self) -> bool {
@@ -146,8 +150,10 @@ pub enum Scene {
         stack: StackSpec,
         /// Thresholds of a collapse.
         outcome: OutcomeSpec,
-        /// Random differences between the variants of the stack.
+        /// Random differences from stack to stack.
         imperfections: Imperfections,
+        /// Uncertain constants that a whole stack shares.
+        unknowns: Unknowns,
     },
     /// Arbitrary planar bodies.
     Free(FreeScene),
@@ -196,10 +202,23 @@ impl Scenario {
         found.min_by_key(rank).map(|origin| sources.place(origin))
     }
 
-    /// Returns the differences between variants of the stack; `None` for a free scene.
+    /// Returns warnings about the text of the scenario, such as keys under a former name.
+    pub fn warnings(&self) -> &[String] {
+        &self.written.1
+    }
+
+    /// Returns the random differences from stack to stack; `None` for a free scene.
     pub fn imperfections(&self) -> Option<&Imperfections> {
         match &self.scene {
             Scene::Stack { imperfections, .. } => Some(imperfections),
+            Scene::Free(_) | Scene::Spatial(_) => None,
+        }
+    }
+
+    /// Returns the uncertain constants that a whole stack shares; `None` for a free scene.
+    pub fn unknowns(&self) -> Option<&Unknowns> {
+        match &self.scene {
+            Scene::Stack { unknowns, .. } => Some(unknowns),
             Scene::Free(_) | Scene::Spatial(_) => None,
         }
     }

@@ -10,8 +10,8 @@ use super::run::Until;
 use super::tree::Table;
 use super::writer::Writer;
 use super::{
-    Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Written, element, free, imperfections,
-    interface, motion, pair, rack, run, spatial, stack,
+    Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Unknowns, Written, element, free,
+    imperfections, interface, motion, pair, rack, run, spatial, stack, unknowns,
 };
 
 /// Version of the scenario language.
@@ -51,8 +51,10 @@ table! {
             interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
             /// Thresholds that define a collapse.
             outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
-            /// Random differences between the variants of the stack and the stated values.
+            /// Random differences from stack to stack, and the number of variants.
             imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
+            /// Uncertainty of constants that nobody has measured on the stack.
+            unknowns = Kind::Table(&unknowns::UNKNOWNS), Default::Nothing;
 
         }
         /// Arbitrary planar bodies on a ground.
@@ -103,7 +105,8 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
             let stack = stack::read(reader.section("stack")?, interfaces)?;
             let outcome = OutcomeSpec::read(reader.section("outcome")?)?;
             let imperfections = Imperfections::read(reader.section("imperfections")?)?;
-            Scene::Stack { stack, outcome, imperfections }
+            let unknowns = Unknowns::read(reader.section("unknowns")?)?;
+            Scene::Stack { stack, outcome, imperfections, unknowns }
         }
         SceneKind::Free => Scene::Free(free::read(&reader)?),
         SceneKind::FreeSpatial => Scene::Spatial(spatial::read(&reader)?),
@@ -129,7 +132,7 @@ pub(super) fn write(scenario: &Scenario) -> Table {
     writer.text("title", &scenario.title);
     writer.omit(&["extends"]);
     match &scenario.scene {
-        Scene::Stack { stack, outcome, imperfections } => {
+        Scene::Stack { stack, outcome, imperfections, unknowns } => {
             writer.table("stack", stack::write(stack));
             writer.table("interface", pair::write_interfaces(&stack.interfaces));
             writer.table("motion", motion::write(&scenario.motion));
@@ -137,6 +140,7 @@ pub(super) fn write(scenario: &Scenario) -> Table {
             writer.table("record", scenario.record.write());
             writer.table("outcome", outcome.write());
             writer.table("imperfections", imperfections.write());
+            writer.table("unknowns", unknowns.write());
         }
         Scene::Free(scene) => free::write(&mut writer, scene),
         Scene::Spatial(scene) => spatial::write(&mut writer, scene),

@@ -7,7 +7,7 @@ use super::field::Field;
 use super::load::{self, Access};
 use super::reader::Reader;
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
-use super::{MotionSpec, Scenario, merge, root};
+use super::{MotionSpec, Scenario, Written, merge, renamed, root};
 
 /// A scenario that is read repeatedly with different values.
 ///
@@ -17,6 +17,7 @@ pub struct Template {
     sources: Sources,
     table: Table,
     title: String,
+    warnings: Vec<String>,
 }
 
 /// A parsed file that contains a scenario among other tables, such as a study.
@@ -85,6 +86,7 @@ impl Opened {
             _ => (Table::default(), Origin::Whole(0)),
         };
         let mut table = load::extend(&mut sources, table, 0, self.access)?;
+        let warnings = renamed::renew(&mut table, &sources)?;
         let plain =
             |key: &str, value| Entry { key: key.to_owned(), origin, node: Node { origin, value } };
         if table.get("schema").is_none() {
@@ -94,7 +96,7 @@ impl Opened {
             let none = plain("none", Value::Flag(true));
             table.set(plain("motion", Value::Table(Table { entries: vec![none] })));
         }
-        Ok(Template { sources, table, title: fallback_title.to_owned() })
+        Ok(Template { sources, table, title: fallback_title.to_owned(), warnings })
     }
 }
 
@@ -161,7 +163,8 @@ impl Template {
             Some(&table),
             Origin::Whole(0),
         )?;
-        root::read(reader, &self.title)
+        let scenario = root::read(reader, &self.title)?;
+        Ok(Scenario { written: Written(None, self.warnings.clone()), ..scenario })
     }
 
     /// Returns the value at a path of a scenario, including defaults; `None` if there is no value at this path.

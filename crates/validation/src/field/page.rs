@@ -42,7 +42,7 @@ Barrels are counted 4 s after the first loss of a seat.
 
 **Unknowns.** Each case has its own draw, evenly in the logarithm: friction barrel–rack 0.12 to 0.75, friction \
 rack–ground 0.30 to 0.85, stiffness of a seat 0.7 to 13 MN/m, and the motion at half to twice the record.
-The prior is that of `[imperfections]`: medians 0.30, 0.50, 3 MN/m and standard deviations of the logarithm 0.35, 0.20, \
+The prior is that of `[unknowns]`: medians 0.30, 0.50, 3 MN/m and standard deviations of the logarithm 0.35, 0.20, \
 0.6; the motion in a cellar differs from that at the station by a factor of median 1 and a standard deviation of ln of \
 0.3 (0.4 for Maule), an assumption.
 

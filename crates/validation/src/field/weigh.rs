@@ -6,7 +6,7 @@ use super::cases::{Cases, UNKNOWNS};
 use super::chance::{Chance, FITS, MEDIANS, Point};
 use super::observations::{Kind, Likelihood, Observation};
 
-/// Standard deviations of the natural logarithm in the prior: those of `[imperfections]`; the factor on the motion is
+/// Standard deviations of the natural logarithm in the prior: those of `[unknowns]`; the factor on the motion is
 /// that of the earthquake.
 const SPREADS: [f64; 3] = [0.35, 0.2, 0.6];
 

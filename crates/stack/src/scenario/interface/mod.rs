@@ -171,6 +171,20 @@ impl Interface {
         }
     }
 
+    /// Multiplies the static friction coefficient by a factor of at least 1.
+    pub fn hold(&mut self, factor: f64) {
+        if let Friction::Coulomb { static_coefficient, .. } = &mut self.friction {
+            *static_coefficient *= factor;
+        }
+    }
+
+    /// Multiplies the ratio of the tangential to the normal stiffness by a factor.
+    pub fn stick(&mut self, factor: f64) {
+        if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut self.friction {
+            *tangential_stiffness_ratio *= factor;
+        }
+    }
+
     /// Multiplies the kinetic and static friction coefficients by a factor.
     pub fn roughen(&mut self, factor: f64) {
         match &mut self.friction {

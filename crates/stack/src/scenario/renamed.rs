@@ -1,0 +1,193 @@
+//! Keys of scenarios under their former names.
+//!
+//! Uncertain constants were once stated among the imperfections. Their keys are still read, with a warning that names
+//! the present key.
+
+use super::error::{Problem, ScenarioError};
+use super::tree::{Entry, Node, Origin, Sources, Table, Value};
+
+/// Table that held the keys.
+const FORMER: &str = "imperfections";
+
+/// Table that holds the keys now.
+const PRESENT: &str = "unknowns";
+
+/// Keys that moved from one table to the other under the same name.
+const MOVED: [&str; 6] = [
+    "friction",
+    "friction_barrel_rack",
+    "friction_ground",
+    "stiffness",
+    "impact_stiffness",
+    "damping",
+];
+
+/// Key that selected between the two kinds of differences.
+const KIND: &str = "kind";
+
+/// Values of [`KIND`], with the present values of `imperfections.drawn` and `unknowns.drawn`.
+const KINDS: [(&str, [bool; 2]); 3] =
+    [("hair", [true, false]), ("ignorance", [false, true]), ("both", [true, true])];
+
+/// Replaces former keys by present ones. Returns a warning for each.
+///
+/// Of a former and a present key, the one in the upper layer holds: overrides precede the file, and the file precedes
+/// those that it extends.
+///
+/// # Errors
+/// If one file states a former key together with the present one, or gives `kind` an unknown value.
+pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>, ScenarioError> {
+    let Some(Entry { node: Node { value: Value::Table(former), .. }, .. }) = table.get_mut(FORMER)
+    else {
+        return Ok(Vec::new());
+    };
+    let is_former = |entry: &Entry| entry.key == KIND || MOVED.contains(&entry.key.as_str());
+    let found: Vec<Entry> =
+        former.entries.iter().filter(|entry| is_former(entry)).cloned().collect();
+    former.entries.retain(|entry| !is_former(entry));
+    let mut warnings = Vec::new();
+    for entry in found {
+        let place = sources.place(entry.origin);
+        let key = entry.key.clone();
+        let advice = if key == KIND {
+            let drawn = kinds(&entry, sources)?;
+            for (section, drawn) in [FORMER, PRESENT].into_iter().zip(drawn) {
+                let node = Node { value: Value::Flag(drawn), ..entry.node };
+                put(table, section, Entry { key: "drawn".to_owned(), node, ..entry }, sources)?;
+            }
+            let off = [FORMER, PRESENT].into_iter().zip(drawn).find(|(_, drawn)| !drawn);
+            off.map_or_else(
+                || "leave it out".to_owned(),
+                |(section, _)| format!("write `{section}.drawn = false`"),
+            )
+        } else {
+            put(table, PRESENT, entry, sources)?;
+            format!("write `{PRESENT}.{key}`")
+        };
+        warnings.push(format!(
+            "{place}: `{FORMER}.{key}` is a former name, which a later version will refuse: {advice} instead"
+        ));
+    }
+    Ok(warnings)
+}
+
+/// Returns the present values of `imperfections.drawn` and `unknowns.drawn`.
+fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
+    let known = KINDS.iter().find(|(name, _)| entry.node.value == Value::Text((*name).to_owned()));
+    known.map(|(_, drawn)| *drawn).ok_or_else(|| {
+        let message = format!(
+            "`{FORMER}.{KIND}` is {}, but was \"both\", \"hair\" or \"ignorance\"; replace it by `{FORMER}.drawn` and \
+             `{PRESENT}.drawn`, which are true or false",
+            entry.node.value.describe()
+        );
+        sources.error(entry.node.origin, Problem::Inconsistent { message })
+    })
+}
+
+/// Adds an entry to a table of the scenario, unless an upper layer states the same key.
+fn put(
+    table: &mut Table,
+    section: &str,
+    entry: Entry,
+    sources: &Sources,
+) -> Result<(), ScenarioError> {
+    if table.get(section).is_none() {
+        let node = Node { origin: entry.origin, value: Value::Table(Table::default()) };
+        table.set(Entry { key: section.to_owned(), origin: entry.origin, node });
+    }
+    let Some(Entry { node: Node { value: Value::Table(inner), .. }, .. }) = table.get_mut(section)
+    else {
+        // The reader reports that this is not a table.
+        return Ok(());
+    };
+    match inner.get(&entry.key).map(|known| layer(known.origin)) {
+        Some(known) if known == layer(entry.origin) => {
+            let message = format!(
+                "`{section}.{}` is stated, too, and replaces this key; leave one of them out",
+                entry.key
+            );
+            Err(sources.error(entry.origin, Problem::Inconsistent { message }))
+        }
+        Some(known) if known > layer(entry.origin) => Ok(()),
+        Some(_) | None => {
+            inner.set(entry);
+            Ok(())
+        }
+    }
+}
+
+/// Orders origins from the lowest layer to the uppermost.
+fn layer(origin: Origin) -> (u8, usize) {
+    match origin {
+        Origin::Default => (0, 0),
+        Origin::File { file, .. } | Origin::Whole(file) => (1, usize::MAX - file),
+        Origin::Override(index) => (2, index),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Scenario;
+
+    const FORMER: &str = "schema = 1\nextends = \"demo-napa\"\n[imperfections]\nplacement = \"2 mm\"\n\
+                          friction = 0.3\nfriction_barrel_rack = 0.1\nfriction_ground = 0.15\nstiffness = 0.5\n\
+                          impact_stiffness = 0.2\ndamping = 0.4\nkind = \"hair\"\n";
+    const PRESENT: &str = "schema = 1\nextends = \"demo-napa\"\n[imperfections]\nplacement = \"2 mm\"\n\
+                           [unknowns]\nfriction = 0.3\nfriction_barrel_rack = 0.1\nfriction_ground = 0.15\n\
+                           stiffness = 0.5\nimpact_stiffness = 0.2\ndamping = 0.4\ndrawn = false\n";
+
+    fn read(text: &str, changes: &[&str]) -> Scenario {
+        let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        Scenario::parse("mine.toml", text, &changes).unwrap()
+    }
+
+    #[test]
+    fn former_keys_give_the_same_scenario_and_a_warning_each() {
+        let (former, present) = (read(FORMER, &[]), read(PRESENT, &[]));
+        assert_eq!(former, present);
+        assert_eq!(former.fingerprint(), present.fingerprint());
+        assert_eq!((former.warnings().len(), present.warnings().len()), (7, 0));
+        assert_eq!(
+            former.warnings()[0],
+            "mine.toml:5:1: `imperfections.friction` is a former name, which a later version will refuse: write \
+             `unknowns.friction` instead"
+        );
+        assert!(former.warnings()[6].ends_with("write `unknowns.drawn = false` instead"));
+        // Every run repeats the warnings.
+        assert_eq!(former.ground().unwrap().warnings[..7], *former.warnings());
+        for (kind, now) in [
+            ("hair", "unknowns.drawn=false"),
+            ("ignorance", "imperfections.drawn=false"),
+            ("both", "unknowns.drawn=true"),
+        ] {
+            let old = Scenario::builtin("demo-napa", &[format!("imperfections.kind={kind}")]);
+            let new = Scenario::builtin("demo-napa", &[now.to_owned()]).unwrap();
+            assert_eq!(old.unwrap(), new, "{kind}");
+        }
+    }
+
+    #[test]
+    fn of_former_and_present_keys_the_upper_layer_holds() {
+        let stiffness = |text, changes: &[&str]| read(text, changes).unknowns().unwrap().stiffness;
+        assert_eq!(stiffness(FORMER, &["unknowns.stiffness=0.7"]), 0.7);
+        assert_eq!(stiffness(PRESENT, &["imperfections.stiffness=0.8"]), 0.8);
+        // The built-in scenario states the present keys.
+        let below =
+            "schema = 1\nextends = \"candia-8-barrels\"\n[imperfections]\nstiffness = 0.3\n";
+        assert_eq!(stiffness(below, &[]), 0.3);
+        let again = read(below, &[]).with(&["unknowns.stiffness=0.2".to_owned()]).unwrap();
+        assert_eq!((again.unknowns().unwrap().stiffness, again.warnings().len()), (0.2, 1));
+        let both = PRESENT.replacen("placement", "damping = 0.1\nplacement", 1);
+        let error = Scenario::parse("mine.toml", &both, &[]).unwrap_err();
+        assert_eq!(
+            error.sentence(),
+            "mine.toml:4:11: `unknowns.damping` is stated, too, and replaces this key; leave one of them out"
+        );
+        let error = Scenario::builtin("demo-napa", &["imperfections.kind=some".to_owned()]);
+        let sentence = error.unwrap_err().sentence();
+        assert!(
+            sentence.contains("replace it by `imperfections.drawn` and `unknowns.drawn`"),
+            "{sentence}"
+        );
+    }
+}
