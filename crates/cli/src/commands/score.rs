@@ -69,7 +69,7 @@ fn lines(sheet: &Sheet) -> Vec<String> {
             let stripe = row.at(velocity);
             stripe.map_or_else(String::new, |stripe| format!("{:.0}", 100.0 * stripe.fraction()))
         };
-        lines.push(format!("  {:36}{:24}{}", row.state.name, row.view.words(), cells(&share)));
+        lines.push(format!("  {:36}{:24}{}", row.state.name, row.direction.words(), cells(&share)));
     }
     lines
 }
