@@ -31,7 +31,7 @@ use crate::study::{RunOptions, StudyError};
 
 pub use json::ProtectDocument;
 pub use options::{Kind, Protection};
-pub(crate) use options::{changed, slug};
+pub(crate) use options::{changed, singles, slug};
 pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
@@ -306,7 +306,7 @@ pub fn protect(
     let (levels, weights) = (request.shaking.levels(), request.shaking.weights());
     let mut search =
         Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
-    let mut singles = options::singles(&base);
+    let mut singles = singles(&base);
     // The stack as it is must stand; otherwise nothing else is tried.
     let mut trials = vec![Trial::new(&base, singles.remove(0))?];
     trials.extend(search.trials(singles));

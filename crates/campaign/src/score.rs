@@ -6,6 +6,7 @@
 //! the weakest state and direction.
 
 mod json;
+mod league;
 mod page;
 mod protocol;
 
@@ -28,6 +29,7 @@ use crate::system;
 use crate::uncertain::Sample;
 
 pub use json::ScoreDocument;
+pub use league::{Contender, League, contenders, league};
 pub use protocol::{Protocol, State};
 
 /// Peak ground velocity (m/s) at which one stack in ten collapses.
@@ -253,6 +255,13 @@ pub enum ScoreError {
     },
 }
 
+/// A stack to be scored, with the studies of all its states and directions.
+struct Prepared {
+    stack: Scenario,
+    protocol: Protocol,
+    studies: Vec<(State, Direction, Study)>,
+}
+
 /// Scores the rack and the devices of a scenario.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
@@ -267,6 +276,11 @@ pub fn score(
     options: &RunOptions,
     report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
 ) -> Result<Sheet, ScoreError> {
+    prepared(scenario, protocol)?.run(folder, options, report)
+}
+
+/// Prepares a score: stacks the rack as the protocol requires, and checks that the stack stands in every state.
+fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreError> {
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
     }
@@ -291,45 +305,63 @@ pub fn score(
             studies.push((state.clone(), direction, study));
         }
     }
-    let all: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
-    let (mut before, mut rows) = (0, Vec::new());
-    for (state, direction, study) in studies {
-        let below = Path::new(&slug(&state.name)).join(direction.name());
-        let place = folder.join(&below);
-        system::folder_below(folder, &below)
-            .map_err(StudyError::system("create the folder", &place))?;
-        let overall = |progress: &Progress| report(before + progress.tally.cases, all);
-        let collected = study.run(&place, options, &overall)?;
-        let cases = Cases::read(&collected)?;
-        before += study.cases();
-        let curve = LimitCurve::of(&cases, LimitState::SeatLost, cases.main);
-        let capacity = Capacity::of(&curve, protocol).map_err(|source| {
-            let direction = direction.words();
-            ScoreError::Curve { state: state.name.clone(), direction, source }
-        })?;
-        let (runs, left_out) = (cases.all.len() + cases.left_out, cases.left_out);
-        let fallen_at_rest = cases.fallen_at_rest();
-        let sample = Sample::of(&study, &collected, &cases);
-        let certain = sample.is_certain();
-        let row = Scored {
-            state,
-            direction,
-            capacity,
-            curve,
-            runs,
-            left_out,
-            fallen_at_rest,
-            certain,
-            draws: Vec::new(),
-            effect: None,
-        };
-        rows.push((row, sample));
+    let mut protocol = protocol.clone();
+    if stack.is_spatial() {
+        protocol.name.push_str("-space");
     }
-    let rows = over_constants(rows, protocol);
-    let document = Document::default();
-    let mut sheet = Sheet { scenario: stack, protocol: protocol.clone(), rows, document };
-    sheet.document = page::document(&sheet);
-    Ok(sheet)
+    Ok(Prepared { stack, protocol, studies })
+}
+
+impl Prepared {
+    /// Returns the number of runs.
+    fn cases(&self) -> u64 {
+        self.studies.iter().map(|(.., study)| study.cases()).sum()
+    }
+
+    /// Runs the studies, and evaluates them.
+    fn run(
+        self,
+        folder: &Path,
+        options: &RunOptions,
+        report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+    ) -> Result<Sheet, ScoreError> {
+        let all = self.cases();
+        let Self { stack, protocol, studies } = self;
+        let (mut before, mut rows) = (0, Vec::new());
+        for (state, direction, study) in studies {
+            let below = Path::new(&slug(&state.name)).join(direction.name());
+            let place = folder.join(&below);
+            system::folder_below(folder, &below)
+                .map_err(StudyError::system("create the folder", &place))?;
+            let overall = |progress: &Progress| report(before + progress.tally.cases, all);
+            let collected = study.run(&place, options, &overall)?;
+            let cases = Cases::read(&collected)?;
+            before += study.cases();
+            let curve = LimitCurve::of(&cases, LimitState::SeatLost, cases.main);
+            let capacity = Capacity::of(&curve, &protocol).map_err(|source| {
+                let direction = direction.words();
+                ScoreError::Curve { state: state.name.clone(), direction, source }
+            })?;
+            let sample = Sample::of(&study, &collected, &cases);
+            let row = Scored {
+                state,
+                direction,
+                capacity,
+                curve,
+                runs: cases.all.len() + cases.left_out,
+                left_out: cases.left_out,
+                fallen_at_rest: cases.fallen_at_rest(),
+                certain: sample.is_certain(),
+                draws: Vec::new(),
+                effect: None,
+            };
+            rows.push((row, sample));
+        }
+        let rows = over_constants(rows, &protocol);
+        let mut sheet = Sheet { scenario: stack, protocol, rows, document: Document::default() };
+        sheet.document = page::document(&sheet);
+        Ok(sheet)
+    }
 }
 
 /// Adds the effect of the uncertain constants to the rows of a score.

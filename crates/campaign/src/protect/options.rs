@@ -73,7 +73,7 @@ pub(super) fn a_level(stack: &StackSpec) -> u32 {
 }
 
 /// Returns all single protections of a stack; the first is the unprotected stack.
-pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
+pub(crate) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let Some(stack) = scenario.stack() else { return Vec::new() };
     let (levels, columns) = (stack.levels, stack.columns);
     let along = stack.space.map_or(1, |space| space.columns_along);

@@ -11,7 +11,7 @@ described! {
         /// Name and version of this layout.
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",
         /// Name and version of the protocol; only scores of the same protocol are comparable.
-        pub protocol: &'static str = sheet.protocol.name,
+        pub protocol: String = sheet.protocol.name.clone(),
         /// Title of the scored scenario.
         pub title: String = sheet.scenario.title.clone(),
         /// Name of the rack.

@@ -36,7 +36,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Table(inputs(sheet)),
         ],
         provenance: vec![
-            ("protocol".into(), protocol.name.into()),
+            ("protocol".into(), protocol.name.clone()),
             ("runs".into(), sheet.rows.iter().map(|row| row.runs).sum::<usize>().to_string()),
             ("seed".into(), protocol.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
@@ -205,7 +205,7 @@ fn inputs(sheet: &Sheet) -> Table {
     )
 }
 
-fn rules(sheet: &Sheet) -> Vec<String> {
+pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
     let protocol = &sheet.protocol;
     let list = |values: &[f64], scale: f64| {
         let words: Vec<String> =
