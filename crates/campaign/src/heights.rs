@@ -2,7 +2,7 @@
 //!
 //! Stacks of two or more levels on one kind of rack are shaken by the bundled record of South Napa, by
 //! synthetic motions and by the user's own records. All motions are scaled to the same levels of peak ground
-//! velocity. Friction is drawn at random for each run.
+//! velocity. Friction, stiffness and damping of the seats are drawn at random for each run.
 
 mod field;
 mod json;
@@ -15,13 +15,16 @@ mod tests;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use barrelstack::variants::{Fitted, Unknown};
 use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
+use crate::pool;
 use crate::run::RunFailure;
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 use crate::system;
+use crate::uncertain::Sample;
 
 pub use crate::scenario::View;
 pub use json::HeightsDocument;
@@ -81,6 +84,9 @@ pub struct Height {
     /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the
     /// friction and the seats of the catalog; `None` if the stack stands even at 1 g.
     pub static_margin: Option<f64>,
+    /// Effect of the uncertain constants of the seats on the share of collapses, for each stripe of `by_velocity`; `None`
+    /// if a run has no verdict, or if there are too few runs.
+    pub effects: Vec<Option<Fitted>>,
 }
 
 /// Results of stacks of one height in one direction of shaking at one level of PGV.
@@ -93,6 +99,9 @@ pub struct AtLevel {
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
+    /// Range of the share of collapses over the uncertain constants of the seats, with a probability of 95 %, sampling
+    /// error included; `None` if it is unknown.
+    pub range: Option<[f64; 2]>,
 }
 
 /// Returns the lower and upper bound of the probability of collapse, each with 95 % confidence.
@@ -114,7 +123,15 @@ impl Height {
             stripe: curve.stripes[at],
             interval: known(&curve.stripes[at]),
             fallen: *self.fallen.get(at)?,
+            range: self.effects.get(at)?.as_ref().map(|effect| effect.range),
         })
+    }
+
+    /// Returns the most influential decisive constant at a level of PGV (m/s); `None` if no constant is decisive there.
+    pub fn decisive(&self, velocity: f64) -> Option<&Unknown> {
+        let same = |stripe: &Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-9;
+        let at = self.by_velocity.stripes.iter().position(same)?;
+        self.effects.get(at)?.as_ref()?.decisive()
     }
 }
 
@@ -231,7 +248,7 @@ pub fn heights(
         let place = folder.join(&name);
         system::folder_below(folder, Path::new(&name))
             .map_err(StudyError::system("create the folder", &place))?;
-        found.push((*view, *recorded, study.run(&place, options, &overall)?));
+        found.push((*view, study, study.run(&place, options, &overall)?));
         before += study.cases();
     }
     let stacks: Vec<(u32, View)> = View::ALL
@@ -249,25 +266,40 @@ pub fn heights(
 }
 
 /// Evaluates the tables of the studies.
-fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Heights, HeightsError> {
-    let (mut heights, mut recorded) = (Vec::new(), Vec::new());
+fn gather(request: &Request, found: &[(View, &Study, Collected)]) -> Result<Heights, HeightsError> {
+    let (mut heights, mut recorded, mut samples) = (Vec::new(), Vec::new(), Vec::new());
     let (mut runs, mut left_out, mut fallen_at_rest, mut motions) = (0, 0, 0, 0);
     let mut ends = Vec::new();
-    for (view, as_recorded, collected) in found {
+    for (view, study, collected) in found {
         let cases = Cases::read(collected)?;
         runs += collected.table.rows();
         left_out += cases.left_out;
         fallen_at_rest += cases.fallen_at_rest();
         ends.extend(cases.endings.sentences());
-        if *as_recorded {
+        if !cases.leveled {
             recorded.extend(recorded_runs(&cases, collected, *view));
             continue;
         }
         motions = cases.records.len();
         for levels in request.heights() {
             let of = cases.only(|case| levels_of(collected, case.row) == Some(levels));
+            let mut sample = Sample::default();
+            sample.add(study, collected, &of);
+            let rows = (0..collected.table.rows()).filter_map(|row| u32::try_from(row).ok());
+            if rows.filter(|row| levels_of(collected, *row) == Some(levels)).count() > of.all.len()
+            {
+                sample.lacks_a_verdict();
+            }
+            samples.push(sample);
             heights.push(height(&of, levels, *view));
         }
+    }
+    let work: Vec<(&Height, Sample)> = heights.iter().zip(samples).collect();
+    let effects =
+        |(height, sample): &(&Height, Sample)| sample.at_levels(&height.by_velocity.stripes, known);
+    let effects = pool::map(&work, effects, &|_| ());
+    for (height, effects) in heights.iter_mut().zip(effects) {
+        height.effects = effects;
     }
     let mut all = Heights {
         request: request.clone(),
@@ -296,6 +328,7 @@ fn height(cases: &Cases, levels: u32, view: View) -> Height {
         view,
         fallen: fallen.collect(),
         static_margin: None,
+        effects: Vec::new(),
         by_velocity: LimitCurve::of(cases, LimitState::SeatLost, cases.main),
         by_acceleration: LimitCurve::of(cases, LimitState::SeatLost, pga.unwrap_or(cases.main)),
     }

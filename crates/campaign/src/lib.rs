@@ -21,13 +21,17 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod decision;
+mod direction;
 pub mod heights;
 pub mod protect;
 pub mod score;
 pub mod study;
+mod uncertain;
 mod unknown;
 
+pub use direction::Direction;
 pub use study::Study;
+pub use uncertain::Fitted;
 
 // Modules of other crates, under their names there.
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};

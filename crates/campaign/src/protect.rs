@@ -18,17 +18,20 @@ use std::path::{Path, PathBuf};
 
 use barrelstack::compare;
 use barrelstack::variants::{Advance, RunChoice, answer};
+use barrelstack_fragility::share_less;
 use barrelstack_report::{Block, Document};
 
 use crate::decision::{DecisionError, SiteHazard};
+use crate::direction::Direction;
 use crate::ground::GroundError;
+use crate::pool;
 use crate::run::RunFailure;
-use crate::scenario::{MotionSource, Scenario, ScenarioError, View};
+use crate::scenario::{MotionSource, Scenario, ScenarioError};
 use crate::study::{RunOptions, StudyError};
 
 pub use json::ProtectDocument;
 pub use options::{Kind, Protection};
-pub(crate) use options::{changed, slug};
+pub(crate) use options::{changed, singles, slug};
 pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
@@ -109,7 +112,7 @@ pub struct Ranked {
     /// the best of many protections is reported.
     pub saved_together: Option<Estimate>,
     /// Direction of shaking in which more barrels fall.
-    pub direction: View,
+    pub direction: Direction,
     /// Number of motions under which the protection was run.
     pub motions: usize,
     /// Number of runs, in both directions.
@@ -126,6 +129,17 @@ pub struct Ranked {
     /// Description of the worst state of maintenance, and the number of barrels that fall in it; `None` if no
     /// such state was tried.
     pub worn: Option<(String, Estimate)>,
+    /// Range of the probability of collapse, or of its annual rate, over the uncertain constants of the seats, with a
+    /// probability of 95 %, sampling error included. `None` if it is unknown, and for a protection that was not run in
+    /// all rounds.
+    pub range: Option<[f64; 2]>,
+    /// Number of barrels that fall, in every draw of the uncertain constants and of the regression. A draw has the same
+    /// constants for all protections. Empty where `range` is `None`, and without uncertain constants.
+    pub draws: Vec<f64>,
+    /// Share of the draws in which fewer barrels fall than with the unprotected stack; equal numbers count by half.
+    pub better_than_as_it_is: Option<f64>,
+    /// Share of the draws in which fewer barrels fall than with the next protection of the ranking.
+    pub better_than_next: Option<f64>,
 }
 
 impl Ranked {
@@ -183,7 +197,7 @@ impl Ranking {
     }
 
     /// Runs the stack unprotected and with the best protection under the motion of the scenario, and shows
-    /// both runs side by side on the page.
+    /// both runs side by side on the page. Stacks in space are not shown.
     ///
     /// Returns `true` if both runs finished.
     ///
@@ -193,7 +207,10 @@ impl Ranking {
         &mut self,
         report: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<bool, ProtectError> {
-        let Some(best) = self.best() else { return Ok(true) };
+        // The players show planes.
+        let Some(best) = self.best().filter(|best| best.direction != Direction::Space) else {
+            return Ok(true);
+        };
         let own = &self.request.scenario;
         let protected = best.protection.on(own)?;
         let mut answers = Vec::new();
@@ -289,7 +306,7 @@ pub fn protect(
     let (levels, weights) = (request.shaking.levels(), request.shaking.weights());
     let mut search =
         Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
-    let mut singles = options::singles(&base);
+    let mut singles = singles(&base);
     // The stack as it is must stand; otherwise nothing else is tried.
     let mut trials = vec![Trial::new(&base, singles.remove(0))?];
     trials.extend(search.trials(singles));
@@ -312,12 +329,15 @@ pub fn protect(
     let mut all: Vec<Ranked> =
         trials.iter().map(|trial| ranked(trial, &trials[0], &weights, tries)).collect();
     mark_front(&mut all);
+    let most = trials.iter().map(Trial::barrels).fold(0.0, f64::max);
+    over_constants(&mut all, &trials, levels, &weights, most);
     search.worn(&trials, &mut all, &weights)?;
     // Trials that were dropped early ran under fewer motions, so that their means cannot be compared with the others.
     all.sort_by(|a, b| {
         let by_mean = a.fallen.mean.total_cmp(&b.fallen.mean).then(a.cost().total_cmp(&b.cost()));
         b.round.cmp(&a.round).then(by_mean)
     });
+    compare_draws(&mut all);
     let runs = all.iter().map(|one| one.runs).sum();
     let not_tried = search.not_tried;
     let mut ranking =
@@ -392,6 +412,46 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked 
         round: trial.round,
         on_front: false,
         worn: None,
+        range: None,
+        draws: Vec::new(),
+        better_than_as_it_is: None,
+        better_than_next: None,
+    }
+}
+
+/// Adds the effect of the uncertain constants to the protections that were run in all rounds.
+fn over_constants(
+    all: &mut [Ranked],
+    trials: &[Trial],
+    levels: &[f64],
+    weights: &[f64],
+    most: f64,
+) {
+    let last = trials.iter().map(|trial| trial.round).max();
+    let finalists: Vec<usize> =
+        (0..trials.len()).filter(|at| Some(trials[*at].round) == last).collect();
+    let over = |at: &usize| {
+        let trial = &trials[*at];
+        trial.runs[trial.worse(weights)].over_constants(levels, weights, most)
+    };
+    let found = pool::map(&finalists, over, &|_| ());
+    for (at, over) in finalists.into_iter().zip(found) {
+        (all[at].range, all[at].draws) = (over.range, over.fallen);
+    }
+}
+
+/// Adds the shares of draws in which a protection is better than the unprotected stack, and than the next protection.
+fn compare_draws(all: &mut [Ranked]) {
+    let better = |one: &Ranked, other: &Ranked| {
+        let known = !one.draws.is_empty() && one.draws.len() == other.draws.len();
+        known.then(|| share_less(&one.draws, &other.draws))
+    };
+    let base = all.iter().position(|one| one.protection.kind == Kind::AsItIs);
+    for at in 0..all.len() {
+        let next = all.get(at + 1).and_then(|next| better(&all[at], next));
+        let as_it_is =
+            base.filter(|base| *base != at).and_then(|base| better(&all[at], &all[base]));
+        (all[at].better_than_next, all[at].better_than_as_it_is) = (next, as_it_is);
     }
 }
 

@@ -6,30 +6,31 @@
 //! the weakest state and direction.
 
 mod json;
+mod league;
 mod page;
 mod protocol;
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use barrelstack::check;
-use barrelstack::variants::planes;
-use barrelstack_fragility::{FitError, Interval, Stripe};
+use barrelstack::variants::{Fitted, LEVEL, Unknown, planes};
+use barrelstack_fragility::{FitError, Intensities, Interval, Shape, Stripe, interval_of};
 use barrelstack_report::Document;
 
 use crate::decision::{Cases, DecisionError, LimitCurve, LimitState};
+use crate::direction::{Direction, check};
 use crate::ground::GroundError;
+use crate::pool;
 use crate::protect::{changed, shaken, slug};
 use crate::run::RunFailure;
-use crate::scenario::{MotionSource, Scenario, ScenarioError, Until, View};
+use crate::scenario::{MotionSource, Scenario, ScenarioError, Until};
 use crate::study::{Progress, RunOptions, Study, StudyError};
 use crate::system;
+use crate::uncertain::Sample;
 
 pub use json::ScoreDocument;
+pub use league::{Contender, League, contenders, league};
 pub use protocol::{Protocol, State};
-
-/// Confidence level of all intervals.
-const LEVEL: f64 = 0.95;
 
 /// Peak ground velocity (m/s) at which one stack in ten collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +107,7 @@ pub struct Scored {
     /// State of the stack.
     pub state: State,
     /// Direction of shaking.
-    pub view: View,
+    pub direction: Direction,
     /// Peak ground velocity at which one stack in ten collapses.
     pub capacity: Capacity,
     /// Fragility curve of collapse, with the share of collapse at each level.
@@ -117,9 +118,26 @@ pub struct Scored {
     pub left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
+    /// `true` if no constant is drawn.
+    certain: bool,
+    /// Velocity (m/s) at which one stack in ten collapses, in every draw of the uncertain constants and of the
+    /// regression. A draw has the same constants in all rows. Empty if no constant is drawn, if a run has no verdict,
+    /// or if there are too few runs.
+    pub draws: Vec<f64>,
+    /// Effect of the uncertain constants on the share of collapses at the velocity of the score, if that is known.
+    pub effect: Option<Fitted>,
 }
 
 impl Scored {
+    /// Returns the range of the velocity (m/s) over the uncertain constants, with a probability of 95 %; the interval of
+    /// sampling if no constant is drawn.
+    pub fn range(&self) -> Option<Interval> {
+        if self.draws.is_empty() {
+            return self.capacity.interval().filter(|_| self.certain);
+        }
+        Some(interval_of(&self.draws, LEVEL))
+    }
+
     /// Returns the numbers of runs and of collapses at a level (m/s) of the protocol; `None` if no run at
     /// that level has a verdict.
     pub fn at(&self, velocity: f64) -> Option<Stripe> {
@@ -127,6 +145,16 @@ impl Scored {
         let same = |stripe: &&Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-6;
         self.curve.stripes.iter().find(same).copied()
     }
+}
+
+/// Rounds down a velocity (cm/s).
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a velocity of the protocol, not negative and below a hundred meters a second"
+)]
+fn whole(velocity: f64) -> u32 {
+    velocity.max(0.0).floor() as u32
 }
 
 /// Score sheet of a rack and its devices.
@@ -150,14 +178,33 @@ impl Sheet {
     }
 
     /// Returns the score (cm/s).
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a velocity of the protocol, positive and below a hundred meters a second"
-    )]
     pub fn score(&self) -> u32 {
         // The binary value of a level such as 0.15 m/s may be slightly smaller.
-        self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
+        self.weakest().map_or(0, |row| whole(100.0 * row.capacity.velocity() + 1e-6))
+    }
+
+    /// Returns the score (m/s, not rounded) in every draw of the uncertain constants; empty if the runs of a row do not
+    /// determine it.
+    pub fn draws(&self) -> Vec<f64> {
+        let count = self.rows.iter().map(|row| row.draws.len()).min().unwrap_or(0);
+        let least =
+            |draw| self.rows.iter().map(|row| row.draws[draw]).fold(f64::INFINITY, f64::min);
+        (0..count).map(least).collect()
+    }
+
+    /// Returns the range of the score (cm/s) over the uncertain constants, with a probability of 95 %, sampling
+    /// included; rounded outward. Without uncertain constants it is the interval of sampling of the weakest row.
+    pub fn range(&self) -> Option<[u32; 2]> {
+        let draws = self.draws();
+        let found =
+            if draws.is_empty() { self.weakest()?.range()? } else { interval_of(&draws, LEVEL) };
+        let [low, high] = [found.low, found.high].map(|velocity| 100.0 * velocity);
+        Some([whole(low + 1e-6), whole((high - 1e-6).ceil())])
+    }
+
+    /// Returns the most influential decisive constant of the weakest row, if there is one.
+    pub fn decisive(&self) -> Option<&Unknown> {
+        self.weakest()?.effect.as_ref()?.decisive()
     }
 
     /// Returns the results as a document for programs, in SI units.
@@ -208,6 +255,13 @@ pub enum ScoreError {
     },
 }
 
+/// A stack to be scored, with the studies of all its states and directions.
+struct Prepared {
+    stack: Scenario,
+    protocol: Protocol,
+    studies: Vec<(State, Direction, Study)>,
+}
+
 /// Scores the rack and the devices of a scenario.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
@@ -222,6 +276,11 @@ pub fn score(
     options: &RunOptions,
     report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
 ) -> Result<Sheet, ScoreError> {
+    prepared(scenario, protocol)?.run(folder, options, report)
+}
+
+/// Prepares a score: stacks the rack as the protocol requires, and checks that the stack stands in every state.
+fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreError> {
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
     }
@@ -234,41 +293,94 @@ pub fn score(
     };
     let stack =
         changed(&still, &protocol.stacked()).map_err(refused("as the protocol stacks it"))?;
-    let mut studies: Vec<(State, View, Study)> = Vec::new();
+    let mut studies: Vec<(State, Direction, Study)> = Vec::new();
     for state in protocol.states(&stack) {
         let worn = changed(&stack, &state.changes).map_err(refused(&state.name))?;
         for plane in planes(&worn)? {
-            let Some(view) = plane.view() else { continue };
+            let Some(direction) = Direction::of(&plane.scenario) else { continue };
             check(&plane.scenario)?;
             let (motions, velocities) = (protocol.motions(), &protocol.velocities);
             let stack = (&plane.scenario, Until::Verdict);
             let study = shaken("rockscore", stack, protocol.seed, &motions, velocities)?;
-            studies.push((state.clone(), view, study));
+            studies.push((state.clone(), direction, study));
         }
     }
-    let all: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
-    let (mut before, mut rows) = (0, Vec::new());
-    for (state, view, study) in studies {
-        let below = Path::new(&slug(&state.name)).join(view.name());
-        let place = folder.join(&below);
-        system::folder_below(folder, &below)
-            .map_err(StudyError::system("create the folder", &place))?;
-        let overall = |progress: &Progress| report(before + progress.tally.cases, all);
-        let cases = Cases::read(&study.run(&place, options, &overall)?)?;
-        before += study.cases();
-        let curve = LimitCurve::of(&cases, LimitState::SeatLost, cases.main);
-        let capacity = Capacity::of(&curve, protocol).map_err(|source| {
-            let direction = view.words();
-            ScoreError::Curve { state: state.name.clone(), direction, source }
-        })?;
-        let (runs, left_out) = (cases.all.len() + cases.left_out, cases.left_out);
-        let fallen_at_rest = cases.fallen_at_rest();
-        rows.push(Scored { state, view, capacity, curve, runs, left_out, fallen_at_rest });
+    let mut protocol = protocol.clone();
+    if stack.is_spatial() {
+        protocol.name.push_str("-space");
     }
-    let document = Document::default();
-    let mut sheet = Sheet { scenario: stack, protocol: protocol.clone(), rows, document };
-    sheet.document = page::document(&sheet);
-    Ok(sheet)
+    Ok(Prepared { stack, protocol, studies })
+}
+
+impl Prepared {
+    /// Returns the number of runs.
+    fn cases(&self) -> u64 {
+        self.studies.iter().map(|(.., study)| study.cases()).sum()
+    }
+
+    /// Runs the studies, and evaluates them.
+    fn run(
+        self,
+        folder: &Path,
+        options: &RunOptions,
+        report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+    ) -> Result<Sheet, ScoreError> {
+        let all = self.cases();
+        let Self { stack, protocol, studies } = self;
+        let (mut before, mut rows) = (0, Vec::new());
+        for (state, direction, study) in studies {
+            let below = Path::new(&slug(&state.name)).join(direction.name());
+            let place = folder.join(&below);
+            system::folder_below(folder, &below)
+                .map_err(StudyError::system("create the folder", &place))?;
+            let overall = |progress: &Progress| report(before + progress.tally.cases, all);
+            let collected = study.run(&place, options, &overall)?;
+            let cases = Cases::read(&collected)?;
+            before += study.cases();
+            let curve = LimitCurve::of(&cases, LimitState::SeatLost, cases.main);
+            let capacity = Capacity::of(&curve, &protocol).map_err(|source| {
+                let direction = direction.words();
+                ScoreError::Curve { state: state.name.clone(), direction, source }
+            })?;
+            let sample = Sample::of(&study, &collected, &cases);
+            let row = Scored {
+                state,
+                direction,
+                capacity,
+                curve,
+                runs: cases.all.len() + cases.left_out,
+                left_out: cases.left_out,
+                fallen_at_rest: cases.fallen_at_rest(),
+                certain: sample.is_certain(),
+                draws: Vec::new(),
+                effect: None,
+            };
+            rows.push((row, sample));
+        }
+        let rows = over_constants(rows, &protocol);
+        let mut sheet = Sheet { scenario: stack, protocol, rows, document: Document::default() };
+        sheet.document = page::document(&sheet);
+        Ok(sheet)
+    }
+}
+
+/// Adds the effect of the uncertain constants to the rows of a score.
+fn over_constants(rows: Vec<(Scored, Sample)>, protocol: &Protocol) -> Vec<Scored> {
+    let ends = [protocol.velocities[0], *protocol.velocities.last().unwrap_or(&0.0)];
+    let fits = pool::map(&rows, |(_, sample)| sample.fit(Shape::Lognormal), &|_| ());
+    let least = rows.iter().map(|(row, _)| row.capacity.velocity()).fold(f64::INFINITY, f64::min);
+    let of = |((mut row, sample), fit): ((Scored, Sample), Option<Intensities>)| {
+        let found = fit.and_then(|fit| Some((fit.intensities(protocol.chance, ends)?, fit)));
+        if let Some((draws, fit)) = found {
+            // Only the weakest row states which constant decides.
+            let weakest = row.capacity.velocity() == least;
+            let share = fit.at(least.max(ends[0])).filter(|_| weakest);
+            row.effect = share.map(|share| sample.effect(&share));
+            row.draws = draws;
+        }
+        row
+    };
+    rows.into_iter().zip(fits).map(of).collect()
 }
 
 #[cfg(test)]

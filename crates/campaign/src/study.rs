@@ -216,6 +216,16 @@ impl Study {
         if matches!(self.design, Design::Ida(_)) { "hunts" } else { "cases" }
     }
 
+    /// Returns the factors that are drawn from a distribution: for each, its column, its first field, the unit of its
+    /// column, and the distribution.
+    pub(crate) fn distributions(&self) -> impl Iterator<Item = (&str, &str, &str, &Distribution)> {
+        self.factors.iter().filter_map(|factor| {
+            let Variation::Distribution(distribution) = &factor.variation else { return None };
+            let field = factor.fields.first()?;
+            Some((&*factor.name, &**field, &*factor.column.unit, distribution))
+        })
+    }
+
     /// Returns the number of motions.
     pub fn motions(&self) -> usize {
         self.motions.len()

@@ -29,6 +29,12 @@ const PRIOR: f64 = 0.6;
 /// Scale of the prior distribution of the coefficients of squares and products of the constants.
 const PRIOR_SECOND: f64 = 0.2;
 
+/// Scale of the prior distribution of the standard deviation between motions.
+const PRIOR_GROUPS: f64 = 0.6;
+
+/// Standard deviation of the coefficient of the logarithm of an intensity in its prior distribution, which is normal.
+const PRIOR_SLOPE: f64 = 4.0;
+
 /// Index of `b` in a sample.
 const MIDDLE: usize = 1;
 
@@ -102,25 +108,63 @@ pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option
         .iter()
         .map(|trial| std::iter::once(side(trial)).chain(terms(&trial.deviates)).collect())
         .collect();
-    let size = rows[0].len();
+    let failed: Vec<bool> = trials.iter().map(|trial| trial.failed).collect();
+    let mut priors = vec![Prior::Student(PRIOR), Prior::Normal(PRIOR_MIDDLE)];
+    priors.extend(priors_of_constants(unknowns));
+    let samples = posterior(&rows, &failed, &priors, &mut uniform);
+    Some(Conditional::new(samples, unknowns))
+}
+
+/// Prior distribution of a coefficient, with mean 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Prior {
+    /// Normal distribution with a standard deviation.
+    Normal(f64),
+    /// Student's t distribution of [`FREEDOM`] degrees of freedom with a scale.
+    Student(f64),
+    /// Normal distribution with a standard deviation that all such coefficients share and that is itself uncertain;
+    /// [`PRIOR_GROUPS`] is its scale.
+    Group,
+}
+
+/// Returns the prior distributions of `aⱼ` and `cᵢⱼ`.
+fn priors_of_constants(unknowns: usize) -> impl Iterator<Item = Prior> {
+    let second = unknowns * (unknowns + 1) / 2;
+    let first = std::iter::repeat_n(Prior::Student(PRIOR), unknowns);
+    first.chain(std::iter::repeat_n(Prior::Student(PRIOR_SECOND), second))
+}
+
+/// Draws samples of the coefficients of a probit regression from their posterior distribution. If there are
+/// coefficients of groups, a sample ends with their common standard deviation, and omits the coefficients
+/// themselves.
+fn posterior(
+    rows: &[Vec<f64>],
+    failed: &[bool],
+    priors: &[Prior],
+    uniform: &mut impl FnMut() -> f64,
+) -> Vec<Vec<f64>> {
+    let size = priors.len();
     let mut squares = vec![vec![0.0; size]; size];
-    for row in &rows {
-        for (i, line) in squares.iter_mut().enumerate() {
+    for row in rows {
+        for (i, line) in squares.iter_mut().enumerate().filter(|(i, _)| row[*i] != 0.0) {
             for (j, cell) in line.iter_mut().enumerate() {
                 *cell += row[i] * row[j];
             }
         }
     }
+    let groups = priors.iter().filter(|prior| **prior == Prior::Group).count();
+    let own = size - groups;
+    let mut of_groups = PRIOR_GROUPS * PRIOR_GROUPS;
     let mut coefficients = vec![0.0; size];
     let mut samples = Vec::with_capacity(SAMPLES[1]);
     for step in 0..SAMPLES[0] + SAMPLES[1] {
         let mut sums = vec![0.0; size];
-        for (row, trial) in rows.iter().zip(trials) {
+        for (row, failed) in rows.iter().zip(failed) {
             let middle = dot(&coefficients, row);
-            let latent = if trial.failed {
-                middle + above(-middle, &mut uniform)
+            let latent = if *failed {
+                middle + above(-middle, uniform)
             } else {
-                middle - above(middle, &mut uniform)
+                middle - above(middle, uniform)
             };
             for (sum, value) in sums.iter_mut().zip(row) {
                 *sum += value * latent;
@@ -128,28 +172,214 @@ pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option
         }
         let mut precision = squares.clone();
         for (i, line) in precision.iter_mut().enumerate() {
-            let variance = if i == MIDDLE {
-                PRIOR_MIDDLE * PRIOR_MIDDLE
-            } else {
-                let scale = if i <= MIDDLE + unknowns { PRIOR } else { PRIOR_SECOND };
-                let rate = 0.5 * (FREEDOM * scale * scale + coefficients[i] * coefficients[i]);
-                // The sum of two exponential deviates has the gamma distribution of shape 2 = (3 + 1) / 2.
-                rate / -(ln(uniform()) + ln(uniform()))
+            let variance = match priors[i] {
+                Prior::Normal(deviation) => deviation * deviation,
+                Prior::Student(scale) => {
+                    let rate = 0.5 * (FREEDOM * scale * scale + coefficients[i] * coefficients[i]);
+                    // The sum of two exponential deviates has the gamma distribution of shape 2 = (3 + 1) / 2.
+                    rate / -(ln(uniform()) + ln(uniform()))
+                }
+                Prior::Group => of_groups,
             };
             line[i] += 1.0 / variance;
         }
-        coefficients = sampled(precision, &sums, &mut uniform);
+        coefficients = sampled(precision, &sums, uniform);
+        if groups > 0 {
+            let squared: f64 = coefficients[own..].iter().map(|value| value * value).sum();
+            let scaled = FREEDOM * PRIOR_GROUPS * PRIOR_GROUPS + squared;
+            // The variance has the inverse gamma distribution, of which the sum of squares of normal deviates is the
+            // chi-square part; three of them belong to the prior distribution.
+            let chi: f64 = (0..groups + 3).map(|_| deviate(uniform)).map(|z| z * z).sum();
+            of_groups = scaled / chi;
+        }
         if step >= SAMPLES[0] {
-            samples.push(coefficients.clone());
+            let mut sample = coefficients[..own].to_vec();
+            sample.extend((groups > 0).then(|| of_groups.sqrt()));
+            samples.push(sample);
         }
     }
-    let point =
-        |point| (0..unknowns).map(|axis| normal_quantile(sobol::padded(axis, point, 0))).collect();
-    let points = (0_u32..).zip(&samples).map(|(number, _)| point(number)).collect();
-    Some(Conditional { samples, points, unknowns })
+    samples
+}
+
+/// Run of a structure with randomly drawn constants, under one of several motions at an intensity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shaken {
+    /// Values of the unknown constants, as standard normal deviates.
+    pub deviates: Vec<f64>,
+    /// Number of the motion. The runs under one motion are alike, whatever the constants are.
+    pub motion: usize,
+    /// Intensity of the motion (> 0).
+    pub intensity: f64,
+    /// `true` if the structure failed in the run.
+    pub failed: bool,
+}
+
+/// How the share of failures depends on the intensity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Every intensity has a share of its own, which no other intensity bounds.
+    Free,
+    /// The share follows a lognormal curve of the intensity.
+    Lognormal,
+}
+
+/// Share of failures as a function of intensity and constants, over all motions.
+///
+/// ```text
+/// share(z, x) = Φ[(b(x) + Σ aⱼ zⱼ + Σ cᵢⱼ (zᵢ zⱼ − δᵢⱼ)) / √(1 + σ²)]
+/// b(x)        = bₓ for each intensity, or b₀ + b₁ ln(x/x₀)
+/// ```
+///
+/// `σ` is the standard deviation between motions: the runs under one motion have a common coefficient in the regression,
+/// so that they do not count as independent. The effects of the constants are the same at all intensities.
+/// The method is that of [`conditional`].
+#[derive(Clone, Debug)]
+pub struct Intensities {
+    /// Coefficients `b`, `aⱼ`, `cᵢⱼ` and `σ` of each sample.
+    samples: Vec<Vec<f64>>,
+    /// Intensities with a share of their own; for a lognormal curve, only `x₀`.
+    levels: Vec<f64>,
+    shape: Shape,
+    unknowns: usize,
+}
+
+/// Fits the share of failures as a function of intensity and of the unknown constants. Returns `None` if there are
+/// fewer than [`FEWEST_TRIALS`] runs, if there are no constants, or if runs differ in the number of their constants.
+///
+/// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
+pub fn shaken(
+    runs: &[Shaken],
+    shape: Shape,
+    mut uniform: impl FnMut() -> f64,
+) -> Option<Intensities> {
+    let mut uniform = || 1.0 - uniform();
+    let unknowns = runs.first()?.deviates.len();
+    if runs.len() < FEWEST_TRIALS
+        || unknowns == 0
+        || runs.iter().any(|run| run.deviates.len() != unknowns || run.intensity <= 0.0)
+    {
+        return None;
+    }
+    let levels = match shape {
+        Shape::Free => sorted(runs.iter().map(|run| run.intensity)),
+        Shape::Lognormal => {
+            vec![exp(mean(runs.iter().map(|run| ln(run.intensity))))]
+        }
+    };
+    let mut motions: Vec<usize> = runs.iter().map(|run| run.motion).collect();
+    motions.sort_unstable();
+    motions.dedup();
+    let row = |run: &Shaken| {
+        let own = motions.iter().map(|motion| f64::from(u8::from(*motion == run.motion)));
+        let known = known(shape, &levels, run.intensity);
+        known.into_iter().chain(terms(&run.deviates).skip(1)).chain(own).collect()
+    };
+    let rows: Vec<Vec<f64>> = runs.iter().map(row).collect();
+    let failed: Vec<bool> = runs.iter().map(|run| run.failed).collect();
+    let mut priors = match shape {
+        Shape::Free => vec![Prior::Normal(PRIOR_MIDDLE); levels.len()],
+        Shape::Lognormal => vec![Prior::Normal(PRIOR_MIDDLE), Prior::Normal(PRIOR_SLOPE)],
+    };
+    priors.extend(priors_of_constants(unknowns));
+    priors.extend(motions.iter().map(|_| Prior::Group));
+    let samples = posterior(&rows, &failed, &priors, &mut uniform);
+    Some(Intensities { samples, levels, shape, unknowns })
+}
+
+/// Returns the terms of `b(x)`.
+fn known(shape: Shape, levels: &[f64], intensity: f64) -> Vec<f64> {
+    match shape {
+        Shape::Free => {
+            levels.iter().map(|level| f64::from(u8::from(*level == intensity))).collect()
+        }
+        Shape::Lognormal => vec![1.0, ln(intensity / levels[0])],
+    }
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+impl Intensities {
+    /// Returns the share of failures at an intensity as a function of the constants; `None` for an intensity without
+    /// runs, unless the share follows a curve.
+    pub fn at(&self, intensity: f64) -> Option<Conditional> {
+        if self.shape == Shape::Free && !self.levels.contains(&intensity) {
+            return None;
+        }
+        let terms = known(self.shape, &self.levels, intensity);
+        let of = |sample: &Vec<f64>| {
+            let (own, rest) = sample.split_at(terms.len());
+            let (constants, deviation) = rest.split_at(rest.len() - 1);
+            let scale = 1.0 / (1.0 + deviation[0] * deviation[0]).sqrt();
+            let middle = dot(own, &terms);
+            let factors = std::iter::once(&middle).chain(constants).map(|factor| scale * factor);
+            std::iter::once(0.0).chain(factors).collect()
+        };
+        Some(Conditional::new(self.samples.iter().map(of).collect(), self.unknowns))
+    }
+
+    /// Returns, in every draw of [`Conditional::shares`], the intensity between two others at which the share of
+    /// failures is `share`: 0 if the share is greater already at the lower one, and the upper one if the share is not
+    /// greater even there. Returns `None` unless the share follows a lognormal curve.
+    pub fn intensities(&self, share: f64, [low, high]: [f64; 2]) -> Option<Vec<f64>> {
+        let [below, above] = [self.at(low)?.shares(), self.at(high)?.shares()];
+        let quantile = normal_quantile(share);
+        let between = |(below, above): (&f64, &f64)| {
+            if *below > share {
+                return 0.0;
+            }
+            if *above <= share {
+                return high;
+            }
+            // The quantile of the share is linear in the logarithm of the intensity.
+            let [from, to] = [*below, *above]
+                .map(|share| normal_quantile(share.clamp(f64::MIN_POSITIVE, 1.0 - 1e-16)));
+            let part = if to > from { (quantile - from) / (to - from) } else { 0.5 };
+            low * exp(part.clamp(0.0, 1.0) * ln(high / low))
+        };
+        (self.shape == Shape::Lognormal).then(|| below.iter().zip(&above).map(between).collect())
+    }
+}
+
+/// Returns the interval that contains the middle of draws with a probability.
+pub fn interval_of(draws: &[f64], level: f64) -> Interval {
+    let mut ascending = draws.to_vec();
+    ascending.sort_by(f64::total_cmp);
+    ends(&ascending, level)
+}
+
+/// Returns the share of draws in which the first quantity is less than the second; equal ones count by half.
+pub fn share_less(first: &[f64], second: &[f64]) -> f64 {
+    let less = |(a, b): (&f64, &f64)| match a.total_cmp(b) {
+        std::cmp::Ordering::Less => 1.0,
+        std::cmp::Ordering::Equal => 0.5,
+        std::cmp::Ordering::Greater => 0.0,
+    };
+    mean(first.iter().zip(second).map(less))
 }
 
 impl Conditional {
+    /// Creates the share from samples of its coefficients, with values of the constants that depend only on the
+    /// number of a sample: the same number of another share has the same values.
+    fn new(samples: Vec<Vec<f64>>, unknowns: usize) -> Self {
+        let point = |point| {
+            (0..unknowns).map(|axis| normal_quantile(sobol::padded(axis, point, 0))).collect()
+        };
+        let points = (0_u32..).zip(&samples).map(|(number, _)| point(number)).collect();
+        Self { samples, points, unknowns }
+    }
+
+    /// Returns the share in every draw. A draw is a sample of the posterior distribution and values of the
+    /// constants; the values in a draw are the same for all shares with the same constants, in the same order.
+    pub fn shares(&self) -> Vec<f64> {
+        let draws = self.samples.iter().zip(&self.points);
+        draws.map(|(sample, point)| share(sample, point)).collect()
+    }
+
     /// Returns the range in which the share lies with the probability `level`, given that the constants are
     /// unknown. The constants are drawn from their own distributions, and the share from its posterior
     /// distribution. The ends are rounded outward to hundredths.
@@ -209,7 +439,7 @@ impl Conditional {
     fn range_given(&self, level: f64, known: Option<(usize, f64)>) -> Interval {
         let sampled = self.samples.iter().zip(&self.points);
         let mut shares: Vec<f64> = match known {
-            None => sampled.map(|(sample, point)| share(sample, point)).collect(),
+            None => self.shares(),
             Some((unknown, deviate)) => sampled
                 .map(|(sample, point)| {
                     let mut point = point.clone();

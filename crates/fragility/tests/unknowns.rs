@@ -5,7 +5,10 @@
 
 #![expect(clippy::print_stdout, reason = "the measured shares, shown with --nocapture")]
 
-use barrelstack_fragility::{Influence, Trial, conditional, normal, normal_quantile, sobol};
+use barrelstack_fragility::{
+    Influence, Shaken, Shape, Trial, conditional, interval_of, normal, normal_quantile, shaken,
+    share_less, sobol,
+};
 use barrelstack_motion::Random;
 
 const LEVEL: f64 = 0.95;
@@ -158,4 +161,131 @@ fn few_trials_have_no_range() {
     assert!(conditional(&vec![trial; 16], || random.uniform()).is_some());
     let none = Trial { deviates: Vec::new(), second_half: false, failed: true };
     assert!(conditional(&vec![none; 64], || random.uniform()).is_none());
+}
+
+/// Draws 24 motions at six intensities, each run with constants of its own. A run fails with the probability
+/// `Φ(η + u)`, where `u` belongs to the motion and has a standard deviation of 0.5.
+fn shaken_runs(eta: &dyn Fn(&[f64], f64) -> f64, random: &mut Random) -> Vec<Shaken> {
+    let motions: Vec<f64> = (0..24).map(|_| 0.5 * deviate(random)).collect();
+    let mut runs = Vec::new();
+    for (motion, own) in motions.iter().enumerate() {
+        for intensity in INTENSITIES {
+            let deviates: Vec<f64> = (0..UNKNOWNS).map(|_| deviate(random)).collect();
+            let failed = random.uniform() < normal(eta(&deviates, intensity) + own);
+            runs.push(Shaken { deviates, motion, intensity, failed });
+        }
+    }
+    runs
+}
+
+const INTENSITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.5, 0.7, 1.0];
+
+/// Returns the share over all motions.
+fn over_motions(eta: f64) -> f64 {
+    normal(eta / (1.0_f64 + 0.25).sqrt())
+}
+
+/// Values of the constants and an intensity, and the argument of the probability of failure there.
+type Eta = Box<dyn Fn(&[f64], f64) -> f64>;
+
+fn eta(kind: &str, random: &mut Random) -> Eta {
+    let a: Vec<f64> = (0..UNKNOWNS).map(|_| 0.6 * deviate(random)).collect();
+    let b = 0.7 * deviate(random);
+    let sum = move |z: &[f64], x: f64| {
+        b + 2.2 * (x / 0.4).ln() + a.iter().zip(z).map(|(a, z)| a * z).sum::<f64>()
+    };
+    match kind {
+        "probit" => Box::new(sum),
+        "curved" => Box::new(move |z, x| sum(z, x) + 0.5 * (z[0] * z[0] - 1.0)),
+        "interaction" => Box::new(move |z, x| sum(z, x) + 0.6 * z[0] * z[1]),
+        // The constants have more influence in strong shaking.
+        "strong shaking" => Box::new(move |z, x| sum(z, x) + x * z[2]),
+        _ => Box::new(move |_, x| b + 2.2 * (x / 0.4).ln()),
+    }
+}
+
+/// At least 90 % of true shares lie in the range, at every intensity and with either shape, although the runs of a motion
+/// are alike; so do intensities at which one in ten fails.
+#[test]
+fn the_range_at_an_intensity_contains_the_true_share() {
+    let truths = if cfg!(debug_assertions) { 8 } else { 100 };
+    for shape in [Shape::Free, Shape::Lognormal] {
+        let (mut held, mut all, mut capacities) = (0, 0, 0);
+        for kind in ["probit", "curved", "interaction", "strong shaking", "no influence"] {
+            let mut within = 0;
+            for seed in 0..truths {
+                let mut random = Random::new(77 + seed);
+                let eta = eta(kind, &mut random);
+                let runs = shaken_runs(&eta, &mut random);
+                let fitted = shaken(&runs, shape, || random.uniform()).unwrap();
+                let own: Vec<f64> = (0..UNKNOWNS).map(|_| deviate(&mut random)).collect();
+                for intensity in INTENSITIES {
+                    let range = fitted.at(intensity).unwrap().range(LEVEL);
+                    let share = over_motions(eta(&own, intensity));
+                    within += u32::from(range.low <= share && share <= range.high);
+                }
+                let Some(found) = fitted.intensities(0.1, [0.12, 1.0]) else { continue };
+                let exact = (0..=1000)
+                    .map(|step| 0.12 * (1.0_f64 / 0.12).powf(f64::from(step) / 1000.0))
+                    .find(|x| over_motions(eta(&own, *x)) > 0.1);
+                let exact = exact.map_or(1.0, |x| if x <= 0.12 { 0.0 } else { x });
+                let range = interval_of(&found, LEVEL);
+                // The tolerance is the spacing of the search.
+                capacities += u32::from(0.997 * range.low <= exact && exact <= 1.003 * range.high);
+            }
+            let count = u32::try_from(truths).unwrap() * 6;
+            let share = 100.0 * f64::from(within) / f64::from(count);
+            println!("{shape:?}, {kind}: contained {share:.1} %");
+            held += within;
+            all += count;
+        }
+        let share = 100.0 * f64::from(held) / f64::from(all);
+        println!("{shape:?}, all kinds: {share:.1} %; intensities: {capacities} of {}", 5 * truths);
+        assert!(share >= 90.0, "{share} %");
+        if shape == Shape::Lognormal {
+            assert!(f64::from(capacities) >= 0.85 * 5.0 * truths as f64, "{capacities}");
+        }
+    }
+}
+
+/// The share of draws in which one structure is stronger equals the share of constants for which it is.
+#[test]
+fn the_order_of_two_structures_is_that_of_brute_force() {
+    let one = |z: &[f64], x: f64| 2.2 * (x / 0.4).ln() + 0.2 + 0.9 * z[0];
+    let other = |z: &[f64], x: f64| 2.2 * (x / 0.4).ln() - 0.3 + 0.9 * z[1];
+    let mut random = Random::new(3);
+    let mut shares = |eta: &dyn Fn(&[f64], f64) -> f64| {
+        let mut runs = Vec::new();
+        for set in 0..6 {
+            let more = shaken_runs(eta, &mut random).into_iter();
+            runs.extend(more.map(|run| Shaken { motion: run.motion + 24 * set, ..run }));
+        }
+        shaken(&runs, Shape::Free, || random.uniform()).unwrap().at(0.36).unwrap().shares()
+    };
+    let (first, second) = (shares(&one), shares(&other));
+    let found = share_less(&first, &second);
+    let brute = (0..20_000)
+        .map(|_| [deviate(&mut random), deviate(&mut random)])
+        .filter(|z| over_motions(one(z, 0.36)) < over_motions(other(z, 0.36)))
+        .count();
+    let brute = brute as f64 / 20_000.0;
+    println!("stronger in {found:.3} of draws; {brute:.3} by brute force");
+    assert!((found - brute).abs() < 0.06, "{found} {brute}");
+    assert!((share_less(&second, &first) + found - 1.0).abs() < 1e-12);
+    assert_eq!(share_less(&first, &first), 0.5);
+}
+
+/// Intensities without runs have no share of their own, and too little to fit gives nothing.
+#[test]
+fn only_intensities_with_runs_have_a_share_of_their_own() {
+    let mut random = Random::new(8);
+    let runs = shaken_runs(&|_, x| 2.2 * (x / 0.4).ln(), &mut random);
+    let free = shaken(&runs, Shape::Free, || random.uniform()).unwrap();
+    assert!(free.at(0.13).is_none() && free.intensities(0.1, [0.12, 1.0]).is_none());
+    let curve = shaken(&runs, Shape::Lognormal, || random.uniform()).unwrap();
+    assert!(curve.at(0.13).is_some());
+    assert!(shaken(&runs[..15], Shape::Free, || random.uniform()).is_none());
+    let none: Vec<Shaken> =
+        runs.iter().map(|run| Shaken { deviates: Vec::new(), ..run.clone() }).collect();
+    assert!(shaken(&none, Shape::Free, || random.uniform()).is_none());
 }

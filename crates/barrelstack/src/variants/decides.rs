@@ -1,7 +1,7 @@
 //! Range of the share of collapses over the uncertain constants of the seats, and the constant that
 //! decides the result.
 
-use barrelstack_fragility::{Influence, Trial, conditional, normal_quantile};
+use barrelstack_fragility::{Conditional, Influence, Trial, conditional, normal_quantile};
 use barrelstack_motion::Random;
 use barrelstack_report::described;
 
@@ -78,7 +78,7 @@ impl Unknown {
     pub fn shown_unit(&self) -> (String, f64) {
         match self.unit {
             "1" => (String::new(), 1.0),
-            unit if self.field == DAMPING => (format!("k{unit}"), 1e-3),
+            unit if self.field.ends_with(".damping") => (format!("k{unit}"), 1e-3),
             unit => (format!("M{unit}"), 1e-6),
         }
     }
@@ -87,9 +87,9 @@ impl Unknown {
     /// "3.1 MN/m".
     pub fn words(&self, value: f64) -> String {
         let (unit, factor) = self.shown_unit();
-        match self.field {
-            RESTITUTION => format!("e = {value:.2}"),
-            DAMPING | STIFFNESS => {
+        match self.field.rsplit('.').next() {
+            Some("restitution") => format!("e = {value:.2}"),
+            Some("damping" | "stiffness") => {
                 format!("{} {unit}", barrelstack_report::significant(factor * value, 2))
             }
             _ => format!("μ = {value:.2}"),
@@ -133,6 +133,11 @@ struct Drawn {
 }
 
 impl Drawn {
+    fn constant(&self) -> Constant<'_> {
+        let Self { name, field, unit, dispersion, .. } = *self;
+        Constant { name, field, unit, dispersion, value: Box::new(|deviate| self.at(deviate)) }
+    }
+
     /// Returns the value of the constant at a standard normal deviate.
     fn at(&self, deviate: f64) -> Option<f64> {
         let mut law = self.law;
@@ -252,12 +257,72 @@ fn unit(law: &Interface) -> &'static str {
     }
 }
 
-/// Range of the share over the uncertain constants, share with all constants as stated, and the
-/// constants, the most influential first.
-pub(super) struct Fitted {
-    pub(super) range: [f64; 2],
-    pub(super) as_stated: f64,
-    pub(super) decides: Vec<Unknown>,
+/// Uncertain constant of the regression of the share of collapses.
+pub struct Constant<'a> {
+    /// Name of the constant.
+    pub name: &'static str,
+    /// Field of the scenario that states the median of the constant.
+    pub field: &'static str,
+    /// SI unit of the constant; "1" for a pure number.
+    pub unit: &'static str,
+    /// Standard deviation of the logarithm of the constant.
+    pub dispersion: f64,
+    /// Returns the value of the constant (SI) at a standard normal deviate; `None` if there is none.
+    pub value: Box<dyn Fn(f64) -> Option<f64> + 'a>,
+}
+
+/// Effect of the uncertain constants on the share of collapses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// Range of the share over the uncertain constants, with a probability of 95 %.
+    pub range: [f64; 2],
+    /// Share with all constants as stated.
+    pub as_stated: f64,
+    /// The constants, the most influential first.
+    pub decides: Vec<Unknown>,
+}
+
+impl Fitted {
+    /// Evaluates a regression on constants, which are in the order of their deviates.
+    pub fn of(fitted: &Conditional, constants: &[Constant<'_>]) -> Self {
+        let whole = fitted.range(LEVEL);
+        let unknown = |(at, (one, influence)): (usize, (&Constant<'_>, Influence))| {
+            let share_at = |deviate: f64| {
+                let (share, interval) = fitted.at(at, deviate, LEVEL);
+                Some(ShareAt {
+                    value: (one.value)(deviate)?,
+                    share,
+                    interval: [interval.low, interval.high],
+                })
+            };
+            let deviates = FRACTILES.map(normal_quantile);
+            let shares: Vec<ShareAt> = deviates.into_iter().filter_map(share_at).collect();
+            let by_share = |a: &usize, b: &usize| shares[*a].share.total_cmp(&shares[*b].share);
+            let least = (0..shares.len()).min_by(by_share).unwrap_or(0);
+            let most = (0..shares.len()).max_by(by_share).unwrap_or(0);
+            let difference = fitted.difference(at, [deviates[least], deviates[most]], LEVEL);
+            Unknown {
+                name: one.name,
+                field: one.field,
+                unit: one.unit,
+                dispersion: one.dispersion,
+                shares,
+                difference: [difference.low, difference.high],
+                total: influence.total,
+                width_if_measured: influence.width_if_known,
+            }
+        };
+        let influences = fitted.influences(LEVEL);
+        let mut decides: Vec<Unknown> =
+            constants.iter().zip(influences).enumerate().map(unknown).collect();
+        decides.sort_by(|a, b| b.total.total_cmp(&a.total));
+        Self { range: [whole.low, whole.high], as_stated: fitted.at_medians(), decides }
+    }
+
+    /// Returns the most influential decisive constant; `None` if no constant is decisive.
+    pub fn decisive(&self) -> Option<&Unknown> {
+        self.decides.iter().find(|one| one.is_decisive())
+    }
 }
 
 /// Fits the share of collapses to the results of the nominal case and of its variants, which are in
@@ -283,38 +348,8 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let trials: Vec<Trial> = (1..).zip(variants).map(trial).collect();
     let mut random = Random::new(u64::from(imperfections.seed));
     let fitted = conditional(&trials, || random.uniform())?;
-    let whole = fitted.range(LEVEL);
-    let unknown = |(at, (one, influence)): (usize, (&Drawn, Influence))| {
-        let share_at = |deviate: f64| {
-            let (share, interval) = fitted.at(at, deviate, LEVEL);
-            Some(ShareAt {
-                value: one.at(deviate)?,
-                share,
-                interval: [interval.low, interval.high],
-            })
-        };
-        let deviates = FRACTILES.map(normal_quantile);
-        let shares: Vec<ShareAt> = deviates.into_iter().filter_map(share_at).collect();
-        let by_share = |a: &usize, b: &usize| shares[*a].share.total_cmp(&shares[*b].share);
-        let least = (0..shares.len()).min_by(by_share).unwrap_or(0);
-        let most = (0..shares.len()).max_by(by_share).unwrap_or(0);
-        let difference = fitted.difference(at, [deviates[least], deviates[most]], LEVEL);
-        Unknown {
-            name: one.name,
-            field: one.field,
-            unit: one.unit,
-            dispersion: one.dispersion,
-            shares,
-            difference: [difference.low, difference.high],
-            total: influence.total,
-            width_if_measured: influence.width_if_known,
-        }
-    };
-    let influences = fitted.influences(LEVEL);
-    let mut decides: Vec<Unknown> =
-        constants.iter().zip(influences).enumerate().map(unknown).collect();
-    decides.sort_by(|a, b| b.total.total_cmp(&a.total));
-    Some(Fitted { range: [whole.low, whole.high], as_stated: fitted.at_medians(), decides })
+    let constants: Vec<Constant<'_>> = constants.iter().map(Drawn::constant).collect();
+    Some(Fitted::of(&fitted, &constants))
 }
 
 impl Spread {

@@ -40,7 +40,7 @@ use crate::watch::after_collapse;
 
 pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
-pub use decides::{ShareAt, Unknown};
+pub use decides::{Constant, Fitted, ShareAt, Unknown};
 pub use remedy::{ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, remedy, remedy_by};
 pub use spread::{LEVEL, Range, Spread, fails};
 

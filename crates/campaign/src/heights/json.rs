@@ -1,5 +1,6 @@
 //! JSON document of a study of heights, in SI units.
 
+use barrelstack::variants::{Fitted, Unknown};
 use barrelstack_fragility::Stripe;
 use barrelstack_report::described;
 
@@ -71,7 +72,7 @@ described! {
     }
 
     /// Results of stacks at one level of shaking.
-    pub struct LevelRow of at: &(&Stripe, &f64) {
+    pub struct LevelRow of at: &(&Stripe, &f64, Option<&Fitted>) {
         /// Peak ground velocity.
         pub pgv: f64 as "m/s" = at.0.intensity,
         /// Number of runs with a verdict.
@@ -83,6 +84,14 @@ described! {
         pub interval: [Option<f64>; 2] as "1" = bounds(known(at.0)),
         /// Mean share of the barrels that fall.
         pub fallen_share: f64 as "1" = *at.1,
+        /// Range of the share of stacks that collapse, over the uncertain constants of the seats (friction, stiffness,
+        /// damping), with a probability of 95 %, sampling error included. Null if a run of this stack has no verdict, or
+        /// if there are too few runs.
+        pub range: Option<[f64; 2]> as "1" = at.2.map(|effect| effect.range),
+        /// Share of stacks that collapse if all uncertain constants are as stated; null if `range` is null.
+        pub share_as_stated: Option<f64> as "1" = at.2.map(|effect| effect.as_stated),
+        /// Constant that decides the result; null if no constant decides.
+        pub decides: Option<Unknown> = at.2.and_then(Fitted::decisive).cloned(),
     }
 
     /// Lognormal fragility curve of collapse.
@@ -102,6 +111,7 @@ described! {
 
 fn levels(height: &Height) -> Vec<LevelRow> {
     let curve = &height.by_velocity;
-    let at = curve.stripes.iter().zip(&height.fallen);
-    at.map(|at| LevelRow::of(&at)).collect()
+    let effects = height.effects.iter().map(Option::as_ref).chain(std::iter::repeat(None));
+    let at = curve.stripes.iter().zip(&height.fallen).zip(effects);
+    at.map(|((stripe, fallen), effect)| LevelRow::of(&(stripe, fallen, effect))).collect()
 }

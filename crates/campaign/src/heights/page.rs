@@ -143,13 +143,68 @@ fn headline(all: &Heights) -> String {
     };
     let next = VELOCITIES.into_iter().find(|other| *other > velocity);
     format!(
-        "Up to {levels} levels {racks} have a low risk in {}, across the barrels and along them: {}{}.",
+        "Up to {levels} levels {racks} have a low risk in {}, across the barrels and along them: {}{}.{}",
         named(velocity),
         found(all, levels, velocity),
         next.map(|next| {
             format!("; in {} not even two levels do{}", named(next), weaker(all, next))
         })
-        .unwrap_or_default()
+        .unwrap_or_default(),
+        over_constants(all, velocity)
+    )
+}
+
+/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which the upper
+/// end of the range over the uncertain constants is larger.
+fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel, [f64; 2])> {
+    let found = |view| {
+        let height = all.of(levels, view)?;
+        let at = height.at(velocity)?;
+        Some((height, at, at.range?))
+    };
+    let found = View::ALL.into_iter().map(found).collect::<Option<Vec<_>>>()?;
+    found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
+}
+
+/// Describes up to which height the chance of collapse at a level of PGV (m/s) is low whatever the uncertain constants
+/// are; empty if their effect is unknown.
+fn over_constants(all: &Heights, velocity: f64) -> String {
+    let low =
+        |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
+    let highest = all.request.heights().take_while(low).last();
+    let Some((height, _, [from, to])) = widest(all, highest.unwrap_or(LOWEST), velocity) else {
+        return String::new();
+    };
+    let uncertain = "the friction, stiffness and damping of the seats, which are uncertain,";
+    let shares = format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * to);
+    match highest {
+        Some(levels) => format!(
+            " Over {uncertain} up to {levels} levels do: the probability is {shares} (95 % range)."
+        ),
+        None => format!(
+            " Over {uncertain} not even two levels do: the probability is {shares} (95 % range), {}{}.",
+            height.view.words(),
+            height
+                .decisive(velocity)
+                .map_or_else(String::new, |one| { format!(", and the {} decides", one.name) })
+        ),
+    }
+}
+
+/// Tabulates the range over the uncertain constants, in the direction in which it reaches further.
+fn over_constants_table(all: &Heights) -> Table {
+    by_height(
+        all,
+        "Range of the chance of collapse over the uncertain constants of the seats (95 %), and the constant that decides, in \
+         the direction with the higher end."
+            .to_owned(),
+        |levels, velocity| {
+            Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
+                let decides = height.decisive(velocity);
+                let decides = decides.map_or_else(String::new, |one| format!(", {}", one.name));
+                format!("{:.0}–{:.0} %{decides}", 100.0 * from, 100.0 * to)
+            }))
+        },
     )
 }
 
@@ -249,6 +304,13 @@ fn blocks(all: &Heights) -> Vec<Block> {
             100.0 * LOW.1,
             100.0 * MEDIUM
         )),
+        Block::Table(over_constants_table(all)),
+        text(
+            "The range contains the chance of collapse of a stack with a probability of 95 % if its friction, stiffness and \
+             damping are drawn from their distributions; it includes the error of sampling. The brackets above are \
+             for a stack whose constants are drawn anew. A constant decides if it changes the chance by a fifth or more. \
+             Measure it, and state the value in a scenario of your own.",
+        ),
         text(
             "To find the row of your site, ask for the peak ground velocity of your design earthquake, or read it from a \
              ShakeMap of a past earthquake. The Roman numeral is the intensity that corresponds to the velocity on average \
@@ -468,8 +530,8 @@ fn rests_on(all: &Heights) -> Vec<String> {
             if all.request.records.is_empty() { "" } else { ", and the given records" }
         ),
         format!(
-            "Full barrels, `{}` of the catalog. Friction is drawn for every run, with a median of about 0.5 for \
-             rack on floor (scatter 20 %) and about 0.3 for barrel on rack (scatter 25 %). Both are \
+            "Full barrels, `{}` of the catalog. Friction, stiffness and damping of the seats are drawn for every run around \
+             the values of the catalog, with the dispersions of a scenario without changes. They are \
              assumptions; wet floors and painted racks differ. Measure your own.",
             all.request.barrel
         ),

@@ -1,5 +1,6 @@
 //! Tests of the sentences of the report page of heights.
 
+use barrelstack::variants::ShareAt;
 use barrelstack_fragility::{FitError, Monotony, Stripe};
 use barrelstack_report::{Document, markdown};
 
@@ -37,6 +38,26 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
+/// Returns the effect of the uncertain constants: from 0 to 4 % per level fall, along the barrels twice as many; the friction
+/// of barrels decides.
+fn effect(levels: u32, view: View) -> Fitted {
+    let highest = f64::from(levels) * if view == View::Longitudinal { 0.04 } else { 0.02 };
+    let at = |value, share| ShareAt { value, share, interval: [share, share] };
+    let friction = Unknown {
+        name: "friction of barrels on racks",
+        field: "interface.barrel-rack.friction.coefficient",
+        unit: "1",
+        dispersion: 0.35,
+        shares: (0..9)
+            .map(|step| at(0.2 + 0.03 * f64::from(step), 0.1 * f64::from(step)))
+            .collect(),
+        difference: [0.3, 0.9],
+        total: 0.9,
+        width_if_measured: 0.1,
+    };
+    Fitted { range: [0.0, highest], as_stated: 0.0, decides: vec![friction] }
+}
+
 /// Returns results in which `failures` gives the number of stacks that collapse, as a function of levels,
 /// direction and level of shaking.
 fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
@@ -46,6 +67,7 @@ fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
         by_velocity: curve(|velocity| failures(levels, view, velocity)),
         by_acceleration: curve(|velocity| failures(levels, view, velocity)),
         fallen: vec![0.0; VELOCITIES.len()],
+        effects: vec![Some(effect(levels, view)); VELOCITIES.len()],
         static_margin: (view == View::Longitudinal).then(|| 9.806_65 * 0.6 / f64::from(levels)),
     };
     let request = Request::default();

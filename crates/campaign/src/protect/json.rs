@@ -60,6 +60,17 @@ described! {
         pub barrels_moved: u32 = one.protection.moved,
         /// Probability of collapse, or number of collapses per year.
         pub collapse: Interval = Interval::of(&one.collapse),
+        /// Range of `collapse` over the uncertain constants of the seats (friction, stiffness, damping), with a
+        /// probability of 95 %, sampling error included. Null if a run has no verdict, if there are too few runs, or if
+        /// the protection was not run in all rounds.
+        pub range: Option<[f64; 2]> as "that of `collapse`" = one.range,
+        /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack,
+        /// which has the same constants; the error of sampling is drawn as well. Null where `range` is null, and without
+        /// uncertain constants.
+        pub better_than_as_it_is: Option<f64> as "1" = one.better_than_as_it_is,
+        /// Share of the draws in which fewer barrels fall than with the next protection of the list, as
+        /// `better_than_as_it_is`.
+        pub better_than_next: Option<f64> as "1" = one.better_than_next,
         /// Number of barrels that fall, per event or per year.
         pub barrels_fallen: Interval = Interval::of(&one.fallen),
         /// Number of barrels that burst under the central assumption, per event or per year, according to
@@ -77,7 +88,7 @@ described! {
         /// Description of the worst state of maintenance; null if no such state was tried.
         pub worn: Option<String> = one.worn.as_ref().map(|(words, _)| words.clone()),
         /// Direction of shaking in which more barrels fall.
-        pub direction: &'static str ["transverse", "longitudinal"] = one.direction.name(),
+        pub direction: &'static str ["transverse", "longitudinal", "spatial"] = one.direction.name(),
         /// Number of motions under which the protection was run.
         pub motions: usize = one.motions,
         /// Number of runs, in both directions.

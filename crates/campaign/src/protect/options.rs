@@ -2,7 +2,7 @@
 
 use barrelstack::device::{Cost, DEVICES, Each, Setting};
 
-use crate::scenario::{MotionSource, Scenario, ScenarioError, catalog};
+use crate::scenario::{MotionSource, Scenario, ScenarioError, StackSpec, catalog};
 
 /// Kind of a protection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,10 +67,16 @@ const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 /// space.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
+/// Returns the number of barrels of a stack on one level.
+pub(super) fn a_level(stack: &StackSpec) -> u32 {
+    stack.columns * stack.space.map_or(1, |space| space.columns_along)
+}
+
 /// Returns all single protections of a stack; the first is the unprotected stack.
-pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
+pub(crate) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let Some(stack) = scenario.stack() else { return Vec::new() };
     let (levels, columns) = (stack.levels, stack.columns);
+    let along = stack.space.map_or(1, |space| space.columns_along);
     let per_rack = stack.rack.barrels.max(1);
     let none = |kind, key: &str, name: &str| Protection {
         kind,
@@ -85,7 +91,7 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let mut all = vec![none(Kind::AsItIs, "as-it-is", "as it is")];
     for fewer in 1..levels {
         let kept = levels - fewer;
-        let moved = fewer * columns;
+        let moved = fewer * a_level(stack);
         all.push(Protection {
             changes: vec![format!("stack.levels={kept}")],
             cost: times(PLACE, moved),
@@ -100,7 +106,10 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     }
     let racks = catalog::RACKS.iter().map(|known| &known.rack);
     for rack in racks.filter(|rack| rack.base != stack.rack.base && rack.barrels == per_rack) {
-        let count = levels * columns.div_ceil(per_rack) * rack.barrels_deep;
+        let deep = rack.barrels_deep.max(1);
+        // In a plane across the barrels, one row of racks is priced with all barrels that they carry.
+        let rows = if stack.space.is_some() { along.div_ceil(deep) } else { deep };
+        let count = levels * columns.div_ceil(per_rack) * rows;
         let price = if rack.posts.is_some() { RACK_ON_POSTS } else { RACK };
         all.push(Protection {
             changes: vec![format!("stack.rack=\"{}\"", rack.base)],

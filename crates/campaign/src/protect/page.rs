@@ -152,6 +152,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
             collapse(all, best.collapse.mean),
             collapse(all, base.collapse.mean)
         ));
+        said.extend(order(all, best));
         if best.protection.moved > 0 {
             said.push(format!("{} barrels have to be stored elsewhere.", best.protection.moved));
         }
@@ -177,6 +178,26 @@ fn sentences(all: &Ranking) -> Vec<String> {
         all.runs
     ));
     said
+}
+
+/// Describes in which share of the draws of the uncertain constants the best protection is better than others.
+fn order(all: &Ranking, best: &Ranked) -> Option<String> {
+    let better = best.better_than_as_it_is?;
+    let at = all.all.iter().position(|one| std::ptr::eq(one, best));
+    let next = at.and_then(|at| all.all.get(at + 1)).zip(best.better_than_next);
+    let next = next.filter(|(next, _)| next.protection.kind != Kind::AsItIs);
+    let next = next.map_or_else(String::new, |(next, share)| {
+        format!(
+            ", and than with the next of the ranking ({}) in {}",
+            next.protection.name,
+            percent(share)
+        )
+    });
+    Some(format!(
+        "The friction, stiffness and damping of the seats are uncertain: in {} of their draws, in which the error of sampling \
+         is drawn as well, fewer barrels fall than with the stack as it is{next}.",
+        percent(better)
+    ))
 }
 
 /// Formats a number of barrels with its interval. Numbers per event have two decimals. Numbers per year have
@@ -213,6 +234,15 @@ fn table(all: &Ranking) -> Table {
     let collapse = |one: &Ranked| {
         if is_site(all) { interval(all, &one.collapse) } else { shares(&one.collapse) }
     };
+    let over = |one: &Ranked| {
+        one.range.map(|[low, high]| {
+            if is_site(all) {
+                format!("{} to {}", significant(low, 2), significant(high, 2))
+            } else {
+                format!("{:.0}–{:.0} %", 100.0 * low, 100.0 * high)
+            }
+        })
+    };
     let shown = |saved: &Option<Estimate>| saved.as_ref().map(|saved| interval(all, saved));
     let worn = |one: &Ranked| {
         one.worn.as_ref().map(|(words, worn)| format!("{} {words}", interval(all, worn)))
@@ -229,6 +259,13 @@ fn table(all: &Ranking) -> Table {
             ("cost of a stack", "US$", &|one| Cell::text(cost(one))),
             ("barrels elsewhere", "", &|one| Cell::text(one.protection.moved.to_string())),
             (collapses, "", &|one| Cell::text(collapse(one))),
+            ("the same, over the uncertain constants", "", &|one| Cell::maybe(over(one))),
+            ("better than as it is, in draws of the constants", "", &|one| {
+                Cell::maybe(one.better_than_as_it_is.map(percent))
+            }),
+            ("better than the next, in draws", "", &|one| {
+                Cell::maybe(one.better_than_next.map(percent))
+            }),
             (fallen, "", &|one| Cell::text(interval(all, &one.fallen))),
             (burst, "", &|one| Cell::text(interval(all, &one.burst))),
             ("fewer fall, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
@@ -250,7 +287,11 @@ fn legend(all: &Ranking) -> String {
          than the difference of two means. The next column has an interval that holds for all {} protections at \
          once; it decides whether a protection helps significantly, since the best of many protections looks \
          better than it is. All intervals allow for the small number of motions. Numbers are for the direction \
-         of shaking in which more barrels fall.",
+         of shaking in which more barrels fall. The range over the uncertain constants contains the frequency of \
+         collapse with a probability of 95 % if friction, stiffness and damping of the seats are drawn from their \
+         distributions, error of sampling included. A draw has the same constants for all protections; a \
+         protection is better in it if fewer barrels fall. The number of barrels that fall in a collapse \
+         is the mean at each level, whatever the constants are.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -319,8 +360,8 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     };
     vec![
         motions,
-        "Friction is drawn for every run around the value in the scenario, with an assumed scatter of 20 % for \
-         rack on floor and of 25 % for barrel on rack. All protections draw the same quantiles."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with its \
+         dispersions. All protections draw the same quantiles."
             .into(),
         "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
          table. Labor, lost time and injuries are not counted."

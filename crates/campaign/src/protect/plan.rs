@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use super::Request;
+use crate::direction::turned;
 use crate::heights::{quoted, synthetic};
 use crate::scenario::{Scenario, Until};
 use crate::study::Study;
@@ -61,6 +62,7 @@ pub(crate) fn shaken(
         scenario.to_toml_table("base", until)
     );
     text.push_str(&factors(scenario));
+    text.push_str(&turned(scenario));
     text.push_str(motions);
     let levels: Vec<String> = levels.iter().map(|v| format!("\"{} cm/s\"", 100.0 * v)).collect();
     let _ = write!(

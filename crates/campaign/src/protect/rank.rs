@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use barrelstack_fragility::{Hazard, Interval, grouped_mean, mean_difference};
+use barrelstack_fragility::{Hazard, Interval, Shape, grouped_mean, interval_of, mean_difference};
 
 use crate::decision::{Breakage, Case, Cases};
+use crate::study::{Collected, Study};
+use crate::uncertain::Sample;
 
 /// Confidence level of all intervals.
 pub(super) const LEVEL: f64 = 0.95;
@@ -39,6 +41,19 @@ pub(super) struct Runs {
     pub(super) left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub(super) fallen_at_rest: usize,
+    /// The runs with the constants that were drawn for them.
+    sample: Sample,
+    /// Number and sum of fallen barrels of the runs that collapse, at each level.
+    collapses: Vec<(f64, f64)>,
+}
+
+/// Effect of the uncertain constants on a stack.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Over {
+    /// Range of the probability of collapse, or of its annual rate, with a probability of 95 %.
+    pub(super) range: Option<[f64; 2]>,
+    /// Number of barrels that fall, in every draw of the constants and of the regression; empty if it is unknown.
+    pub(super) fallen: Vec<f64>,
 }
 
 /// Mean of one quantity, with its interval.
@@ -57,7 +72,17 @@ pub(super) type Quantity = fn(&Outcome) -> f64;
 
 impl Runs {
     /// Adds the cases of a round; `levels` are the levels of shaking (m/s).
-    pub(super) fn add(&mut self, cases: &Cases, levels: &[f64]) {
+    pub(super) fn add(
+        &mut self,
+        (study, collected): (&Study, &Collected),
+        cases: &Cases,
+        levels: &[f64],
+    ) {
+        self.sample.add(study, collected, cases);
+        if cases.left_out > 0 {
+            self.sample.lacks_a_verdict();
+        }
+        self.collapses.resize(levels.len(), (0.0, 0.0));
         self.left_out += cases.left_out;
         self.fallen_at_rest += cases.fallen_at_rest();
         self.count += cases.all.len() + cases.left_out;
@@ -71,7 +96,47 @@ impl Runs {
             let motion = cases.records[case.record as usize].clone();
             let of = self.by_motion.entry(motion).or_insert_with(|| vec![Vec::new(); levels.len()]);
             of[at].push(Outcome::of(case));
+            if case.collapsed {
+                let (count, fallen) = &mut self.collapses[at];
+                (*count, *fallen) = (*count + 1.0, *fallen + f64::from(case.fallen()));
+            }
         }
+    }
+
+    /// Returns the effect of the uncertain constants, over the weighted levels (m/s).
+    ///
+    /// The regression gives the share of collapses at each level. The number of barrels that fall in a collapse is the
+    /// mean at that level, or over all levels if nothing collapses there, and does not depend on the constants.
+    pub(super) fn over_constants(&self, levels: &[f64], weights: &[f64], most: f64) -> Over {
+        let certain =
+            self.sample.is_certain().then(|| self.estimate(|run| run.collapsed, weights, 1.0));
+        let unknown = Over { range: certain.map(|all| [all.low, all.high]), fallen: Vec::new() };
+        let Some(fit) = self.sample.fit(Shape::Free) else { return unknown };
+        let near = |level: f64| {
+            let found = self.sample.intensities().find(|known| (known / level - 1.0).abs() < 1e-3);
+            Some(fit.at(found?)?.shares())
+        };
+        let Some(shares) = levels.iter().map(|level| near(*level)).collect::<Option<Vec<_>>>()
+        else {
+            return unknown;
+        };
+        let (count, sum) = self
+            .collapses
+            .iter()
+            .fold((0.0, 0.0), |(n, sum), (count, fallen)| (n + count, sum + fallen));
+        let whole = if count > 0.0 { sum / count } else { most };
+        let each = |at: usize| match self.collapses[at] {
+            (0.0, _) => whole,
+            (count, fallen) => fallen / count,
+        };
+        let weighted = |draw: usize, factor: &dyn Fn(usize) -> f64| -> f64 {
+            (0..levels.len()).map(|at| weights[at] * factor(at) * shares[at][draw]).sum()
+        };
+        let draws = 0..shares.first().map_or(0, Vec::len);
+        let collapses: Vec<f64> = draws.clone().map(|draw| weighted(draw, &|_| 1.0)).collect();
+        let Interval { low, high } = interval_of(&collapses, LEVEL);
+        let fallen = draws.map(|draw| weighted(draw, &each)).collect();
+        Over { range: Some([low, high]), fallen }
     }
 
     /// Returns the mean of a quantity for each motion, over the weighted levels. Motions that lack a run at

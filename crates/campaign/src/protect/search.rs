@@ -5,14 +5,15 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use barrelstack::check;
 use barrelstack::variants::planes;
 
+use super::options::a_level;
 use super::rank::{FALLEN, Runs};
 use super::{ProtectError, Protection, Ranked, Reached, Request, middle, plan};
 use crate::decision::Cases;
+use crate::direction::{Direction, check};
 use crate::pool;
-use crate::scenario::{Scenario, View};
+use crate::scenario::Scenario;
 use crate::study::{RunOptions, Study, StudyError};
 use crate::system;
 
@@ -20,7 +21,7 @@ use crate::system;
 pub(super) struct Trial {
     pub(super) protection: Protection,
     /// Scenario of the protected stack in each direction.
-    pub(super) stacks: Vec<(View, Scenario)>,
+    pub(super) stacks: Vec<(Direction, Scenario)>,
     pub(super) runs: Vec<Runs>,
     pub(super) round: u32,
 }
@@ -28,9 +29,9 @@ pub(super) struct Trial {
 impl Trial {
     pub(super) fn new(base: &Scenario, protection: Protection) -> Result<Self, ProtectError> {
         let changed = protection.on(base)?;
-        let stacks: Vec<(View, Scenario)> = planes(&changed)?
+        let stacks: Vec<(Direction, Scenario)> = planes(&changed)?
             .into_iter()
-            .filter_map(|plane| Some((plane.view()?, plane.scenario)))
+            .filter_map(|plane| Some((Direction::of(&plane.scenario)?, plane.scenario)))
             .collect();
         // The stack must stand under its own weight in every direction.
         stacks.iter().try_for_each(|(_, stack)| check(stack).map(drop))?;
@@ -41,7 +42,7 @@ impl Trial {
     /// Returns the number of barrels of the stack, in the direction in which this number is larger.
     pub(super) fn barrels(&self) -> f64 {
         let stacks = self.stacks.iter().filter_map(|(_, scenario)| scenario.stack());
-        stacks.map(|stack| f64::from(stack.levels * stack.columns)).fold(0.0, f64::max)
+        stacks.map(|stack| f64::from(stack.levels * a_level(stack))).fold(0.0, f64::max)
     }
 
     /// Returns the index of the direction in which more barrels fall.
@@ -97,10 +98,10 @@ impl Search<'_> {
     ) -> Result<(), ProtectError> {
         let mut studies = Vec::new();
         for at in open {
-            for (direction, (view, stack)) in trials[*at].stacks.iter().enumerate() {
+            for (direction, (shaken, stack)) in trials[*at].stacks.iter().enumerate() {
                 let study = plan::study(self.request, stack, self.levels, round)?;
                 let below =
-                    Path::new(&trials[*at].protection.key).join(plan::name(view.name(), round));
+                    Path::new(&trials[*at].protection.key).join(plan::name(shaken.name(), round));
                 let folder = self.folder.join(&below);
                 system::folder_below(self.folder, &below)
                     .map_err(StudyError::system("create the folder", &folder))?;
@@ -119,11 +120,13 @@ impl Search<'_> {
                 let done = done.fetch_add(news, Ordering::Relaxed) + news;
                 (self.report)(Reached { round: round + 1, done, of })
             })?;
-            Ok::<Cases, ProtectError>(Cases::read(&collected)?)
+            let cases = Cases::read(&collected)?;
+            Ok::<_, ProtectError>((collected, cases))
         };
         let found = pool::map(&studies, work, &|_| ());
-        for ((at, direction, ..), cases) in studies.iter().zip(found) {
-            trials[*at].runs[*direction].add(&cases?, self.levels);
+        for ((at, direction, _, study), found) in studies.iter().zip(found) {
+            let (collected, cases) = found?;
+            trials[*at].runs[*direction].add((study, &collected), &cases, self.levels);
             trials[*at].round = round + 1;
         }
         Ok(())
@@ -142,7 +145,7 @@ impl Search<'_> {
                 let open: Vec<usize> = (0..one.len()).collect();
                 self.round(&mut one, &open, 0)?;
                 let Some(one) = one.first() else { continue };
-                let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
+                let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * a_level(stack));
                 let runs = &one.runs[one.worse(weights)];
                 let fallen = runs.estimate(FALLEN, weights, f64::from(most));
                 if found.worn.as_ref().is_none_or(|(_, worst)| worst.mean < fallen.mean) {

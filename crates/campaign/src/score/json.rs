@@ -1,5 +1,6 @@
 //! JSON document of a score sheet, in SI units.
 
+use barrelstack::variants::Unknown;
 use barrelstack_report::described;
 
 use super::{Capacity, Scored, Sheet};
@@ -10,13 +11,20 @@ described! {
         /// Name and version of this layout.
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",
         /// Name and version of the protocol; only scores of the same protocol are comparable.
-        pub protocol: &'static str = sheet.protocol.name,
+        pub protocol: String = sheet.protocol.name.clone(),
         /// Title of the scored scenario.
         pub title: String = sheet.scenario.title.clone(),
         /// Name of the rack.
         pub rack: Option<String> = sheet.scenario.stack().map(|stack| stack.rack.base.to_owned()),
         /// Score: the smallest velocity over all states and directions, rounded down.
         pub score: u32 as "cm/s" = sheet.score(),
+        /// Range of the score over the uncertain constants of the seats (friction, stiffness, damping), with a probability
+        /// of 95 %, sampling error included; rounded outward. Without uncertain constants it is the interval of
+        /// sampling. Null if a run has no verdict, or if there are too few runs.
+        pub range: Option<[u32; 2]> as "cm/s" = sheet.range(),
+        /// Constant that decides the result in the weakest state and direction: shares of collapse at the velocity of the
+        /// score, as a function of the constant; null if no constant decides.
+        pub decides: Option<Unknown> = sheet.decisive().cloned(),
         /// Number of levels of the stack.
         pub levels: u32 = sheet.protocol.levels,
         /// Peak ground velocities to which every motion was scaled.
@@ -35,8 +43,8 @@ described! {
         pub state: String = row.0.state.name.clone(),
         /// Changes of the scenario in this state, as overrides.
         pub changes: Vec<String> = row.0.state.changes.clone(),
-        /// Direction of shaking: across or along the barrels.
-        pub direction: &'static str ["transverse", "longitudinal"] = row.0.view.name(),
+        /// Direction of shaking: across the barrels, along them, or in space by all components of the motions.
+        pub direction: &'static str ["transverse", "longitudinal", "spatial"] = row.0.direction.name(),
         /// Peak ground velocity at which one stack in ten collapses; 0 if that velocity is below all levels.
         pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
         /// Source of the velocity: the fitted curve, the lower of two levels between which the share of
@@ -50,6 +58,9 @@ described! {
             },
         /// 95 % interval of the velocity, clustered by motion; null if there is none.
         pub interval: Option<[f64; 2]> as "m/s" = row.0.capacity.interval().map(|of| [of.low, of.high]),
+        /// Range of the velocity over the uncertain constants, as `range` of the score; 0 if it is below all levels, and
+        /// the highest level if it is above all.
+        pub range: Option<[f64; 2]> as "m/s" = row.0.range().map(|of| [of.low, of.high]),
         /// Share of collapse at each of the velocities of the protocol; null where no run has a verdict.
         pub collapsed: Vec<Option<f64>> as "1" = row.1.protocol.velocities.iter()
             .map(|velocity| row.0.at(*velocity).map(|stripe| stripe.fraction())).collect(),

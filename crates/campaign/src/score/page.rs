@@ -1,11 +1,14 @@
 //! Report page of a score: the score, all states and directions, the curves, and the protocol.
 
+use barrelstack_fragility::Interval;
 use barrelstack_report::{Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict};
 
+use barrelstack::variants::ShareAt;
 use barrelstack_input::listing::Source;
 
 use super::{Capacity, Scored, Sheet};
 use crate::decision::{chance_axis, fallen_at_rest, fitted, heading, left_out, percent, raw, text};
+use crate::direction::Direction;
 
 pub(super) fn document(sheet: &Sheet) -> Document {
     let protocol = &sheet.protocol;
@@ -21,7 +24,10 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             text(
                 "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood \
                  for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all \
-                 velocities, rounded down, is the score.",
+                 velocities, rounded down, is the score. \
+                 The range over the uncertain constants contains the velocity of a stack with a probability of 95 % if \
+                 its friction, stiffness and damping are drawn from their distributions; it includes the \
+                 error of sampling.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
@@ -30,7 +36,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Table(inputs(sheet)),
         ],
         provenance: vec![
-            ("protocol".into(), protocol.name.into()),
+            ("protocol".into(), protocol.name.clone()),
             ("runs".into(), sheet.rows.iter().map(|row| row.runs).sum::<usize>().to_string()),
             ("seed".into(), protocol.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
@@ -63,7 +69,7 @@ fn headline(sheet: &Sheet) -> String {
     let Some(weakest) = sheet.weakest() else { return "Nothing was run.".to_owned() };
     let score = sheet.score();
     let stacks = format!("stacks of {} levels on {}", sheet.protocol.levels, scored(sheet));
-    let direction = weakest.view.words();
+    let direction = weakest.direction.words();
     match weakest.capacity {
         Capacity::Fitted(..) | Capacity::Between(..) => format!(
             "RockScore {score}: shaken {direction} to {score} cm/s, nine in ten {stacks} stand."
@@ -82,12 +88,30 @@ fn headline(sheet: &Sheet) -> String {
 fn sentences(sheet: &Sheet) -> Vec<String> {
     let Some(weakest) = sheet.weakest() else { return Vec::new() };
     let mut said =
-        vec![format!("Weakest: {}, shaken {}.", weakest.state.name, weakest.view.words())];
+        vec![format!("Weakest: {}, shaken {}.", weakest.state.name, weakest.direction.words())];
+    said.extend(over_constants(sheet));
     let new = sheet.rows.iter().filter(|row| row.state == sheet.rows[0].state);
     let new: Vec<String> =
-        new.map(|row| format!("{} {}", bears(row.capacity), row.view.words())).collect();
+        new.map(|row| format!("{} {}", bears(row.capacity), row.direction.words())).collect();
     said.push(format!("As good as new: {}.", new.join(", ")));
     said
+}
+
+/// Describes the range of the score over the uncertain constants, and the constant that decides.
+fn over_constants(sheet: &Sheet) -> Option<String> {
+    let [low, high] = sheet.range().filter(|_| !sheet.draws().is_empty())?;
+    let decides = sheet.decisive().map(|one| {
+        let at = |at: &ShareAt| format!("{} at {}", percent(at.share), one.words(at.value));
+        let ends = one.low_median_high().map_or_else(String::new, |[from, _, to]| {
+            format!(": at {} cm/s {} collapse, {}", sheet.score().max(1), at(from), at(to))
+        });
+        format!("; the {} decides{ends}", one.name)
+    });
+    Some(format!(
+        "Over the friction, stiffness and damping of the seats, which are uncertain, the score is between {low} and {high} \
+         with a probability of 95 %{}.",
+        decides.unwrap_or_else(|| "; none of these decides alone".to_owned())
+    ))
 }
 
 /// Formats the velocity of a capacity, such as "42 cm/s".
@@ -103,7 +127,12 @@ fn bears(capacity: Capacity) -> String {
 fn table(sheet: &Sheet) -> Table {
     let velocities = &sheet.protocol.velocities;
     let heads: Vec<String> = velocities.iter().map(|v| format!("at {} cm/s", shown(*v))).collect();
-    let mut columns = vec![("state", ""), ("shaken", ""), ("one in ten collapses at", "")];
+    let mut columns = vec![
+        ("state", ""),
+        ("shaken", ""),
+        ("one in ten collapses at", ""),
+        ("over the uncertain constants", "cm/s"),
+    ];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));
     let mut table = Table::new(
         "Velocity at which one stack in ten collapses, in every state and direction, and the share of stacks \
@@ -118,8 +147,9 @@ fn table(sheet: &Sheet) -> Table {
         let is_weakest = weakest.is_some_and(|weakest| std::ptr::eq(weakest, row));
         let mut cells = vec![
             Cell::text(row.state.name.clone()),
-            Cell::text(row.view.words()),
+            Cell::text(row.direction.words()),
             if is_weakest { Cell::Rated(Rating::Poor, bears) } else { Cell::text(bears) },
+            Cell::maybe(row.range().map(|of| over(&of, protocol_ends(sheet)))),
         ];
         cells.extend(velocities.iter().map(|velocity| {
             Cell::maybe(row.at(*velocity).map(|stripe| percent(stripe.fraction())))
@@ -129,8 +159,22 @@ fn table(sheet: &Sheet) -> Table {
     table
 }
 
+/// Returns the lowest and the highest level of the protocol (m/s).
+fn protocol_ends(sheet: &Sheet) -> [f64; 2] {
+    let velocities = &sheet.protocol.velocities;
+    [velocities.first(), velocities.last()].map(|end| end.copied().unwrap_or(0.0))
+}
+
+/// Formats a range of velocities, whose ends stand for all velocities beyond the levels of the protocol.
+fn over(of: &Interval, [lowest, highest]: [f64; 2]) -> String {
+    let low = if of.low < lowest { format!("below {}", shown(lowest)) } else { shown(of.low) };
+    let high =
+        if of.high >= highest { format!("above {}", shown(highest)) } else { shown(of.high) };
+    format!("{low} to {high}")
+}
+
 fn chart(sheet: &Sheet) -> Figure {
-    let label = |row: &Scored| format!("{}, {}", row.state.name, row.view.words());
+    let label = |row: &Scored| format!("{}, {}", row.state.name, row.direction.words());
     let series = sheet.rows.iter().enumerate().map(|(index, row)| {
         fitted(&row.curve, 100.0, &label(row))
             .unwrap_or_else(|| raw(&row.curve, 100.0, &label(row), index))
@@ -161,7 +205,7 @@ fn inputs(sheet: &Sheet) -> Table {
     )
 }
 
-fn rules(sheet: &Sheet) -> Vec<String> {
+pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
     let protocol = &sheet.protocol;
     let list = |values: &[f64], scale: f64| {
         let words: Vec<String> =
@@ -170,9 +214,13 @@ fn rules(sheet: &Sheet) -> Vec<String> {
     };
     vec![
         format!(
-            "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices, on level ground, \
-             across the barrels and along them.",
-            protocol.levels
+            "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices, on level ground, {}.",
+            protocol.levels,
+            if sheet.rows.iter().any(|row| row.direction == Direction::Space) {
+                "in space; the horizontal direction of the motion is drawn for every run"
+            } else {
+                "across the barrels and along them"
+            }
         ),
         format!(
             "The motions: {} velocity pulses of Mavroeidis and Papageorgiou (2003; γ 1.5, 90°) of {} s, both components of \
@@ -183,8 +231,8 @@ fn rules(sheet: &Sheet) -> Vec<String> {
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction is drawn for every run around the value in the scenario, with a scatter of 20 % for rack on \
-         floor and of 25 % for barrel on rack; all racks get the same quantiles and the same motions."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with its \
+         dispersions; all racks get the same quantiles and the same motions."
             .into(),
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
          one at a time."

@@ -12,7 +12,7 @@ use crate::scenario::Scenario;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protocol {
     /// Name and version of the protocol.
-    pub name: &'static str,
+    pub name: String,
     /// Number of levels of the stack.
     pub levels: u32,
     /// Levels of peak ground velocity (m/s) to which every motion is scaled, in ascending order.
@@ -50,7 +50,7 @@ impl Protocol {
     /// constants were stated per contact element.
     pub fn rockscore() -> Self {
         Self {
-            name: "rockscore/2",
+            name: "rockscore/2".to_owned(),
             levels: 4,
             velocities: vec![0.15, 0.25, 0.40, 0.60, 0.90, 1.35],
             periods: vec![0.5, 0.8, 1.2, 1.8, 2.7, 4.0],
@@ -58,6 +58,18 @@ impl Protocol {
             seed: 1,
             chance: 0.1,
         }
+    }
+
+    /// Returns the protocol with every `step`-th motion of each kind, for an estimate in less time. Its name states this,
+    /// since only scores of the same protocol are comparable.
+    #[must_use]
+    pub fn thinned(self, step: u32) -> Self {
+        if step <= 1 {
+            return self;
+        }
+        let periods = self.periods.iter().copied().step_by(step as usize).collect();
+        let name = format!("{}, one motion in {step}", self.name);
+        Self { name, periods, synthetic: self.synthetic / step, ..self }
     }
 
     /// Returns the overrides that turn the stack of a scenario into that of the protocol.

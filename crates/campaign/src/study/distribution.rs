@@ -119,6 +119,41 @@ impl Distribution {
         self.domain.setting(value, self.origin)
     }
 
+    /// Returns the standard normal deviate that has the same cumulative probability as a value; `None` if the
+    /// distribution is discrete.
+    pub(crate) fn deviate(&self, value: f64) -> Option<f64> {
+        let part = |from: f64, to: f64| ((value - from) / (to - from)).clamp(1e-16, 1.0 - 1e-16);
+        let u = match &self.shape {
+            Shape::Uniform { from, to } => part(*from, *to),
+            Shape::LogUniform { from, to } => {
+                (libm::log(value / from) / libm::log(to / from)).clamp(1e-16, 1.0 - 1e-16)
+            }
+            Shape::Normal { mean, deviation, cut } => cut.cut((value - mean) / deviation),
+            Shape::Lognormal { median, dispersion, cut } => {
+                cut.cut(libm::log(value / median) / dispersion)
+            }
+            Shape::Discrete(_) => return None,
+        };
+        Some(normal_quantile(u))
+    }
+
+    /// Returns the value (SI) that has the same cumulative probability as a standard normal deviate; `None` if the
+    /// distribution is discrete.
+    pub(crate) fn at_deviate(&self, deviate: f64) -> Option<f64> {
+        let value = self.quantile(normal(deviate)).number();
+        Some(value).filter(|_| !matches!(self.shape, Shape::Discrete(_)))
+    }
+
+    /// Returns the standard deviation of the logarithm of a lognormal distribution, without truncation; for another
+    /// distribution, that of the lognormal distribution with the same 16 and 84 % fractiles.
+    pub(crate) fn dispersion(&self) -> f64 {
+        if let Shape::Lognormal { dispersion, .. } = &self.shape {
+            return *dispersion;
+        }
+        let [low, high] = [-1.0, 1.0].map(|deviate| self.at_deviate(deviate));
+        low.zip(high).map_or(f64::NAN, |(low, high)| 0.5 * libm::log(high / low))
+    }
+
     /// Returns the values of a discrete distribution; `None` for a continuous one.
     pub(super) fn settings(&self) -> Option<impl Iterator<Item = &Setting>> {
         if let Shape::Discrete(values) = &self.shape {
@@ -154,6 +189,13 @@ impl Cut {
     fn uncut(&self, u: f64) -> f64 {
         // The result stays away from 0 and 1, where quantiles are infinite; no draw of 53 bits is changed.
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)
+    }
+
+    /// Converts a deviate of the untruncated distribution to the cumulative probability of the same value in the
+    /// truncated distribution.
+    fn cut(&self, deviate: f64) -> f64 {
+        let [from, to] = self.below;
+        ((normal(deviate) - from) / (to - from)).clamp(1e-16, 1.0 - 1e-16)
     }
 
     fn within(&self, value: f64) -> f64 {

@@ -68,15 +68,18 @@ fn lines(found: &Heights) -> Vec<String> {
     for view in View::ALL {
         lines.push(format!("  collapsed, shaken {}", view.words()));
         let heads =
-            found.request.heights().map(|levels| format!("{:>9}", format!("{levels} levels")));
+            found.request.heights().map(|levels| format!("{:>16}", format!("{levels} levels")));
         lines.push(format!("  {:>10}{}", "shaking", heads.collect::<String>()));
         for velocity in VELOCITIES {
             let cells = found.request.heights().map(|levels| {
                 let at = found.of(levels, view).and_then(|height| height.at(velocity));
                 let share = at.map_or_else(String::new, |at| {
-                    format!("{:.0} %", 100.0 * at.stripe.fraction())
+                    let range = at
+                        .range
+                        .map(|[low, high]| format!(" ({:.0} to {:.0})", 100.0 * low, 100.0 * high));
+                    format!("{:.0} %{}", 100.0 * at.stripe.fraction(), range.unwrap_or_default())
                 });
-                format!("{share:>9}")
+                format!("{share:>16}")
             });
             lines.push(format!(
                 "  {:>10}{}",
@@ -86,6 +89,9 @@ fn lines(found: &Heights) -> Vec<String> {
         }
         lines.push(String::new());
     }
-    lines.pop();
+    lines.push(
+        "in brackets: 95 % range over the uncertain friction, stiffness and damping of the seats"
+            .to_owned(),
+    );
     lines
 }

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::bail;
-use barrelstack_campaign::score::{Protocol, ScoreError, Sheet, score};
+use barrelstack_campaign::score::{League, Protocol, ScoreError, Sheet, league, score};
 
-use super::page::{PageArgs, of_option};
+use super::page::{self, PageArgs, of_option, write};
 use crate::args::ScenarioArgs;
 use crate::printer;
 
@@ -15,6 +15,12 @@ use crate::printer;
 pub(crate) struct ScoreArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
+    /// Score every rack and device of the catalog in stacks like this one, and write a league table and its CSV.
+    #[arg(long, conflicts_with = "json")]
+    catalog: bool,
+    /// Use one motion in NUMBER of the protocol, for an estimate in less time; the sheet states it.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
+    one_in: u32,
     /// Folder for the sheet and its studies; run the command again to continue after a stop.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-score")]
     out: PathBuf,
@@ -32,17 +38,28 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
         );
     }
     let (options, progress) = args.page.begin(&args.out)?;
-    let protocol = Protocol::rockscore();
+    let protocol = Protocol::rockscore().thinned(args.one_in);
     let report = |done, of| progress.counted(done, of, "runs");
+    let place = |error| match error {
+        ScoreError::Study(error) => of_option(error, "", &args.out),
+        ScoreError::Stack(failure) => super::placed(failure, &scenario, &args.scenario),
+        other => other.into(),
+    };
+    if args.catalog {
+        let found = league(&scenario, &protocol, &args.out, &options, &report).map_err(place)?;
+        drop(progress);
+        let csv = found.to_csv();
+        write(&args.out, &found.document, &[("league.csv", csv.as_bytes())])?;
+        let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
+        lines.extend(table(&found));
+        lines.extend(page::place(&args.out));
+        printer::lines(lines)?;
+        found.document.warnings.iter().for_each(|text| printer::warning(text));
+        return Ok(ExitCode::SUCCESS);
+    }
     let result = score(&scenario, &protocol, &args.out, &options, &report);
     drop(progress);
-    let sheet = match result {
-        Err(ScoreError::Study(error)) => return Err(of_option(error, "", &args.out)),
-        Err(ScoreError::Stack(failure)) => {
-            return Err(super::placed(failure, &scenario, &args.scenario));
-        }
-        other => other?,
-    };
+    let sheet = result.map_err(place)?;
     let file = (args.out.as_path(), "rockscore.json");
     args.page.end(
         file,
@@ -51,6 +68,24 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
         lines(&sheet),
         &sheet.document.warnings,
     )
+}
+
+/// Returns the league table as text.
+fn table(found: &League) -> Vec<String> {
+    let mut lines =
+        vec![format!("  {:60}{:>10}{:>16}", "rack or device", "RockScore", "95 % range")];
+    for (contender, sheet) in &found.rows {
+        let range =
+            sheet.range().map_or_else(String::new, |[low, high]| format!("{low} to {high}"));
+        lines.push(format!("  {:60}{:>10}{range:>16}", contender.name, sheet.score()));
+    }
+    for (name, reason) in &found.not_scored {
+        lines.push(format!("  {name}: not scored, {reason}"));
+    }
+    lines.push(
+        "95 % range: over the uncertain friction, stiffness and damping of the seats".to_owned(),
+    );
+    lines
 }
 
 /// Returns the table as text.
@@ -69,7 +104,7 @@ fn lines(sheet: &Sheet) -> Vec<String> {
             let stripe = row.at(velocity);
             stripe.map_or_else(String::new, |stripe| format!("{:.0}", 100.0 * stripe.fraction()))
         };
-        lines.push(format!("  {:36}{:24}{}", row.state.name, row.view.words(), cells(&share)));
+        lines.push(format!("  {:36}{:24}{}", row.state.name, row.direction.words(), cells(&share)));
     }
     lines
 }

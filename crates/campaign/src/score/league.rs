@@ -1,0 +1,287 @@
+//! League table: the scores of every rack and every device of the catalog.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use barrelstack_fragility::share_less;
+use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, to_csv};
+use barrelstack_report::{Block, Cell, Document, Table, Verdict};
+
+use super::{Prepared, Protocol, ScoreError, Sheet, page, prepared};
+use crate::decision::{heading, percent, text};
+use crate::direction::Direction;
+use crate::protect::{Kind, changed, singles, slug};
+use crate::scenario::{Scenario, StackSpec, catalog};
+use crate::study::{RunOptions, StudyError};
+use crate::system;
+
+/// A rack or device of the league table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contender {
+    /// Name of the rack, or of the device on the rack of the scenario.
+    pub name: String,
+    /// "rack" or "device".
+    pub kind: &'static str,
+    /// Changes of the scenario, as overrides.
+    pub changes: Vec<String>,
+}
+
+/// Scores of every rack and every device of the catalog.
+#[derive(Clone, Debug)]
+pub struct League {
+    /// Scored racks and devices, the highest score first.
+    pub rows: Vec<(Contender, Sheet)>,
+    /// Names of the racks and devices that could not be scored, each with the reason.
+    pub not_scored: Vec<(String, String)>,
+    /// Report page.
+    pub document: Document,
+}
+
+/// Returns the racks and devices that are scored: every rack of the catalog without devices, and every setting of every
+/// device on the rack of the scenario.
+pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
+    let Some(stack) = scenario.stack() else { return Vec::new() };
+    let rack = |known: &catalog::CatalogRack| Contender {
+        name: format!("{} rack", known.rack.base),
+        kind: "rack",
+        changes: on_rack(stack, &known.rack),
+    };
+    let devices = singles(scenario).into_iter().filter(|one| matches!(one.kind, Kind::Device(_)));
+    let device = |one: crate::protect::Protection| Contender {
+        name: one.name,
+        kind: "device",
+        changes: one.changes,
+    };
+    catalog::RACKS.iter().map(rack).chain(devices.map(device)).collect()
+}
+
+/// Returns the changes that put a stack on a rack: the rack, and as many columns as it carries if those of the stack do
+/// not fill racks.
+fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
+    let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
+    if stack.columns % rack.barrels.max(1) != 0 {
+        changes.push(format!("stack.columns={}", rack.barrels));
+    }
+    let along = stack.space.map(|space| space.columns_along).or(stack.columns_along);
+    if along.is_some_and(|along| along % rack.barrels_deep.max(1) != 0) {
+        changes.push(format!("stack.columns_along={}", rack.barrels_deep));
+    }
+    changes
+}
+
+/// Scores every rack and every device of the catalog, in stacks like that of the scenario.
+///
+/// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report` receives
+/// the number of finished runs and the total, and may cancel.
+///
+/// # Errors
+/// If the scenario has no stack, if nothing can be scored, or if a folder cannot be written.
+pub fn league(
+    scenario: &Scenario,
+    protocol: &Protocol,
+    folder: &Path,
+    options: &RunOptions,
+    report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+) -> Result<League, ScoreError> {
+    if scenario.stack().is_none() {
+        return Err(ScoreError::NoStack(scenario.title.clone()));
+    }
+    let (mut ready, mut not_scored) = (Vec::<(Contender, Prepared)>::new(), Vec::new());
+    for contender in contenders(scenario) {
+        let made = changed(scenario, &contender.changes)
+            .map_err(|source| ScoreError::State { state: contender.name.clone(), source })
+            .and_then(|scenario| prepared(&scenario, protocol));
+        match made {
+            Ok(prepared) => ready.push((contender, prepared)),
+            Err(ScoreError::Study(error)) => return Err(error.into()),
+            Err(error) => not_scored.push((contender.name, reason(&error))),
+        }
+    }
+    let all: u64 = ready.iter().map(|(_, prepared)| prepared.cases()).sum();
+    let (mut before, mut rows) = (0, Vec::new());
+    for (contender, prepared) in ready {
+        let below = Path::new(contender.kind).join(slug(&contender.name));
+        let place = folder.join(&below);
+        system::folder_below(folder, &below)
+            .map_err(StudyError::system("create the folder", &place))?;
+        let cases = prepared.cases();
+        match prepared.run(&place, options, &|done, _| report(before + done, all)) {
+            Ok(sheet) => rows.push((contender, sheet)),
+            Err(error @ ScoreError::Curve { .. }) => {
+                not_scored.push((contender.name, reason(&error)));
+            }
+            Err(other) => return Err(other),
+        }
+        before += cases;
+    }
+    rows.sort_by(|a, b| b.1.score().cmp(&a.1.score()));
+    let mut league = League { rows, not_scored, document: Document::default() };
+    league.document = document(&league, scenario, protocol);
+    Ok(league)
+}
+
+/// Returns the first line of an error and of its cause; places in a generated text are of no use to the reader.
+fn reason(error: &ScoreError) -> String {
+    let line = |text: String| text.lines().next().unwrap_or_default().to_owned();
+    let cause =
+        std::error::Error::source(error).map(|cause| format!(": {}", line(cause.to_string())));
+    line(error.to_string()) + &cause.unwrap_or_default()
+}
+
+impl League {
+    /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than that of the
+    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, and if draws are unknown.
+    pub fn better_than_next(&self, row: usize) -> Option<f64> {
+        let [own, next] = [self.rows.get(row)?, self.rows.get(row + 1)?].map(|(_, s)| s.draws());
+        (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))
+    }
+
+    /// Returns the table as CSV, with units in the heading.
+    pub fn to_csv(&self) -> String {
+        type Cell<'a> = &'a dyn Fn(usize, &Contender, &Sheet) -> Option<Value>;
+        let whole = |value: u32| Some(Value::Integer(i64::from(value)));
+        let words = |value: &str| Some(Value::Text(value.to_owned()));
+        let weakest = |sheet: &Sheet, of: &dyn Fn(&super::Scored) -> Option<Value>| {
+            sheet.weakest().and_then(of)
+        };
+        let runs = |sheet: &Sheet| sheet.rows.iter().map(|row| row.runs).sum::<usize>();
+        let interval = |sheet: &Sheet, high: bool| {
+            let of = sheet.weakest()?.capacity.interval()?;
+            Some(Value::Number(100.0 * if high { of.high } else { of.low }))
+        };
+        let columns: [(&str, &str, ValueKind, Cell<'_>); 13] = [
+            ("name", "", ValueKind::Text, &|_, one, _| words(&one.name)),
+            ("kind", "", ValueKind::Text, &|_, one, _| words(one.kind)),
+            ("score", "cm/s", ValueKind::Integer, &|_, _, sheet| whole(sheet.score())),
+            ("sampling_low", "cm/s", ValueKind::Number, &|_, _, sheet| interval(sheet, false)),
+            ("sampling_high", "cm/s", ValueKind::Number, &|_, _, sheet| interval(sheet, true)),
+            ("range_low", "cm/s", ValueKind::Integer, &|_, _, sheet| whole(sheet.range()?[0])),
+            ("range_high", "cm/s", ValueKind::Integer, &|_, _, sheet| whole(sheet.range()?[1])),
+            ("better_than_next", "", ValueKind::Number, &|row, _, _| {
+                self.better_than_next(row).map(Value::Number)
+            }),
+            ("decides", "", ValueKind::Text, &|_, _, sheet| words(sheet.decisive()?.name)),
+            ("state", "", ValueKind::Text, &|_, _, sheet| {
+                weakest(sheet, &|row| words(&row.state.name))
+            }),
+            ("direction", "", ValueKind::Text, &|_, _, sheet| {
+                weakest(sheet, &|row| words(row.direction.name()))
+            }),
+            ("runs", "", ValueKind::Integer, &|_, _, sheet| {
+                i64::try_from(runs(sheet)).ok().map(Value::Integer)
+            }),
+            ("changes", "", ValueKind::Text, &|_, one, _| words(&one.changes.join("; "))),
+        ];
+        let columns = columns.map(|(name, unit, kind, cell)| {
+            let mut column = Column::empty(ColumnSpec::new(name, unit, Role::Outcome, kind));
+            for (row, (contender, sheet)) in self.rows.iter().enumerate() {
+                // Every cell has the kind of its column.
+                let _ = column.values.push(cell(row, contender, sheet));
+            }
+            column
+        });
+        to_csv(&columns)
+    }
+}
+
+fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Document {
+    let runs: usize =
+        league.rows.iter().flat_map(|(_, sheet)| &sheet.rows).map(|row| row.runs).sum();
+    let mut blocks = vec![Block::Table(table(league)), text(legend(scenario))];
+    if !league.not_scored.is_empty() {
+        blocks.push(heading("Not scored"));
+        let row = |(name, reason): &(String, String)| format!("{name}: {reason}");
+        blocks.push(Block::List(league.not_scored.iter().map(row).collect()));
+    }
+    if let Some((_, sheet)) = league.rows.first() {
+        blocks.push(heading("The protocol"));
+        blocks.push(Block::List(page::rules(sheet)));
+    }
+    Document {
+        title: "RockScores of the catalog".to_owned(),
+        verdict: Verdict { headline: headline(league), ..Verdict::default() },
+        blocks,
+        provenance: vec![
+            ("protocol".into(), protocol.name.clone()),
+            ("stack".into(), scenario.title.clone()),
+            ("runs".into(), runs.to_string()),
+            ("seed".into(), protocol.seed.to_string()),
+            ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
+        ],
+        warnings: league
+            .rows
+            .iter()
+            .flat_map(|(_, sheet)| sheet.document.warnings.clone())
+            .collect(),
+        words: barrelstack::report::WORDS.to_vec(),
+    }
+}
+
+fn headline(league: &League) -> String {
+    let Some((first, sheet)) = league.rows.first() else { return "Nothing was scored.".to_owned() };
+    let range = sheet.range().map_or_else(String::new, |[low, high]| {
+        format!(" (between {low} and {high} over the uncertain constants)")
+    });
+    let next = league.rows.get(1).zip(league.better_than_next(0));
+    let next = next.map_or_else(String::new, |((next, _), share)| {
+        format!(
+            " In {} of the draws of these constants its score is higher than that of the next, {}.",
+            percent(share),
+            next.name
+        )
+    });
+    format!(
+        "Of {} racks and devices the highest RockScore, {}{range}, is that of this one: {}.{next}",
+        league.rows.len(),
+        sheet.score(),
+        first.name
+    )
+}
+
+fn table(league: &League) -> Table {
+    let rows: Vec<(usize, &Contender, &Sheet)> =
+        league.rows.iter().enumerate().map(|(at, (one, sheet))| (at, one, sheet)).collect();
+    let range = |of: Option<[u32; 2]>| of.map(|[low, high]| format!("{low}–{high}"));
+    let interval = |sheet: &Sheet| {
+        let found = sheet.weakest()?.capacity.interval()?;
+        Some(format!("{:.0}–{:.0}", 100.0 * found.low, 100.0 * found.high))
+    };
+    Table::of(
+        "RockScore of every rack without devices, and of every device on the rack of the scenario, the highest first.",
+        rows,
+        &[
+            ("rack or device", "", &|(_, one, _)| Cell::text(&one.name)),
+            ("RockScore", "cm/s", &|(.., sheet)| Cell::text(sheet.score().to_string())),
+            ("interval of sampling", "cm/s", &|(.., sheet)| Cell::maybe(interval(sheet))),
+            ("over the uncertain constants", "cm/s", &|(.., sheet)| {
+                Cell::maybe(range(sheet.range()))
+            }),
+            ("higher than the next, in draws", "", &|(at, ..)| {
+                Cell::maybe(league.better_than_next(*at).map(percent))
+            }),
+            ("decides", "", &|(.., sheet)| Cell::maybe(sheet.decisive().map(|one| one.name))),
+            ("weakest", "", &|(.., sheet)| {
+                Cell::maybe(
+                    sheet
+                        .weakest()
+                        .map(|row| format!("{}, shaken {}", row.state.name, row.direction.words())),
+                )
+            }),
+        ],
+    )
+}
+
+fn legend(scenario: &Scenario) -> String {
+    let space = if Direction::of(scenario) == Some(Direction::Space) {
+        " In space the ground moves in all directions, so that these scores cannot be compared with those of planes."
+    } else {
+        ""
+    };
+    format!(
+        "A score compares racks and devices under the same motions; it does not predict the behavior of a particular \
+         cellar. The interval of sampling (95 %, clustered by motion) is that of the weakest state and direction; there \
+         is none where no curve can be fitted. The range over the uncertain constants contains the score of a stack \
+         with a probability of 95 % if the friction, stiffness and damping of its seats are drawn from their \
+         distributions, error of sampling included. A draw has the same constants for all rows.{space}"
+    )
+}

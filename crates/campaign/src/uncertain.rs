@@ -1,0 +1,183 @@
+//! Ranges over the uncertain constants of the seats, from the runs of a study.
+//!
+//! Every run of a study of heights, a ranking or a score draws its own friction, stiffness and damping. The same
+//! regression as for the variants of a stack ([`Fitted`]) separates their effect from sampling. Since each motion is run
+//! at several levels of shaking, the regression has a term for every motion and for the level.
+
+use barrelstack::variants::Constant;
+use barrelstack_fragility::{Conditional, Intensities, Interval, Shaken, Shape, Stripe, shaken};
+use barrelstack_motion::Random;
+
+pub use barrelstack::variants::Fitted;
+
+use crate::decision::Cases;
+use crate::study::{Collected, Column, Distribution, Study, Value};
+
+/// Uncertain constants: the field of a scenario and the name of the constant.
+const CONSTANTS: [(&str, &str); 12] = [
+    ("interface.rack-ground.friction.coefficient", "friction of racks on the floor"),
+    ("interface.rack-ground.stiffness", "stiffness of racks on the floor"),
+    ("interface.rack-ground.damping", "damping of racks on the floor"),
+    ("interface.rack-ground.restitution", "damping of racks on the floor"),
+    ("interface.barrel-rack.friction.coefficient", "friction of barrels on racks"),
+    ("interface.barrel-rack.stiffness", "stiffness of barrels on racks"),
+    ("interface.barrel-rack.damping", "damping of barrels on racks"),
+    ("interface.barrel-rack.restitution", "damping of barrels on racks"),
+    ("interface.rack-rack.friction.coefficient", "friction of racks on racks"),
+    ("interface.rack-rack.stiffness", "stiffness of racks on racks"),
+    ("interface.rack-rack.damping", "damping of racks on racks"),
+    ("interface.rack-rack.restitution", "damping of racks on racks"),
+];
+
+/// Units of the constants, as in tables and in reports.
+const UNITS: [(&str, &str); 7] = [
+    ("", "1"),
+    ("N/m", "N/m"),
+    ("N/m^2", "N/m²"),
+    ("N/m^1.5", "N/m^1.5"),
+    ("N/m^2.5", "N/m^2.5"),
+    ("N s/m", "N·s/m"),
+    ("N s/m^2", "N·s/m²"),
+];
+
+/// Uncertain constant that a study draws for every run.
+#[derive(Clone, Debug, PartialEq)]
+struct Drawn {
+    /// Name of the column of the constant.
+    column: String,
+    name: &'static str,
+    field: &'static str,
+    unit: &'static str,
+    distribution: Distribution,
+}
+
+impl Drawn {
+    fn constant(&self) -> Constant<'_> {
+        let value = |deviate| self.distribution.at_deviate(deviate);
+        let mut dispersion = self.distribution.dispersion();
+        if self.field.ends_with(".restitution")
+            && let Some(median) = value(0.0)
+        {
+            // That of the damping ratio.
+            dispersion /= -libm::log(median);
+        }
+        let Self { name, field, unit, .. } = *self;
+        Constant { name, field, unit, dispersion, value: Box::new(value) }
+    }
+}
+
+/// Runs of a stack with the constants that were drawn for them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sample {
+    constants: Vec<Drawn>,
+    /// Names of the motions, to which the runs refer.
+    motions: Vec<String>,
+    runs: Vec<Shaken>,
+    seed: u64,
+    /// `true` if a run has no verdict, or none of its constants is known.
+    incomplete: bool,
+}
+
+impl Sample {
+    /// Creates the sample of the cases of a study.
+    pub(crate) fn of(study: &Study, collected: &Collected, cases: &Cases) -> Self {
+        let mut sample = Self::default();
+        sample.add(study, collected, cases);
+        sample.incomplete |= cases.left_out > 0;
+        sample
+    }
+
+    /// Adds the cases of a study of the same stack; the study may have other motions.
+    pub(crate) fn add(&mut self, study: &Study, collected: &Collected, cases: &Cases) {
+        if self.runs.is_empty() {
+            (self.constants, self.seed) = (drawn(study), study.seed);
+        }
+        let columns = self.constants.iter().map(|one| collected.table.column(&one.column));
+        let Some(columns) = columns.collect::<Option<Vec<_>>>() else {
+            self.incomplete = true;
+            return;
+        };
+        for case in &cases.all {
+            let deviate =
+                |(one, column): (&Drawn, &&Column)| match column.values.get(case.row as usize)? {
+                    Value::Number(value) => one.distribution.deviate(value),
+                    Value::Integer(_) | Value::Text(_) => None,
+                };
+            let deviates = self.constants.iter().zip(&columns).map(deviate).collect();
+            let (Some(deviates), Some(intensity)) = (deviates, case.intensity(cases.main)) else {
+                self.incomplete = true;
+                continue;
+            };
+            let name = &cases.records[case.record as usize];
+            let known = self.motions.iter().position(|motion| motion == name);
+            let motion = known.unwrap_or_else(|| {
+                self.motions.push(name.clone());
+                self.motions.len() - 1
+            });
+            self.runs.push(Shaken { deviates, motion, intensity, failed: case.collapsed });
+        }
+    }
+
+    /// Marks the sample as incomplete, because a run has no verdict.
+    pub(crate) fn lacks_a_verdict(&mut self) {
+        self.incomplete = true;
+    }
+
+    /// Returns the intensity of every run.
+    pub(crate) fn intensities(&self) -> impl Iterator<Item = f64> {
+        self.runs.iter().map(|run| run.intensity)
+    }
+
+    /// `true` if no constant is drawn, so that the range over the constants is the interval of sampling.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.constants.is_empty()
+    }
+
+    /// Fits the share of collapses as a function of intensity and constants; `None` if no constant is drawn, if a run
+    /// has no verdict, or if there are too few runs.
+    pub(crate) fn fit(&self, shape: Shape) -> Option<Intensities> {
+        if self.incomplete {
+            return None;
+        }
+        let mut random = Random::new(self.seed);
+        shaken(&self.runs, shape, || random.uniform())
+    }
+
+    /// Returns the range of a share, and the constants that decide it.
+    pub(crate) fn effect(&self, share: &Conditional) -> Fitted {
+        let constants: Vec<Constant<'_>> = self.constants.iter().map(Drawn::constant).collect();
+        Fitted::of(share, &constants)
+    }
+}
+
+/// Returns the uncertain constants that a study draws for every run.
+fn drawn(study: &Study) -> Vec<Drawn> {
+    let of = |(column, field, unit, distribution): (&str, &str, &str, &Distribution)| {
+        let (field, name) = *CONSTANTS.iter().find(|(known, _)| *known == field)?;
+        let unit = UNITS.iter().find(|(known, _)| *known == unit).map_or("SI", |(_, unit)| unit);
+        let (column, distribution) = (column.to_owned(), distribution.clone());
+        Some(Drawn { column, name, field, unit, distribution })
+    };
+    study.distributions().filter_map(of).collect()
+}
+
+impl Sample {
+    /// Returns the effect of the constants at each intensity, in the order of `stripes`. Without uncertain constants the
+    /// range of an intensity is `sampled`, the interval of sampling; `None` if the effect is unknown.
+    pub(crate) fn at_levels(
+        &self,
+        stripes: &[Stripe],
+        sampled: impl Fn(&Stripe) -> Interval,
+    ) -> Vec<Option<Fitted>> {
+        let fit = self.fit(Shape::Free);
+        let of = |stripe: &Stripe| {
+            if self.is_certain() {
+                let Interval { low, high } = sampled(stripe);
+                let as_stated = stripe.fraction();
+                return Some(Fitted { range: [low, high], as_stated, decides: Vec::new() });
+            }
+            Some(self.effect(&fit.as_ref()?.at(stripe.intensity)?))
+        };
+        stripes.iter().map(of).collect()
+    }
+}
