@@ -52,7 +52,7 @@ fn main() -> ExitCode {
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {
             status(python::run(&steps::root(), rest.first().copied()).map(done))
         }
-        ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
+        ["golden", "bits"] => release(&["--package", "barrelstack-library", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
         ["field", rest @ ..] => {
             release(&["--package", "barrelstack-validation", "--example", "field"], rest)

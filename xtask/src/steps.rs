@@ -47,7 +47,7 @@ const STEPS: [Step; 5] = [
         remedy: "see the failed tests above; they are listed again at the end of the step",
     },
     Step {
-        arguments: &["test", "--release", "--package", "barrelstack", "--test", "bits"],
+        arguments: &["test", "--release", "--package", "barrelstack-library", "--test", "bits"],
         strict_docs: false,
         remedy: "results depend on the optimization level: see the failed test above, which passes with debug assertions",
     },
@@ -190,7 +190,7 @@ pub(crate) fn target(root: &Path) -> PathBuf {
 
 /// Builds the program in the release profile.
 pub(crate) fn build_program(root: &Path) -> anyhow::Result<()> {
-    let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
+    let build = ["build", "--quiet", "--release", "--package", "barrelstack"];
     let status = Command::new(cargo()).args(build).current_dir(root).status();
     if !status.context("cannot start cargo")?.success() {
         bail!("building the program failed: see above");

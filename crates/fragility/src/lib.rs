@@ -84,3 +84,8 @@ pub use profile::{profile_band, profile_median};
 pub use proportion::{Interval, at_most, clopper_pearson, unobserved, wilson};
 pub use records::{LeaveOneOut, grouped_mean, leave_one_out, mean_difference};
 pub use unknowns::{Conditional, FEWEST_TRIALS, Influence, Trial, conditional};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
