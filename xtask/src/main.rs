@@ -7,8 +7,10 @@
 
 mod browser;
 mod bundle;
+mod dist;
 mod extra;
 mod lines;
+mod programs;
 mod python;
 mod steps;
 mod tally;
@@ -35,6 +37,10 @@ tasks:
   field      runs the hindcasts of real earthquakes, validation/field.md; `--records DIR`, `--only TEXT`, `--page`
   bench      measures speed, and that of a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (counts of work compared with the last release; `history keep` saves them)
+  tests      only the tests of the workspace, on any system
+  miri       runs the tests of unsafe code under Miri, with the nightly toolchain
+  dist       makes or checks one part of a release under target/dist: all, binary [TARGET], chroot,
+             wheel [TARGET], try PYTHON..., sdist, crates, deb, image, programs, checksums, lint, msrv; see RELEASING.md
   lines      counts lines of code and comments by crate, and lists the longest files
   fuzz       feeds damaged files to every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 
@@ -48,11 +54,16 @@ fn main() -> ExitCode {
         ["bundle"] => status(steps::bundle(bundle::Bundle::write).map(done)),
         ["bundle", "check"] => status(steps::bundle(bundle::Bundle::check).map(done)),
         ["web"] => status(steps::web().map(done)),
+        ["tests"] => status(steps::tests().map(done)),
+        ["miri"] => status(steps::miri().map(done)),
+        ["dist", rest @ ..] => status(dist::run(&steps::root(), rest).map(done)),
         ["lines"] => status(lines::list(&steps::root()).map(done)),
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {
             status(python::run(&steps::root(), rest.first().copied()).map(done))
         }
-        ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
+        ["golden", "bits"] => {
+            release(&["--package", "barrelstack-library", "--example", "golden"], &[])
+        }
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
         ["field", rest @ ..] => {
             release(&["--package", "barrelstack-validation", "--example", "field"], rest)

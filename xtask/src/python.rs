@@ -64,7 +64,7 @@ pub(crate) fn find(root: &Path) -> Result<Command, String> {
 }
 
 /// Returns the name of a Python of version 3.10 or later that can create virtual environments.
-fn interpreter() -> Result<&'static str, String> {
+pub(crate) fn interpreter() -> Result<&'static str, String> {
     let check = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 10))";
     let answers = |name: &&&str| {
         let run = Command::new(**name).args(["-c", check]).stderr(Stdio::null()).status();
@@ -121,7 +121,7 @@ fn run_others(root: &Path) -> anyhow::Result<()> {
 
 /// Returns the Python interpreter of the virtual environment in a folder, and creates the
 /// environment if it does not exist.
-fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
+pub(crate) fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     let bin = if cfg!(windows) { "Scripts" } else { "bin" };
     let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));
     if !python.is_file() {
@@ -170,7 +170,7 @@ fn installed(python: &Path, requirement: &str) -> bool {
 }
 
 /// Returns the command `pip install` of an environment.
-fn pip(python: &Path) -> Command {
+pub(crate) fn pip(python: &Path) -> Command {
     let mut pip = inside(python);
     pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]);
     pip
@@ -178,7 +178,7 @@ fn pip(python: &Path) -> Command {
 
 /// Returns the command of a Python interpreter, with the programs of its environment first on the
 /// search path.
-fn inside(python: &Path) -> Command {
+pub(crate) fn inside(python: &Path) -> Command {
     let mut command = Command::new(python);
     let path = std::env::var_os("PATH").unwrap_or_default();
     let own = python.parent().map(Path::to_path_buf);
@@ -188,7 +188,7 @@ fn inside(python: &Path) -> Command {
     command
 }
 
-fn checked(command: &mut Command, what: &str) -> anyhow::Result<()> {
+pub(crate) fn checked(command: &mut Command, what: &str) -> anyhow::Result<()> {
     let status = command.status().with_context(|| format!("cannot start {what}"))?;
     if !status.success() {
         bail!("{what} failed: see above");

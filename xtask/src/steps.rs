@@ -47,11 +47,14 @@ const STEPS: [Step; 5] = [
         remedy: "see the failed tests above; they are listed again at the end of the step",
     },
     Step {
-        arguments: &["test", "--release", "--package", "barrelstack", "--test", "bits"],
+        arguments: &["test", "--release", "--package", "barrelstack-library", "--test", "bits"],
         strict_docs: false,
         remedy: "results depend on the optimization level: see the failed test above, which passes with debug assertions",
     },
 ];
+
+/// Tests of unsafe code that Miri can run.
+const MIRI: [&[&str]; 1] = [&["--package", "barrelstack-dynamics", "--lib", "lanes::"]];
 
 /// Runs all steps and prints the numbers of tests that passed, failed and were skipped on the last line.
 pub(crate) fn test() -> anyhow::Result<()> {
@@ -106,6 +109,33 @@ pub(crate) fn test() -> anyhow::Result<()> {
         }
     }
     close(&closing, total, start);
+    Ok(())
+}
+
+/// Runs only the tests of the workspace, which need nothing but the Rust toolchain.
+pub(crate) fn tests() -> anyhow::Result<()> {
+    let mut command = Command::new(cargo());
+    let (passed, tally) = watched(command.args(STEPS[3].arguments).current_dir(root()))?;
+    println!("{tally}");
+    if passed { Ok(()) } else { bail!("tests failed: {}", STEPS[3].remedy) }
+}
+
+/// Runs tests of unsafe code under Miri: the choice of a vector unit, in `crates/dynamics/src/lanes/mod.rs`.
+///
+/// The other unsafe code calls the loader, Python and the browser, which Miri does not have.
+pub(crate) fn miri() -> anyhow::Result<()> {
+    for arguments in MIRI {
+        let mut command = Command::new("cargo");
+        command.args(["+nightly", "miri", "test"]).args(arguments).current_dir(root());
+        // The toolchain of this program must not reach the other one.
+        for name in ["CARGO", "RUSTC", "RUSTUP_TOOLCHAIN"] {
+            command.env_remove(name);
+        }
+        command.env("MIRIFLAGS", "-Zmiri-disable-isolation");
+        if !command.status().context("cannot start cargo")?.success() {
+            bail!("Miri failed, or is missing: `rustup +nightly component add miri rust-src`");
+        }
+    }
     Ok(())
 }
 
@@ -190,7 +220,7 @@ pub(crate) fn target(root: &Path) -> PathBuf {
 
 /// Builds the program in the release profile.
 pub(crate) fn build_program(root: &Path) -> anyhow::Result<()> {
-    let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
+    let build = ["build", "--quiet", "--release", "--package", "barrelstack"];
     let status = Command::new(cargo()).args(build).current_dir(root).status();
     if !status.context("cannot start cargo")?.success() {
         bail!("building the program failed: see above");

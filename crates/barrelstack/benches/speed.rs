@@ -1,6 +1,6 @@
 //! Speed of a run on one core, and growth of its cost with the size of the stack.
 //!
-//! `cargo bench -p barrelstack` prints the figures; nothing is asserted, since they depend on the machine.
+//! `cargo bench -p barrelstack-library` prints the figures; nothing is asserted, since they depend on the machine.
 #![expect(clippy::print_stdout, reason = "benchmarks print their results")]
 
 use std::ops::ControlFlow;

@@ -1,4 +1,4 @@
-//! Compares the stated range over uncertain constants with shares under known constants: `cargo run --release -p barrelstack
+//! Compares the stated range over uncertain constants with shares under known constants: `cargo run --release -p barrelstack-library
 //! --example unknowns -- TRUTHS`.
 //!
 //! The constants are drawn from their distributions, many times. Under each draw, 64 stacks that differ in places and

@@ -58,3 +58,8 @@ pub use barrelstack_stack::{
     device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, step, watch,
 };
 pub use summary::Summary;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,7 +1,7 @@
 //! Errors of the three accuracies against steps that are ten times shorter than the standard ones.
 //!
 //! ```sh
-//! cargo test --release -p barrelstack --test all accuracy -- --ignored --nocapture
+//! cargo test --release -p barrelstack-library --test all accuracy -- --ignored --nocapture
 //! ```
 
 #![allow(clippy::print_stdout, reason = "the table of errors")]

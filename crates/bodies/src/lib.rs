@@ -14,3 +14,8 @@ mod solid;
 
 pub use body::{BODY, SpatialBody, VISCOUS, Viscous};
 pub use solid::{PART, PartSolid, SOLID, Solid};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -41,3 +41,8 @@ pub use error::CalibrateError;
 pub use impact::{Impact, impact};
 pub use parameters::Parameter;
 pub use result::{Calibration, CalibrationDocument, Estimate};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

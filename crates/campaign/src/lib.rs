@@ -36,3 +36,8 @@ pub use uncertain::Fitted;
 // Modules of other crates, under their names there.
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};
 use barrelstack_input::{measured, system};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -67,3 +67,8 @@ pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};
 pub use solid::Solid;
 pub use space::{Linear, Planar, Pose, Quaternion, Rotation3, Space, Spatial, Twist, Vec2, Vec3};
 pub use state::State;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -87,3 +87,8 @@ pub use unknowns::{
     Conditional, FEWEST_TRIALS, Influence, Intensities, Shaken, Shape, Trial, conditional,
     interval_of, shaken, share_less,
 };
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

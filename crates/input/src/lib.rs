@@ -43,3 +43,8 @@ pub use file_ref::FileRef;
 pub use fingerprint::fnv1a;
 pub use listing::{Setting, Source};
 pub use quantity::{Quantity, QuantityError};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -130,3 +130,8 @@ pub use synthesis::{BooreSource, CloughPenzien, Envelope, NearFault, Path, SiteA
 pub use target::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 pub use units::AccelerationUnit;
 pub use utc::Utc;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

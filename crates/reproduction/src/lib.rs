@@ -131,3 +131,8 @@ pub fn reproduce(
 pub fn table(found: &Reproduction) -> String {
     compare::table(&found.comparisons)
 }
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -26,3 +26,8 @@ mod target;
 pub use correlation::spectral_correlation;
 pub use greedy::{Candidate, Choosing, Chosen, Selection, select};
 pub use target::{Condition, PERIODS, SelectionTarget};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -28,3 +28,8 @@ pub mod target;
 pub mod words;
 
 pub use error::MotionError;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -10,3 +10,8 @@
 
 pub mod ground;
 pub mod motion;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

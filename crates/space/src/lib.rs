@@ -44,3 +44,8 @@ pub use run::Run;
 pub use stack::Stack;
 pub use summary::Summary;
 pub use variants::{Answer, answer};
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

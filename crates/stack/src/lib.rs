@@ -40,3 +40,8 @@ pub use ground::Ground;
 pub use rest::Restless;
 pub use run::{Progress, Run, RunFailure};
 pub use scenario::Scenario;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,63 @@
+//! The example programs of the crates that are of use alone: built from nothing, with their CPU time.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context as _, ensure};
+
+use crate::dist::folder;
+use crate::python::checked;
+use crate::steps::cargo;
+
+/// Folders of the crates whose READMEs contain a program, with the largest CPU time (s) of its build.
+///
+/// Measured with two cores: see docs/install.md.
+const PROGRAMS: [(&str, f64); 3] = [("dynamics", 60.0), ("motion", 60.0), ("stack", 60.0)];
+
+/// Builds the program of each README from nothing in the dev profile, as a new user does, prints the CPU time and runs it.
+pub(crate) fn measure(root: &Path) -> anyhow::Result<()> {
+    for (name, most) in PROGRAMS {
+        let readme = fs::read_to_string(root.join("crates").join(name).join("README.md"))?;
+        let program = readme.split("```rust\n").nth(1).and_then(|rest| rest.split("```").next());
+        let program = program.with_context(|| format!("no program in the README of {name}"))?;
+        let here = folder(root).join("programs").join(name);
+        if here.exists() {
+            fs::remove_dir_all(&here)?;
+        }
+        fs::create_dir_all(here.join("src"))?;
+        fs::write(here.join("src/main.rs"), program)?;
+        let path = root.join("crates").join(name);
+        let manifest = format!(
+            "[package]\nname = \"program\"\nedition = \"2024\"\n[dependencies]\nbarrelstack-{name} = {{ path = {:?} }}\n\
+             [workspace]\n",
+            path.display().to_string()
+        );
+        fs::write(here.join("Cargo.toml"), manifest)?;
+        fs::copy(root.join("Cargo.lock"), here.join("Cargo.lock"))?;
+        let before = children()?;
+        let mut build = Command::new(cargo());
+        build.args(["build", "--quiet"]).current_dir(&here);
+        build.env("CARGO_TARGET_DIR", here.join("target"));
+        checked(&mut build, "the build")?;
+        let seconds = children()? - before;
+        let lines = program.lines().count();
+        println!("barrelstack-{name}: {lines} lines, {seconds:.1} CPU seconds");
+        ensure!(seconds <= most, "more than {most} CPU seconds");
+        let binary = here.join("target/debug/program");
+        checked(&mut Command::new(binary), "the program")?;
+        fs::remove_dir_all(here.join("target"))?;
+    }
+    Ok(())
+}
+
+/// Returns the CPU time (s) of all processes that this one has started and that have ended; Linux only.
+fn children() -> anyhow::Result<f64> {
+    let text =
+        fs::read_to_string("/proc/self/stat").context("CPU time is measured on Linux only")?;
+    let fields: Vec<&str> =
+        text.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
+    // The sixteenth and seventeenth field of the file, in ticks of 10 ms; the first two precede the parenthesis.
+    let ticks = |at: usize| fields.get(at).and_then(|field| field.parse::<f64>().ok());
+    Ok((ticks(13).context("no time")? + ticks(14).context("no time")?) / 100.0)
+}
