@@ -1,15 +1,23 @@
-"""Builds the site from pages, references generated from the code, and executed notebooks; warnings are errors."""
+"""Builds the site from pages, references generated from the code, executed notebooks and figures; warnings are errors."""
 
 from __future__ import annotations
 
+import ast
 import base64
+import importlib.util
 import inspect
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
+import tempfile
+import time
+import tokenize
+import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -123,11 +131,78 @@ def code(text: str) -> str:
     return re.sub(r"<(?=[a-z])", "&lt;", text)
 
 
-def notebook(path: Path, out: Path) -> None:
-    """Executes a notebook and writes it as a page: its text, its code, and the output of its cells."""
-    book = nbformat.read(path, as_version=4)
-    where = {"metadata": {"path": str(TARGET)}}
-    nbclient.NotebookClient(book, timeout=600, kernel_name="python3", resources=where).execute()
+def cells(path: Path) -> list[tuple[str, str]]:
+    """Returns the cells of a script, each with its kind; a line ``# %%`` begins code, ``# %% [markdown]`` text."""
+    found = []
+    for part in re.split(r"^# %%", path.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
+        head, _, body = part.partition("\n")
+        if head.strip() == "[markdown]":
+            found.append(("markdown", re.sub(r"^# ?", "", body.strip(), flags=re.MULTILINE)))
+        else:
+            found.append(("code", body.strip()))
+    return found
+
+
+def imported(path: Path) -> list[str]:
+    """Returns the packages that a script imports, sorted."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {name.name.split(".")[0] for name in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names.add((node.module or "").split(".")[0])
+    return sorted(names, key=str.lower)
+
+
+def missing(path: Path) -> list[str]:
+    """Returns the packages that a script imports and that are not installed."""
+    return [name for name in imported(path) if importlib.util.find_spec(name) is None]
+
+
+def lines(path: Path) -> int:
+    """Returns the number of lines with code of a script, imports not counted."""
+    text = path.read_text(encoding="utf-8")
+    blank = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER, tokenize.INDENT, tokenize.DEDENT}
+    found: set[int] = set()
+    for token in tokenize.generate_tokens(iter(text.splitlines(keepends=True)).__next__):
+        if token.type not in blank:
+            found |= set(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            found -= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return len(found)
+
+
+def book_of(path: Path) -> Any:
+    """Returns a notebook, or a script as a notebook."""
+    if path.suffix == ".ipynb":
+        return nbformat.read(path, as_version=4)
+    make = {"markdown": nbformat.v4.new_markdown_cell, "code": nbformat.v4.new_code_cell}
+    book = nbformat.v4.new_notebook(cells=[make[kind](source) for kind, source in cells(path)])
+    for number, cell in enumerate(book.cells):
+        cell["id"] = f"c{number}"
+    return book
+
+
+def output_text(output: Any) -> str:
+    """Returns the text of an output; of warnings only their sentences, since their places name files of this machine."""
+    text: str = output.get("text", output.get("data", {}).get("text/plain", ""))
+    if output.get("name") == "stderr":
+        text = "\n".join(f"Warning: {sentence}" for sentence in re.findall(r"Warning: (.*)", text))
+        output["text"] = text
+    return text.rstrip()
+
+
+def notebook(path: Path, out: Path) -> str:
+    """Executes a notebook or a script and writes it as a page: its text, its code, and the output of its cells.
+
+    A script whose packages are not all installed is written without output. Returns a line for the log.
+    """
+    begin, book, lacking = time.monotonic(), book_of(path), missing(path) if path.suffix == ".py" else []
+    if not lacking:
+        with tempfile.TemporaryDirectory() as place:
+            where = {"metadata": {"path": place}}
+            nbclient.NotebookClient(book, timeout=600, kernel_name="python3", resources=where).execute()
     text = []
     for number, cell in enumerate(book.cells):
         source = cell["source"]
@@ -137,14 +212,64 @@ def notebook(path: Path, out: Path) -> None:
         text.append(f"```python\n{source}\n```")
         for at, output in enumerate(cell.get("outputs", [])):
             data = output.get("data", {})
-            if "image/png" in data:
-                picture = f"{path.stem}-{number}-{at}.png"
-                (out / picture).write_bytes(base64.b64decode(data["image/png"]))
+            kind = next((kind for kind in ("png", "gif") if f"image/{kind}" in data), None)
+            if kind:
+                picture = f"{path.stem}-{number}-{at}.{kind}"
+                (out / picture).write_bytes(base64.b64decode(data[f"image/{kind}"]))
                 text.append(f"![Figure of this cell]({picture})")
-            elif "text" in output or "text/plain" in data:
-                told = output.get("text", data.get("text/plain", ""))
-                text.append(f"```text\n{told.rstrip()}\n```")
+            elif written := output_text(output):
+                text.append(f"```text\n{written}\n```")
+    if lacking:
+        text.append(f"Not executed here, because these packages are not installed: {', '.join(lacking)}.")
+    if path.suffix == ".py":
+        nbformat.write(book, out / f"{path.stem}.ipynb")
+        shutil.copy(path, out / path.name)
+        text.append(f"To run it: [the script]({path.name}), [the executed notebook]({path.stem}.ipynb).")
     (out / f"{path.stem}.md").write_text("\n\n".join(text) + "\n", encoding="utf-8")
+    if lacking:
+        return f"{path.name}: not executed, no {', '.join(lacking)}"
+    return f"{path.name}: {time.monotonic() - begin:.1f} s"
+
+
+def tasks(scripts: list[Path]) -> str:
+    """Returns the table of research tasks."""
+    rows = []
+    for path in scripts:
+        title = re.sub("^# ", "", cells(path)[0][1].splitlines()[0])
+        packages = [name for name in imported(path) if name not in (*sys.stdlib_module_names, "barrelstack")]
+        rows.append(f"| [{title}]({path.stem}.md) | {lines(path)} | {', '.join(packages)} |")
+    head = (
+        "# Research tasks\n\nEach task takes at most ten lines beyond its imports, and checks its own result. The numbers"
+        " of motions and variants are small, so that each runs within seconds; raise them for your work.\n\n"
+        "| task | lines | other packages |\n| :--- | :--- | :--- |\n"
+    )
+    return head + "\n".join(rows) + "\n"
+
+
+def gallery(out: Path) -> str:
+    """Draws the figures of the gallery and returns their page, with the code of each."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    text = ["# Gallery\n\nTen figures, each with all of its code."]
+    home = os.getcwd()
+    for path in sorted((DOCS / "gallery").glob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        title, _, rest = (ast.get_docstring(ast.parse(source)) or "").partition("\n")
+        with tempfile.TemporaryDirectory() as place, warnings.catch_warnings():
+            warnings.simplefilter("ignore", barrelstack.BarrelstackWarning)
+            os.chdir(place)
+            try:
+                runpy.run_path(str(path))
+            finally:
+                os.chdir(home)
+        plt.savefig(out / f"{path.stem}.png", dpi=100)
+        plt.close("all")
+        code_only = source.split('"""', 2)[2].strip()
+        text.append(f"## {title.rstrip('.')}\n\n{rest.strip()}\n\n![{title}]({out.name}/{path.stem}.png)\n\n```python\n{code_only}\n```")
+    return "\n\n".join(text) + "\n"
 
 
 def main() -> int:
@@ -154,12 +279,19 @@ def main() -> int:
     source = TARGET / "source"
     shutil.rmtree(source, ignore_errors=True)
     (source / "notebooks").mkdir(parents=True)
-    (source / "reference").mkdir()
+    for folder in ("reference", "research", "gallery"):
+        (source / folder).mkdir()
     for page in DOCS.glob("*.md"):
         shutil.copy(page, source / page.name)
     shutil.copytree(DOCS / "pictures", source / "pictures")
-    for path in sorted((DOCS / "notebooks").glob("*.ipynb")):
-        notebook(path, source / "notebooks")
+    (source / "gallery.md").write_text(gallery(source / "gallery"), encoding="utf-8")
+    scripts = sorted((DOCS / "research").glob("*.py"))
+    (source / "research" / "index.md").write_text(tasks(scripts), encoding="utf-8")
+    # Two at a time, since much of their time is spent on starting one process each.
+    with ThreadPoolExecutor(2) as pool:
+        books = [*sorted((DOCS / "notebooks").glob("*.ipynb")), *scripts]
+        for line in pool.map(lambda path: notebook(path, source / path.parent.name), books):
+            print(line, flush=True)
     reference = source / "reference"
     (reference / "package.md").write_text(api(), encoding="utf-8")
     (reference / "scenario.md").write_text(code(_native.reference("scenario")), encoding="utf-8")

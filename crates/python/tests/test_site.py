@@ -1,11 +1,14 @@
-"""The site: built with warnings as errors, its notebooks executed, its references complete."""
+"""The site: built with warnings as errors, its notebooks and research tasks executed, its references complete."""
 
 from __future__ import annotations
 
+import ast
+import json
 import os
 import re
 import subprocess
 import sys
+import tokenize
 from pathlib import Path
 
 import pytest
@@ -40,6 +43,75 @@ def test_every_notebook_runs_and_draws(site: Path) -> None:
     assert len(books) == 10
     for book in books:
         assert list((site / "source" / "notebooks").glob(f"{book.stem}-*.png")), book.stem
+
+
+TASKS = sorted((ROOT / "docs" / "research").glob("*.py"))
+
+
+def code_lines(text: str) -> set[int]:
+    """Returns the numbers of the lines with code, imports not counted."""
+    found: set[int] = set()
+    for token in tokenize.generate_tokens(iter(text.splitlines(keepends=True)).__next__):
+        if token.string.strip() and token.type not in (tokenize.COMMENT, tokenize.ENDMARKER):
+            found |= set(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            found -= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return found
+
+
+def test_lines_of_code_are_counted_without_imports_and_comments() -> None:
+    assert code_lines("import os\n\n# a\nx = [\n    1,\n]  # b\nassert x\n") == {4, 5, 6, 7}
+    assert code_lines("from os import (\n    path,\n)\nif 1:\n    x = 1\n") == {4, 5}
+
+
+def test_there_are_at_least_fifteen_research_tasks() -> None:
+    assert len(TASKS) >= 15
+
+
+@pytest.mark.parametrize("path", TASKS, ids=lambda path: path.stem)
+def test_a_research_task_is_ten_lines_that_check_themselves(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    counted = code_lines(text)
+    assert len(counted) <= 10
+    assert all(len(line) <= 120 for number, line in enumerate(text.splitlines(), 1) if number in counted)
+    # Two statements on one line would evade the count.
+    statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
+    assert len({node.lineno for node in statements}) == len(statements)
+    assert any(isinstance(node, ast.Assert) for node in statements)
+
+
+@pytest.mark.parametrize("path", TASKS, ids=lambda path: path.stem)
+def test_a_research_task_runs(path: Path, site: Path) -> None:
+    names = [node.module or "" for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names += [name.name for name in node.names] if isinstance(node, ast.Import) else []
+    for name in names:
+        pytest.importorskip(name.split(".")[0], reason=f"no {name.split('.')[0]}")
+    book = json.loads((site / "source" / "research" / f"{path.stem}.ipynb").read_text(encoding="utf-8"))
+    cells = [cell for cell in book["cells"] if cell["cell_type"] == "code"]
+    assert all(cell["execution_count"] for cell in cells)
+    assert any(cell["outputs"] for cell in cells)
+    page = (site / "html" / "research" / f"{path.stem}.html").read_text(encoding="utf-8")
+    assert f'href="{path.stem}.ipynb"' in page
+    assert f'href="{path.stem}.html"' in (site / "html" / "research" / "index.html").read_text(encoding="utf-8")
+
+
+def test_the_gallery_shows_ten_figures_with_their_code(site: Path) -> None:
+    scripts = sorted((ROOT / "docs" / "gallery").glob("*.py"))
+    assert len(scripts) == 10
+    page = (site / "html" / "gallery.html").read_text(encoding="utf-8")
+    assert page.count("<pre><code") == 10
+    for path in scripts:
+        assert f'src="gallery/{path.stem}.png"' in page
+        assert (site / "html" / "gallery" / f"{path.stem}.png").stat().st_size > 5000
+
+
+def test_no_page_names_a_folder_of_this_machine(site: Path) -> None:
+    for page in [*(site / "source").rglob("*.md"), *(site / "source" / "research").glob("*.ipynb")]:
+        text = page.read_text(encoding="utf-8")
+        assert str(Path(sys.prefix)) not in text, page
+        assert "ipykernel_" not in text, page
 
 
 def test_the_reference_has_every_public_name(site: Path) -> None:

@@ -80,7 +80,10 @@ def plain(value: Any) -> Any:
         return {str(key): plain(item) for key, item in cast("dict[object, object]", value).items()}
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in cast("list[object]", value)]
-    if isinstance(value, (str, bool, int, float)):
+    if isinstance(value, float):
+        # The number of a NumPy float, whose text names its type.
+        return float(value)
+    if isinstance(value, (str, bool, int)):
         return value
     try:
         if isinstance(value, _Pint):
