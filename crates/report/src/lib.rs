@@ -127,12 +127,9 @@ pub use depth::{Depth, DepthBody, DepthPoses, DepthTie, Point3, Pose3, Volume};
 pub use diagram::{Arrow, Diagram};
 #[cfg(feature = "documents")]
 pub use document::{Block, Document, Tone, Verdict, Word};
-<<<<<<< HEAD
 #[cfg(feature = "documents")]
 pub use dots::Dots;
-=======
 #[cfg(feature = "documents")]
->>>>>>> ce84bdfa9960dfc6318a0ad76338ca851a26f93b
 pub use envelope::{BoundarySample, Envelope};
 pub use escape::{capital, csv as csv_field, listed};
 #[cfg(feature = "documents")]
