@@ -9,7 +9,7 @@ use std::time::Instant;
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::ground::Ground;
 use barrelstack::scenario::Scene;
-use barrelstack::watch::{End, Glance, Pace, Thresholds, Watch};
+use barrelstack::watch::{End, Thresholds, Watch};
 use barrelstack::{Scenario, Summary};
 use barrelstack_dynamics::{
     Method, Observer, Planar, Scratch, Simulation, State, look, settle, simulate,
@@ -207,20 +207,21 @@ impl Stage {
         let record = &self.scenario.record;
         let mut scenario = self.scenario.clone();
         scenario.run.stop_after_collapse = after;
-        let mut progress = |_: Glance<'_>| ControlFlow::Continue(());
         let mut watch = Watch::new(
             &self.assembly,
-            &self.ground,
             state,
             scratch,
             Thresholds::of(outcome, 1.0),
             (record.frame_rate, record.history_rate),
             End::new(&scenario, &self.assembly, &self.ground),
-            &mut progress,
-            Pace::Time,
         );
+        let mut watching = look(|state, scratch, energy| {
+            watch.see(&self.assembly, &self.ground, state, scratch, energy);
+            watch.end(state);
+            if watch.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         let end_time = self.scenario.run.duration.unwrap_or(12.0);
-        self.shaken(state, scratch, end_time, &mut watch)
+        self.shaken(state, scratch, end_time, &mut watching)
     }
 }
 

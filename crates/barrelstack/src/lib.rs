@@ -4,7 +4,7 @@
 //! scenario.toml ─▶ Scenario ─ assemble ─▶ Assembly { Model, parts }
 //! record ─ ground ─▶ Ground ────────────────────┐
 //!                                               ▼
-//!                   settle ─▶ simulate, watched by Watch ─▶ Run
+//!                   Simulation: settle, step, Watch ─▶ Run
 //!                                               │
 //!                     Summary (JSON) · files · report (HTML, Markdown)
 //! ```
@@ -54,8 +54,8 @@ pub use barrelstack_dynamics as dynamics;
 pub use barrelstack_motion as motion;
 pub use barrelstack_motion::Record;
 pub use barrelstack_stack::{
-    Ensemble, Ground, Progress, Restless, Run, RunFailure, Scenario, assemble, check, demand,
-    device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, step, watch,
+    Ensemble, Ground, Progress, Restless, Run, RunFailure, Scenario, Simulation, assemble, check,
+    demand, device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, step, watch,
 };
 pub use summary::Summary;
 

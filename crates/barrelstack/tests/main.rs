@@ -30,6 +30,7 @@ mod scenario_variants;
 mod seats;
 mod settling;
 mod similitude;
+mod simulation;
 mod straps;
 mod stress;
 mod thickness;

@@ -28,10 +28,13 @@ pub struct EnergySummary {
     pub viscous: f64,
     /// Work of the ground on the bodies.
     pub ground_work: f64,
-    /// Stored and lost energy, less the initial energy and the work of the ground; zero for an exact integration.
+    /// Work of forces from outside of the model.
+    pub applied_work: f64,
+    /// Stored and lost energy, less the initial energy, the work of the ground and the work of forces from outside; zero
+    /// for an exact integration.
     pub residual: f64,
-    /// Energy that has passed through the system so far: the absolute work of the ground, plus the energy available at
-    /// the start (kinetic energy, energy of springs, and potential energy of the deepest drop). The residual is stated
+    /// Energy that has passed through the system so far: the absolute work of the ground and of forces from outside,
+    /// plus the energy available at the start (kinetic energy, energy of springs, and potential energy of the deepest drop). The residual is stated
     /// relative to the throughput.
     pub throughput: f64,
 }
@@ -69,11 +72,13 @@ pub struct EnergyLedger<S: Space> {
     wrenches: Vec<Wrench<S>>,
     /// Memory of the force elements at the last accepted step.
     memory: Vec<Memory<S>>,
+    /// Forces from outside of the model at the last accepted step.
+    pub(crate) applied: Vec<Wrench<S>>,
     /// Spring forces of the force elements at the last accepted step (N).
     springs: Vec<S::Real>,
     stored: Stored<S::Real>,
-    /// Sum of the absolute works of the ground.
-    ground_flow: S::Real,
+    /// Sum of the absolute works of the ground and of forces from outside.
+    flow: S::Real,
     deepest: S::Real,
 }
 
@@ -84,6 +89,7 @@ struct Works<R> {
     friction: R,
     viscous: R,
     ground: R,
+    applied: R,
 }
 
 /// Stored energies at a state (J).
@@ -109,9 +115,10 @@ impl<S: Space> EnergyLedger<S> {
             viscous: scratch.viscous.clone(),
             wrenches: scratch.wrenches.clone(),
             memory: state.memory.clone(),
+            applied: scratch.applied.clone(),
             springs: scratch.loads.iter().map(|load| load.elastic).collect(),
             stored,
-            ground_flow: S::Real::zero(),
+            flow: S::Real::zero(),
             deepest: stored.potential,
         }
     }
@@ -128,6 +135,12 @@ impl<S: Space> EnergyLedger<S> {
     fn book(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         let half = S::Real::splat(0.5);
         let mut step = Works::<S::Real>::default();
+        for ((push, old), new) in state.applied.iter().zip(&mut self.applied).zip(&scratch.applied)
+        {
+            let displacement = self.poses[push.body].way_to(state.poses[push.body]);
+            step.applied += old.plus(*new).power(displacement) * half;
+            *old = *new;
+        }
         for (i, body) in model.inert.iter().enumerate() {
             let displacement = self.poses[i].way_to(state.poses[i]);
             let (old, new) = (&self.losses[i], &scratch.losses[i]);
@@ -157,7 +170,8 @@ impl<S: Space> EnergyLedger<S> {
         self.works.friction += step.friction;
         self.works.viscous += step.viscous;
         self.works.ground += step.ground;
-        self.ground_flow += step.ground.abs();
+        self.works.applied += step.applied;
+        self.flow += step.ground.abs() + step.applied.abs();
         self.viscous.copy_from_slice(&scratch.viscous);
         self.stored = stored(model, state, scratch);
         self.deepest = self.deepest.min(self.stored.potential);
@@ -175,8 +189,8 @@ impl<S: Space> EnergyLedger<S> {
         let now = kinetic + potential + elastic;
         let lost = self.works.damped + self.works.friction + self.works.viscous;
         // The work of friction is that on sticks and of sliding together, so it includes the energy stored in sticks.
-        let residual = now + lost - self.works.ground - self.initial;
-        let throughput = self.ground_flow + (self.initial - self.deepest);
+        let residual = now + lost - self.works.ground - self.works.applied - self.initial;
+        let throughput = self.flow + (self.initial - self.deepest);
         EnergySummary {
             kinetic: kinetic.lane(lane),
             potential: (potential - self.potential_start).lane(lane),
@@ -186,17 +200,18 @@ impl<S: Space> EnergyLedger<S> {
             friction: (self.works.friction - (stick - self.stick_start)).lane(lane),
             viscous: self.works.viscous.lane(lane),
             ground_work: self.works.ground.lane(lane),
+            applied_work: self.works.applied.lane(lane),
             residual: residual.lane(lane),
             throughput: throughput.lane(lane),
         }
     }
 }
 
-lanewise!(struct Works<R> { damped, friction, viscous, ground });
+lanewise!(struct Works<R> { damped, friction, viscous, ground, applied });
 lanewise!(struct Stored<R> { kinetic, potential, elastic, stick });
 lanewise!(struct EnergyLedger<Planar<R>> {
-    initial, potential_start, stick_start, works, poses, losses, viscous, wrenches, memory, springs, stored, ground_flow,
-    deepest
+    initial, potential_start, stick_start, works, poses, losses, viscous, wrenches, memory, applied, springs, stored,
+    flow, deepest
 });
 
 #[inline(always)]

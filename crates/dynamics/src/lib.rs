@@ -34,6 +34,7 @@
     reason = "bundles are fast only if their code is inlined into the function that enables the vector unit"
 )]
 
+pub mod applied;
 pub mod body;
 pub mod contact;
 pub mod contact_elements;
@@ -54,6 +55,7 @@ pub mod solid;
 pub mod space;
 pub mod state;
 
+pub use applied::{Applied, ApplyError};
 pub use body::{Body, BodyId, Face, Motion, Node, Nodes, Placed, Round};
 pub use contact::{Basis, FrictionLaw, Interface, NormalLaw};
 pub use element::*;
@@ -63,7 +65,7 @@ pub use integrate::{Drive, Method, Still};
 pub use model::{ContactPair, Counts, Fast, InterfaceId, Model, ModelError, Substepping};
 pub use settle::{Lack, SettleError, Settled, settle};
 pub use shape::Shape;
-pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};
+pub use simulate::{Finish, Observer, RunError, Simulation, Stepper, look, simulate};
 pub use solid::Solid;
 pub use space::{Linear, Planar, Pose, Quaternion, Rotation3, Space, Spatial, Twist, Vec2, Vec3};
 pub use state::State;

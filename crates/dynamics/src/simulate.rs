@@ -1,14 +1,15 @@
-//! The run loop: time steps, energy balance, observers, and the end of a run.
+//! The run loop: time steps, energy balance, forces from outside, observers, and the end of a run.
 
 use std::ops::ControlFlow;
 
+use crate::applied::{Applied, ApplyError};
 use crate::energy::EnergyLedger;
 use crate::forces::Scratch;
 use crate::integrate::{Drive, Integrator, Method};
 use crate::lanewise;
 use crate::model::{Model, Substepping};
 use crate::real::Real;
-use crate::space::{Linear, Space};
+use crate::space::{Linear, Space, Twist, Wrench};
 use crate::state::State;
 
 /// Observer of every accepted step, which may stop the run.
@@ -129,42 +130,173 @@ pub fn simulate<S: Space<Real = f64>>(
     simulation: &Simulation,
     observer: &mut impl Observer<S>,
 ) -> Result<RunTotals<S>, RunError> {
-    let mut integrator = Integrator::new(simulation.method);
-    let mut times = StepTimes::new(model, simulation.time_step);
-    if simulation.method.is_adaptive() {
-        times.undivided();
-    }
-    scratch.lookahead = times.lookahead();
-    Integrator::start(model, drive, state, scratch);
-    let mut energy = EnergyLedger::new(model, state, scratch);
-    let start = state.time;
-    let mut steps = 0_u64;
-    let mut next_step = simulation.time_step;
-    // A shorter remainder is due to rounding and is not a step.
-    let sliver = 1e-9 * simulation.time_step;
+    let mut stepper = Stepper::start(model, drive, state, scratch, simulation);
     let mut finish = Finish::EndTime;
-    if observer.observe(model, state, scratch, &energy).is_break() {
+    if observer.observe(model, state, scratch, &stepper.energy).is_break() {
         finish = Finish::Stopped;
     }
-    while finish == Finish::EndTime && state.time < simulation.end_time - sliver {
-        let target = if simulation.method.is_adaptive() {
-            state.time + next_step.min(simulation.time_step)
-        } else {
-            start + times.next(scratch.needs_substeps, scratch.is_hard)
-        };
-        let until =
-            if target < simulation.end_time - sliver { target } else { simulation.end_time };
-        next_step = integrator.step(model, drive, state, scratch, until);
-        steps += 1;
-        energy.enter(model, state, scratch);
-        if !energy.finite() {
-            return Err(lost_body(model, state, 0, simulation.time_step, steps - 1));
-        }
-        if observer.observe(model, state, scratch, &energy).is_break() {
+    while finish == Finish::EndTime && !stepper.is_at_end(state) {
+        stepper.step(model, drive, state, scratch)?;
+        if observer.observe(model, state, scratch, &stepper.energy).is_break() {
             finish = Finish::Stopped;
         }
     }
-    Ok(RunTotals { finish, steps, energy })
+    Ok(RunTotals { finish, steps: stepper.steps, energy: stepper.energy })
+}
+
+/// A run that advances one accepted step at a time; [`simulate`] steps until the end.
+///
+/// Together with the state and the working memory, a copy of the stepper is the complete state of a run: it continues
+/// with the same bits.
+///
+/// ```
+/// use barrelstack_dynamics::{
+///     Applied, Body, Method, Model, Motion, Planar, Pose, Scratch, Simulation, State, Stepper, Still, Twist, Vec2,
+/// };
+///
+/// let body = Body {
+///     name: "load".to_owned(),
+///     motion: Motion::Free,
+///     mass: 100.0,
+///     inertia: 5.0,
+///     damping: None,
+///     pose: Pose { position: Vec2::default(), orientation: 0.0 },
+///     twist: Twist::<Planar>::default(),
+///     surfaces: Vec::new(),
+///     nodes: Vec::new(),
+///     faces: Vec::new(),
+/// };
+/// let model = Model::new(vec![body], Vec::new(), Vec::new(), Vec2::default())?;
+/// let (mut state, mut scratch) = (State::initial(&model), Scratch::new(&model));
+/// let run = Simulation { method: Method::VelocityVerlet, time_step: 1e-3, end_time: 1.0 };
+/// let mut stepper = Stepper::start(&model, &Still, &mut state, &mut scratch, &run);
+/// let (force, point) = (Vec2::new(50.0, 0.0), Vec2::default());
+/// let push = Applied { body: 0, force, point, moment: 0.0 };
+/// stepper.apply(&model, &mut state, &mut scratch, push)?;
+/// while !stepper.is_at_end(&state) {
+///     stepper.step(&model, &Still, &mut state, &mut scratch)?;
+/// }
+/// assert!((state.poses[0].position.x - 0.25).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stepper<S: Space> {
+    simulation: Simulation,
+    integrator: Integrator<S>,
+    times: StepTimes<S::Real>,
+    /// Energy balance since the start.
+    pub energy: EnergyLedger<S>,
+    /// Time (s) of the initial state.
+    start: f64,
+    /// Number of accepted steps.
+    pub steps: u64,
+    /// Step (s) to try next, for an adaptive method.
+    next_step: f64,
+}
+
+impl<S: Space<Real = f64>> Stepper<S> {
+    /// Prepares a run from `state`: moves the prescribed bodies with the ground, and evaluates the forces.
+    pub fn start(
+        model: &Model<S>,
+        drive: &impl Drive<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+        simulation: &Simulation,
+    ) -> Self {
+        let mut times = StepTimes::new(model, simulation.time_step);
+        if simulation.method.is_adaptive() {
+            times.undivided();
+        }
+        scratch.lookahead = times.lookahead();
+        Integrator::start(model, drive, state, scratch);
+        Self {
+            simulation: *simulation,
+            integrator: Integrator::new(simulation.method),
+            times,
+            energy: EnergyLedger::new(model, state, scratch),
+            start: state.time,
+            steps: 0,
+            next_step: simulation.time_step,
+        }
+    }
+
+    /// Returns the time (s) below which a remainder is due to rounding and is not a step.
+    #[inline]
+    fn sliver(&self) -> f64 {
+        1e-9 * self.simulation.time_step
+    }
+
+    /// Returns `true` if the end time is reached.
+    #[inline]
+    pub fn is_at_end(&self, state: &State<S>) -> bool {
+        state.time >= self.simulation.end_time - self.sliver()
+    }
+
+    /// Takes one step; during impacts, one substep.
+    ///
+    /// # Errors
+    /// If a pose or twist is not finite; `state` is then the failed state.
+    #[inline]
+    pub fn step(
+        &mut self,
+        model: &Model<S>,
+        drive: &impl Drive<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+    ) -> Result<(), RunError> {
+        let Simulation { method, time_step, end_time } = self.simulation;
+        let target = if method.is_adaptive() {
+            state.time + self.next_step.min(time_step)
+        } else {
+            self.start + self.times.next(scratch.needs_substeps, scratch.is_hard)
+        };
+        let until = if target < end_time - self.sliver() { target } else { end_time };
+        self.next_step = self.integrator.step(model, drive, state, scratch, until);
+        self.steps += 1;
+        self.energy.enter(model, state, scratch);
+        if !self.energy.finite() {
+            return Err(lost_body(model, state, 0, time_step, self.steps - 1));
+        }
+        Ok(())
+    }
+
+    /// Sets the force from outside on a body, in place of an earlier one; it is held during the next steps. A force and a
+    /// moment of zero remove it.
+    ///
+    /// The forces of the current state change by the difference alone, so that equal forces leave equal bits.
+    ///
+    /// # Errors
+    /// If there is no such body, it follows the ground, or a number is not finite.
+    pub fn apply(
+        &mut self,
+        model: &Model<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+        applied: Applied<S>,
+    ) -> Result<(), ApplyError> {
+        let [before, after] = applied.replace(model, &mut state.applied)?;
+        let old = before.map_or_else(Wrench::default, |at| scratch.applied[at]);
+        let new = after.map_or_else(Wrench::default, |_| applied.wrench(&scratch.rotations));
+        for list in [&mut scratch.applied, &mut self.energy.applied] {
+            match (before, after) {
+                (_, Some(at)) if at == list.len() => list.push(new),
+                (_, Some(at)) => list[at] = new,
+                (Some(at), None) => {
+                    list.remove(at);
+                }
+                (None, None) => {}
+            }
+        }
+        let change = new.plus(old.times(-1.0));
+        let (body, inert) = (applied.body, &model.inert[applied.body]);
+        scratch.wrenches[body] += change;
+        let kick = Twist {
+            linear: change.force * (1.0 / inert.mass),
+            angular: S::spin_rate(inert.inertia, scratch.rotations[body], change.moment),
+        };
+        scratch.accelerations[body] = scratch.accelerations[body].plus(kick, 1.0);
+        Ok(())
+    }
 }
 
 /// Times of the steps of a run, in integer multiples of the shortest substep.

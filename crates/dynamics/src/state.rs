@@ -1,5 +1,6 @@
 //! State of a simulation: everything that must be saved to continue a run.
 
+use crate::applied::Applied;
 use crate::contact_elements::ContactElements;
 use crate::element::Memory;
 use crate::model::Model;
@@ -19,6 +20,9 @@ pub struct State<S: Space> {
     pub contact_elements: ContactElements<S>,
     /// Memory of the force elements.
     pub memory: Vec<Memory<S>>,
+    /// Forces from outside of the model, at most one for each body; changed by
+    /// [`Stepper::apply`](crate::Stepper::apply).
+    pub applied: Vec<Applied<S>>,
 }
 
 impl<S: Space> State<S> {
@@ -30,6 +34,7 @@ impl<S: Space> State<S> {
             twists: model.bodies.iter().map(|b| b.twist).collect(),
             contact_elements: ContactElements::default(),
             memory: vec![Memory::default(); model.elements.len()],
+            applied: Vec::new(),
         };
         state.contact_elements.rebuild(model, &state.poses, &state.twists);
         state

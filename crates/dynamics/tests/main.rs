@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+mod applied;
 mod common;
 mod contact_laws;
 mod determinism;

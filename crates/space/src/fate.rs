@@ -1,5 +1,7 @@
 //! Fate of every body in space: loss of seat and its direction, fall, slip, and tilt.
 
+use std::sync::Arc;
+
 use barrelstack::assemble::PartKind;
 use barrelstack::watch::{Loss, Thresholds};
 use barrelstack_dynamics::{BodyId, Linear as _, Rotation3, Scratch, Spatial, State, Vec3, math};
@@ -108,8 +110,8 @@ impl PeakMotion {
 
 /// Recorder of the fates of all bodies during a run; must receive every accepted step.
 #[derive(Clone, Debug)]
-pub struct Fates<'a> {
-    stack: &'a Stack,
+pub struct Fates {
+    stack: Arc<Stack>,
     thresholds: Thresholds,
     /// Rotations of all bodies at rest.
     upright: Vec<Rotation3>,
@@ -124,9 +126,9 @@ pub struct Fates<'a> {
     first_fall: Option<f64>,
 }
 
-impl<'a> Fates<'a> {
+impl Fates {
     /// Creates the recorder for a stack at rest.
-    pub fn new(stack: &'a Stack, state: &State<Spatial>, thresholds: Thresholds) -> Self {
+    pub fn new(stack: Arc<Stack>, state: &State<Spatial>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Stack::GROUND].position;
         let fate = |pose: &barrelstack_dynamics::Pose<Spatial>| Fate {
             rest: pose.position - ground,

@@ -4,7 +4,7 @@
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
 //! record ─ Ground ─────────────────────┐
 //!                                      ▼
-//!               settle ─▶ simulate, watched ─▶ Run ─▶ Summary (JSON), files, page
+//!               Simulation: settle, step ─▶ Run ─▶ Summary (JSON), files, page
 //! ```
 //!
 //! `x` is across the barrels, `y` along the barrels, and `z` up; columns are counted along `x`, rows along `y`. A run
@@ -31,6 +31,7 @@ pub mod report;
 mod rest;
 pub mod run;
 pub mod seats;
+mod simulation;
 pub mod stack;
 mod step;
 pub mod summary;
@@ -41,6 +42,7 @@ pub use check::check;
 pub use fate::{Fate, Heading};
 pub use ground::Ground;
 pub use run::Run;
+pub use simulation::Simulation;
 pub use stack::Stack;
 pub use summary::Summary;
 pub use variants::{Answer, answer};

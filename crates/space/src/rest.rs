@@ -1,6 +1,8 @@
 //! Rest criterion in space, as in the plane. A run ends when no body is fast enough to change the outcome and the
 //! ground is still or, after a collapse, nearly still.
 
+use std::sync::Arc;
+
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::Scenario;
 use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm, quiet_from};
@@ -10,8 +12,9 @@ use crate::ground::Ground;
 use crate::stack::Stack;
 
 /// Detector of the rest of all bodies.
-pub(crate) struct Rest<'a> {
-    stack: &'a Stack,
+#[derive(Clone, Debug)]
+pub(crate) struct Rest {
+    stack: Arc<Stack>,
     /// Times (s) from which the ground is still (`still_from`) and nearly still (`calm_from`); infinite if the run does
     /// not end by rest.
     still_from: f64,
@@ -22,8 +25,8 @@ pub(crate) struct Rest<'a> {
     moved: f64,
 }
 
-impl<'a> Rest<'a> {
-    pub(crate) fn new(scenario: &Scenario, stack: &'a Stack, ground: &Ground) -> Self {
+impl Rest {
+    pub(crate) fn new(scenario: &Scenario, stack: Arc<Stack>, ground: &Ground) -> Self {
         let gravity = scenario.run.gravity;
         let calm = || ground.calm_from(gravity * calm(stack.model.interfaces()));
         let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);

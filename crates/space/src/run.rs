@@ -6,23 +6,18 @@ use barrelstack::assemble::{AssembleError, PartKind};
 use barrelstack::device::Words;
 use barrelstack::outcome::{Outcome, collapse};
 use barrelstack::overlap::ALLOWED;
-use barrelstack::run::{
-    Ended, Progress, UNBALANCED, Verdict, Work, check_kept, check_length, end_time, method,
-    thresholds,
-};
+use barrelstack::run::{Progress, UNBALANCED, Work, check_kept, check_length, end_time};
 use barrelstack::scenario::Scenario;
-use barrelstack::step::restitution_warning;
-use barrelstack::watch::{ElementFate, ElementFates, Ending, Loss, PROGRESS, after_collapse};
+use barrelstack::watch::{ElementFate, Ending, Loss};
 use barrelstack::{Restless, RunFailure};
 use barrelstack_dynamics::{
-    BodyId, Contact, Element, EnergyLedger, EnergySummary, Model, Observer, Scratch, Settled,
-    Simulation, Spatial, State, Twist, evaluate, settle, simulate,
+    BodyId, Contact, Element, EnergySummary, Scratch, Settled, Spatial, State, evaluate, settle,
 };
 
 use crate::fate::{Fate, Fates, Heading};
 use crate::ground::Ground;
-use crate::rest::Rest;
 use crate::seats::Seats;
+use crate::simulation::Simulation;
 use crate::stack::Stack;
 
 /// A stack at rest, ready to be shaken.
@@ -80,7 +75,7 @@ pub struct Run {
     /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
     /// Integration settings.
-    pub simulation: Simulation,
+    pub simulation: barrelstack_dynamics::Simulation,
     /// Numbers of steps and evaluations.
     pub work: Work,
     /// Time (s) at which the run ended.
@@ -109,7 +104,8 @@ pub fn stand(scenario: &Scenario) -> Result<Standing, RunFailure> {
     at_rest(scenario, Stack::of(scenario)?)
 }
 
-fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure> {
+/// Settles a stack.
+pub(crate) fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure> {
     let mut state = State::initial(&stack.model);
     let mut scratch = Scratch::new(&stack.model);
     evaluate(&stack.model, &state, &mut scratch);
@@ -190,67 +186,7 @@ pub fn run_on(
     ground: Ground,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Run, RunFailure> {
-    let stack = Stack::of(scenario)?;
-    let end_time = affordable(scenario, &stack, &ground)?;
-    let Standing { stack, mut state, mut scratch, settled } = at_rest(scenario, stack)?;
-    let simulation = Simulation { method: method(scenario), time_step: stack.step, end_time };
-    let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
-    scratch.keeps_contacts = false;
-    let mut watch = Watch {
-        fates: Fates::new(&stack, &state, thresholds(scenario)),
-        elements: ElementFates::default(),
-        seats: Seats::new(&stack, state.time, &scratch),
-        rest: Rest::new(scenario, &stack, &ground),
-        frames: Frames::default(),
-        every: 1.0 / scenario.record.frame_rate,
-        after_collapse: after_collapse(scenario),
-        next_look: 0.0,
-        steps: 0,
-        observer,
-        end_time,
-        ending: None,
-    };
-    let result = simulate(&stack.model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-    let Watch { fates, elements, seats, frames, ending, .. } = watch;
-    let ending = ending.unwrap_or(Ending::of_time(scenario));
-    let ended = result.map(|totals| Ended::of(&totals));
-    let judge = || judge(&stack, &fates);
-    let Verdict { outcome, energy, steps, warnings: warned, ending } =
-        Verdict::of(ended, judge, state.time, ground.end(), ending);
-    let warnings = ground
-        .warnings
-        .iter()
-        .cloned()
-        .chain(warned)
-        .chain(restitution_warning(scenario))
-        .collect();
-    let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
-    let first_fall = fates.first_fall();
-    let all = fates.at_end(&state);
-    Ok(Run {
-        scenario: scenario.clone(),
-        outcome,
-        heading: heading.map(|(.., heading)| heading),
-        fates: all,
-        first_fall,
-        elements: elements.0,
-        seats,
-        frames,
-        energy,
-        settled,
-        simulation,
-        work: Work {
-            steps,
-            evaluations: scratch.evaluations - evaluations,
-            contact_evaluations: scratch.contact_evaluations - tested,
-        },
-        end_time: state.time,
-        ending,
-        warnings,
-        ground,
-        stack,
-        last: state,
-    })
+    Ok(Simulation::new(scenario, ground)?.run_watched(observer))
 }
 
 impl Run {
@@ -284,7 +220,7 @@ const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 /// A rack has slid off along the barrels if a beam has passed the ends of the barrels, or if the rack tilts in this
 /// direction after a slip of more than half of its reach: a round beam drops over the chime before the middle of the
 /// beam has passed the chime.
-fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
+pub(crate) fn judge(stack: &Stack, fates: &Fates) -> Outcome {
     let Some((time, first)) = fates.collapse() else {
         return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };
     };
@@ -298,75 +234,4 @@ fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
         Some((_, Loss::Displaced, _)) | None => false,
     };
     collapse(time, (&part.name, part.kind, part.level), slid, stack.levels)
-}
-
-/// Maximum number of steps between two calls of the observer.
-const PATIENCE: u32 = 16;
-
-/// Combined observer of a run.
-struct Watch<'a> {
-    fates: Fates<'a>,
-    elements: ElementFates,
-    seats: Seats,
-    rest: Rest<'a>,
-    frames: Frames,
-    /// Time (s) between two frames.
-    every: f64,
-    /// Duration (s) of the run after a collapse.
-    after_collapse: f64,
-    next_look: f64,
-    /// Number of steps since the last callback.
-    steps: u32,
-    observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
-    end_time: f64,
-    ending: Option<Ending>,
-}
-
-impl Observer<Spatial> for Watch<'_> {
-    fn observe(
-        &mut self,
-        _: &Model<Spatial>,
-        state: &State<Spatial>,
-        scratch: &Scratch<Spatial>,
-        _: &EnergyLedger<Spatial>,
-    ) -> ControlFlow<()> {
-        // The state in which the first loss of seat is found still counts as standing.
-        let standing = self.fates.collapse().is_none();
-        self.fates.observe(state, scratch);
-        self.elements.observe(state, standing, scratch);
-        self.seats.observe(state.time, standing, scratch);
-        let time = state.time;
-        if time >= self.frames.times.len() as f64 * self.every {
-            self.frames.times.push(time);
-            let pose = |pose: &barrelstack_dynamics::Pose<Spatial>| {
-                let (p, q) = (pose.position, pose.orientation);
-                [p.x, p.y, p.z, q.w, q.v.x, q.v.y, q.v.z]
-            };
-            self.frames.poses.push(state.poses.iter().map(pose).collect());
-            let twist = |twist: &Twist<Spatial>| {
-                let (v, w) = (twist.linear, twist.angular);
-                [v.x, v.y, v.z, w.x, w.y, w.z]
-            };
-            self.frames.twists.push(state.twists.iter().map(twist).collect());
-        }
-        // Steps of many bodies take long, so their number is limited as well.
-        self.steps += 1;
-        if time >= self.next_look || self.steps == PATIENCE {
-            (self.next_look, self.steps) = (time + PROGRESS, 0);
-            if (self.observer)(Progress { time, end_time: self.end_time }).is_break() {
-                self.ending = Some(Ending::Interrupted);
-            }
-        }
-        let collapse = self.fates.collapse();
-        if self.ending.is_none() {
-            self.ending = if self.rest.observe(state, collapse.is_some()) {
-                Some(Ending::Rest)
-            } else if collapse.is_some_and(|(at, _)| at + self.after_collapse <= time) {
-                Some(Ending::AfterCollapse)
-            } else {
-                None
-            };
-        }
-        if self.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
 }

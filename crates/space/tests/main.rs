@@ -12,6 +12,7 @@ mod free;
 mod ground;
 mod plane;
 mod rack_walk;
+mod simulation;
 mod standing;
 mod turned;
 mod two_seats;

@@ -4,10 +4,10 @@
 //! scenario.toml ─▶ Scenario ─ assemble ─▶ Assembly { Model, parts }
 //! record ─ ground ─▶ Ground ────────────────────┐
 //!                                               ▼
-//!                   settle ─▶ simulate, observed by Watch ─▶ Run
+//!                   Simulation: settle, step, Watch ─▶ Run
 //! ```
 //!
-//! One run comes from [`Scenario::run`], many from an [`Ensemble`].
+//! One run comes from [`Scenario::run`], many from an [`Ensemble`]; a [`Simulation`] advances step by step.
 //! Verdicts, reports and pictures are in `barrelstack`, which reexports all of this under the same names.
 
 // Results must be bit-identical on every machine, so the standard transcendental functions are disallowed
@@ -26,6 +26,7 @@ pub mod pool;
 mod rest;
 pub mod run;
 pub mod scenario;
+mod simulation;
 pub mod slosh;
 pub mod stand;
 pub mod step;
@@ -40,6 +41,7 @@ pub use ground::Ground;
 pub use rest::Restless;
 pub use run::{Progress, Run, RunFailure};
 pub use scenario::Scenario;
+pub use simulation::Simulation;
 
 /// The example of the README, which is compiled and run with the tests of the documentation.
 #[cfg(doctest)]

@@ -6,19 +6,16 @@ mod verdict;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::Basis;
-use barrelstack_dynamics::{
-    EnergySummary, Interface, Method, Planar, RunError, Settled, Simulation, simulate,
-};
+use barrelstack_dynamics::{EnergySummary, Interface, Method, Planar, RunError, Settled};
 
 use crate::assemble::Assembly;
 use crate::ground::{Ground, from_disk};
 use crate::outcome::{Outcome, judge};
 use crate::scenario::{self, Scenario, Scene, Until};
-use crate::stand::{Standing, stand};
-use crate::step::{critical_time_step, restitution_warning};
-use crate::stick::SoftStick;
+use crate::simulation::Simulation;
+use crate::step::critical_time_step;
 use crate::watch::{
-    ElementFate, End, Ending, Eye, Fates, Glance, Pace, Recording, Stresses, Thresholds, Watch,
+    ElementFate, Ending, Eye, Fates, Glance, Pace, Recording, Stresses, Thresholds,
 };
 
 pub use crate::stand::UNBALANCED;
@@ -61,7 +58,7 @@ pub struct Run {
     /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
     /// Integration settings.
-    pub simulation: Simulation,
+    pub simulation: barrelstack_dynamics::Simulation,
     /// Work counters.
     pub work: Work,
     /// Simulated time (s) that the run reached.
@@ -198,71 +195,7 @@ impl Scenario {
         pace: Pace,
         eye: &mut Eye<'_>,
     ) -> Result<Run, RunFailure> {
-        let time_scale = self.run.similitude.sqrt();
-        let end_time = end_time(self, ground.motion_end(), time_scale)?;
-        let Standing { assembly, mut state, mut scratch, settled, step } = stand(self, end_time)?;
-        let model = &assembly.model;
-
-        let simulation = Simulation { method: method(self), time_step: step, end_time };
-        let thresholds = thresholds(self);
-        let rates = (self.record.frame_rate / time_scale, self.record.history_rate / time_scale);
-        check_memory(&assembly, end_time, rates)?;
-        let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
-        let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
-        let mut callback = |glance: Glance<'_>| eye(glance);
-        let mut watch = Watch::new(
-            &assembly,
-            &ground,
-            &state,
-            &scratch,
-            thresholds,
-            rates,
-            End::new(self, &assembly, &ground),
-            &mut callback,
-            pace,
-        );
-        let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-        let Watch { mut recording, mut stresses, fates, elements, ending, .. } = watch;
-        recording.finish();
-        let ending = ending.unwrap_or(Ending::of_time(self));
-        let ended = result.map(|totals| Ended::of(&totals));
-        let Verdict { outcome, energy, steps, mut warnings, ending } =
-            conclude(&assembly, &ground, &fates, ended, state.time, ending);
-        warnings.extend(restitution_warning(self));
-        if outcome == Outcome::Stable {
-            // Soft sticks falsify small slips only, which are of no interest once the stack has collapsed.
-            let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
-            let most = slips.fold(0.0, f64::max);
-            warnings.extend(
-                sticks.iter().filter(|stick| stick.shows_in(most)).map(ToString::to_string),
-            );
-        }
-        let interrupted = ending == Ending::Interrupted;
-        let work = Work {
-            steps,
-            evaluations: scratch.evaluations - evaluations,
-            contact_evaluations: scratch.contact_evaluations - tested,
-        };
-        let end_time = state.time;
-        Ok(Run {
-            scenario: self.clone(),
-            stated: Box::new(self.clone()),
-            outcome,
-            fates,
-            elements: elements.0,
-            stresses: stresses.finish(0),
-            recording,
-            energy,
-            settled,
-            simulation,
-            work,
-            end_time,
-            ending,
-            interrupted,
-            warnings,
-            ground,
-            assembly,
-        })
+        Ok(Simulation::new(self, ground)?.run_before(pace, eye))
     }
 }
 

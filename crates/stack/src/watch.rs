@@ -11,7 +11,7 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::real::Real;
-use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State, lanewise};
+use barrelstack_dynamics::{EnergyLedger, Planar, Scratch, State, lanewise};
 
 use crate::assemble::Assembly;
 use crate::ground::Ground;
@@ -19,14 +19,15 @@ use crate::scenario::{Scenario, Until};
 
 pub use elements::{ElementFate, ElementFates};
 pub use fate::{Fate, Fates, Loss, PeakMotion, Thresholds};
-pub use joints::{Joint, Joints, PeakForces, leans_on};
+pub use joints::{ForceBetween, Joint, Joints, PeakForces, leans_on};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
 pub(crate) use stress::StressWatch;
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses, TotalForce};
 
 /// Combined observer of a run.
-pub struct Watch<'a> {
+#[derive(Clone, Debug)]
+pub struct Watch {
     /// Frames and histories.
     pub recording: Recording,
     /// Normal stress along every boundary.
@@ -35,15 +36,7 @@ pub struct Watch<'a> {
     pub fates: Fates,
     /// Forces and failures of force elements.
     pub elements: ElementFates,
-    ground: &'a Ground,
-    assembly: &'a Assembly,
     end: End,
-    eye: &'a mut Eye<'a>,
-    pace: Pace,
-    /// Time (s) of the next callback.
-    next_look: f64,
-    /// Number of accepted states so far.
-    states: u64,
     /// Reason for the end of the run; `None` while the run continues, and if the run reaches its end time.
     pub ending: Option<Ending>,
 }
@@ -128,69 +121,52 @@ impl End {
     }
 }
 
-impl<'a> Watch<'a> {
+impl Watch {
     /// Creates the observer of a run that starts from the state at rest in `state`.
-    #[expect(clippy::too_many_arguments, reason = "every argument is a part of the observer")]
     pub fn new(
-        assembly: &'a Assembly,
-        ground: &'a Ground,
+        assembly: &Assembly,
         state: &State<Planar>,
         scratch: &Scratch<Planar>,
         thresholds: Thresholds,
         rates: (f64, f64),
         end: End,
-        eye: &'a mut Eye<'a>,
-        pace: Pace,
     ) -> Self {
         Self {
             recording: Recording::new(assembly, state, rates),
             stresses: StressWatch::new(assembly, state, scratch),
             fates: Fates::new(assembly, state, thresholds),
             elements: ElementFates::default(),
-            ground,
-            assembly,
             end,
-            eye,
-            pace,
-            next_look: 0.0,
-            states: 0,
             ending: None,
+        }
+    }
+
+    /// Observes the initial state or an accepted step.
+    #[inline]
+    pub fn see(
+        &mut self,
+        assembly: &Assembly,
+        ground: &Ground,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+        energy: &EnergyLedger<Planar>,
+    ) {
+        // The state in which the first loss of seat is found still counts as standing.
+        let standing = self.fates.stands();
+        self.fates.observe(state, scratch);
+        self.elements.observe(state, standing, scratch);
+        self.stresses.observe(standing, state, scratch, &|_| Some(&assembly.model));
+        self.recording.observe(assembly, ground, standing, state, scratch, energy);
+    }
+
+    /// Ends the run if one of its criteria is met in the state that was seen last.
+    #[inline]
+    pub fn end(&mut self, state: &State<Planar>) {
+        if self.ending.is_none() {
+            self.ending = self.end.why(state, &self.fates);
         }
     }
 }
 
 /// Simulated time (s) between two callbacks with [`Pace::Time`].
 pub const PROGRESS: f64 = 0.05;
-
-impl Observer<Planar> for Watch<'_> {
-    fn observe(
-        &mut self,
-        model: &Model<Planar>,
-        state: &State<Planar>,
-        scratch: &Scratch<Planar>,
-        energy: &EnergyLedger<Planar>,
-    ) -> ControlFlow<()> {
-        // The state in which the first loss of seat is found still counts as standing.
-        let standing = self.fates.stands();
-        self.fates.observe(state, scratch);
-        self.elements.observe(state, standing, scratch);
-        self.stresses.observe(standing, state, scratch, &|_| Some(model));
-        self.recording.observe(self.assembly, self.ground, standing, state, scratch, energy);
-        let due = match self.pace {
-            Pace::Time => state.time >= self.next_look,
-            Pace::Steps(every) => self.states.is_multiple_of(every.get()),
-        };
-        // The first state is the start, which is not the result of a step.
-        let glance = Glance { time: state.time, steps: self.states, state };
-        self.states += 1;
-        if due {
-            self.next_look = state.time + PROGRESS;
-            if (self.eye)(glance).is_break() {
-                self.ending = Some(Ending::Interrupted);
-                return ControlFlow::Break(());
-            }
-        }
-        self.ending = self.end.why(state, &self.fates);
-        if self.ending.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-}

@@ -100,7 +100,10 @@ pub struct Scratch<S: Space> {
     pub totals: ContactTotals<S::Real>,
     /// Loads of the force elements, in their order.
     pub loads: Vec<Load<S::Real>>,
-    /// Forces of contacts and elements on every body, and their moments about its center of mass.
+    /// Force and moment about the center of mass of every force from outside of the model, in the order of
+    /// [`State::applied`].
+    pub applied: Vec<Wrench<S>>,
+    /// Forces of contacts and elements, and forces from outside, on every body, and their moments about its center of mass.
     pub wrenches: Vec<Wrench<S>>,
     /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,
@@ -167,6 +170,7 @@ impl<S: Space> Scratch<S> {
             pair_forces: Vec::new(),
             totals: ContactTotals::default(),
             loads: vec![Load::default(); model.elements.len()],
+            applied: Vec::new(),
             wrenches: vec![Wrench::default(); count],
             losses: vec![Losses::default(); count],
             viscous: vec![Wrench::default(); if model.is_damped() { count } else { 0 }],
@@ -275,10 +279,10 @@ fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut V
     }
 }
 
-/// Adds the forces of the force elements.
+/// Adds the forces of the force elements, and the forces from outside of the model.
 #[inline(always)]
 fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
-    let Scratch { wrenches, losses, rotations, loads, .. } = scratch;
+    let Scratch { wrenches, losses, rotations, loads, applied, .. } = scratch;
     loads.clear();
     for (element, memory) in model.elements.iter().zip(&state.memory) {
         let action = element.act(state, rotations, *memory);
@@ -287,6 +291,12 @@ fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
             losses[body].damped += damped;
         }
         loads.push(action.load);
+    }
+    applied.clear();
+    for push in &state.applied {
+        let wrench = push.wrench(rotations);
+        wrenches[push.body] += wrench;
+        applied.push(wrench);
     }
 }
 

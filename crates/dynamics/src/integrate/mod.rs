@@ -71,7 +71,7 @@ impl Method {
 }
 
 /// Advances states by an integration method. Apart from the method, it contains only working memory.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Integrator<S: Space> {
     method: Method,
     stages: runge_kutta::Stages<S>,

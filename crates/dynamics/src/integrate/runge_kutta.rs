@@ -49,7 +49,7 @@ struct Rates<S: Space> {
 }
 
 /// Working memory: the rates of every stage, and the initial state of a step.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Stages<S: Space> {
     rates: Vec<Rates<S>>,
     poses: Vec<Pose<S>>,

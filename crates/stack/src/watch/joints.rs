@@ -1,8 +1,9 @@
 //! Forces between bodies of a stack: at rest, and their peaks until the first loss of seat and over the whole run.
 
+use barrelstack_dynamics::forces::PairForce;
 use barrelstack_dynamics::lanes::Lanewise;
 use barrelstack_dynamics::real::{Mask, Real};
-use barrelstack_dynamics::{BodyId, Planar, Scratch, Vec2, lanewise};
+use barrelstack_dynamics::{BodyId, Planar, Scratch, Space, Vec2, lanewise};
 
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::demand::Span;
@@ -92,8 +93,7 @@ impl Joint {
 
     /// Returns the name of the joint, from the names of the bodies.
     pub fn named<'a>(&self, name: impl Fn(BodyId) -> &'a str) -> String {
-        let between = if self.by_design { "on" } else { "against" };
-        format!("{} {between} {}", name(self.upper), name(self.lower))
+        title(self.upper, self.lower, self.by_design, name)
     }
 
     /// Returns the largest forces in a span of the run.
@@ -109,6 +109,68 @@ impl Joint {
         let PeakForces { vertical, horizontal } = self.whole_run;
         vertical.0 != 0.0 || horizontal.0 != 0.0
     }
+}
+
+/// Contact force between two bodies in the current state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceBetween<S: Space> {
+    /// The upper body; if neither body supports the other by design, the body that is named first.
+    pub upper: BodyId,
+    /// The lower body; if neither body supports the other by design, the body that is named second.
+    pub lower: BodyId,
+    /// `true` if one body supports the other by design.
+    pub by_design: bool,
+    /// Force (N) on the upper body.
+    pub force: S::Vector,
+}
+
+impl<S: Space> ForceBetween<S> {
+    /// Returns the forces between all bodies that touch, in the order of the bodies; bodies that support each other by
+    /// design come first. `supports` returns the bodies that support a body by design ([`leans_on`]).
+    pub fn all(pairs: &[PairForce<S>], supports: impl Fn(BodyId) -> Vec<BodyId>) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for pair in pairs {
+            let (one, other) = (pair.contactor, pair.target);
+            let on = |upper, lower| supports(upper).contains(&lower);
+            let (upper, lower, by_design) = if on(one, other) {
+                (one, other, true)
+            } else if on(other, one) {
+                (other, one, true)
+            } else {
+                let (first, second) = named_first(one, other);
+                (first, second, false)
+            };
+            let force = if upper == one { pair.force } else { -pair.force };
+            match all.iter_mut().find(|known| [known.upper, known.lower] == [upper, lower]) {
+                Some(known) => known.force += force,
+                None => all.push(Self { upper, lower, by_design, force }),
+            }
+        }
+        all.sort_by_key(|one| (!one.by_design, one.upper, one.lower));
+        all
+    }
+
+    /// Returns the name, such as "R1 on ground", from the names of the bodies.
+    pub fn named<'a>(&self, name: impl Fn(BodyId) -> &'a str) -> String {
+        title(self.upper, self.lower, self.by_design, name)
+    }
+}
+
+/// Returns two bodies that do not support each other by design in the order of their names in results: the ground comes
+/// last, and of other bodies the one with the lower index comes first.
+fn named_first(one: BodyId, other: BodyId) -> (BodyId, BodyId) {
+    let (first, second) = (one.min(other), one.max(other));
+    if first == Assembly::GROUND { (second, first) } else { (first, second) }
+}
+
+fn title<'a>(
+    upper: BodyId,
+    lower: BodyId,
+    by_design: bool,
+    name: impl Fn(BodyId) -> &'a str,
+) -> String {
+    let between = if by_design { "on" } else { "against" };
+    format!("{} {between} {}", name(upper), name(lower))
 }
 
 /// Returns the bodies that support a body by design, from its kind, carrier and supports.
@@ -246,10 +308,7 @@ impl<R: Real> Joints<R> {
         if known.is_some() || !self.follows_all {
             return known;
         }
-        // The ground comes last; of other bodies the one with the lower index comes first.
-        let first =
-            if one.min(other) == Assembly::GROUND { one.max(other) } else { one.min(other) };
-        let second = if first == one { other } else { one };
+        let (first, second) = named_first(one, other);
         Some((self.add(first, second), first == one))
     }
 

@@ -1,0 +1,350 @@
+//! A run in space that advances step by step, can be acted upon, and can be copied at any time.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use barrelstack::RunFailure;
+use barrelstack::run::{Ended, Progress, Verdict, Work, method, thresholds};
+use barrelstack::scenario::Scenario;
+use barrelstack::step::restitution_warning;
+use barrelstack::watch::{ElementFates, Ending, ForceBetween, PROGRESS, after_collapse, leans_on};
+use barrelstack_dynamics::{
+    Applied, ApplyError, BodyId, EnergySummary, Pose, RunError, Scratch, Settled, Spatial, State,
+    Stepper, Twist,
+};
+
+use crate::fate::Fates;
+use crate::ground::Ground;
+use crate::rest::Rest;
+use crate::run::{Frames, Run, Standing, affordable, at_rest, judge};
+use crate::seats::Seats;
+use crate::stack::Stack;
+
+/// A run of a scenario in space, which advances by any number of steps.
+///
+/// [`run`](crate::run::run()) is a simulation that is run to its end, so that both have the same bits. A clone has the
+/// complete state and continues with the same bits. Clones share the stack and the ground motion.
+///
+/// ```
+/// use barrelstack::Scenario;
+/// use barrelstack_space::{Ground, Simulation};
+///
+/// let scenario = Scenario::builtin("rolling-ball", &[])?;
+/// let mut simulation = Simulation::new(&scenario, Ground::of(&scenario)?)?;
+/// simulation.step(50);
+/// let kept = simulation.clone();
+/// simulation.step(50);
+/// assert!(simulation.time() > kept.time());
+/// assert_eq!(kept.run().last, simulation.run().last);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    fixed: Arc<Fixed>,
+    state: State<Spatial>,
+    scratch: Scratch<Spatial>,
+    stepper: Stepper<Spatial>,
+    watch: Watch,
+    /// The numerical failure that ended the run.
+    failure: Option<RunError>,
+}
+
+/// Everything that does not change during a simulation.
+#[derive(Clone, Debug)]
+struct Fixed {
+    scenario: Scenario,
+    ground: Ground,
+    stack: Arc<Stack>,
+    settled: Option<Settled>,
+    settings: barrelstack_dynamics::Simulation,
+    /// Numbers of evaluations and of tested contact elements before the run.
+    before: (u64, u64),
+}
+
+/// Combined observer of a run.
+#[derive(Clone, Debug)]
+struct Watch {
+    fates: Fates,
+    elements: ElementFates,
+    seats: Seats,
+    rest: Rest,
+    frames: Frames,
+    /// Time (s) between two frames.
+    every: f64,
+    /// Duration (s) of the run after a collapse.
+    after_collapse: f64,
+    ending: Option<Ending>,
+}
+
+/// Maximum number of steps between two calls of the observer. Steps of many bodies take long, so their number is limited
+/// as well as the simulated time.
+const PATIENCE: u32 = 16;
+
+impl Simulation {
+    /// Builds the stack of a scenario in space, settles it, and prepares its run on a given ground.
+    ///
+    /// # Errors
+    /// If the stack cannot be built in space or does not stand, or the run would be too long or need too much memory.
+    pub fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
+        let stack = Stack::of(scenario)?;
+        let end_time = affordable(scenario, &stack, &ground)?;
+        let Standing { stack, mut state, mut scratch, settled } = at_rest(scenario, stack)?;
+        let settings = barrelstack_dynamics::Simulation {
+            method: method(scenario),
+            time_step: stack.step,
+            end_time,
+        };
+        let before = (scratch.evaluations, scratch.contact_evaluations);
+        let stack = Arc::new(stack);
+        let mut watch = Watch {
+            fates: Fates::new(Arc::clone(&stack), &state, thresholds(scenario)),
+            elements: ElementFates::default(),
+            seats: Seats::new(&stack, state.time, &scratch),
+            rest: Rest::new(scenario, Arc::clone(&stack), &ground),
+            frames: Frames::default(),
+            every: 1.0 / scenario.record.frame_rate,
+            after_collapse: after_collapse(scenario),
+            ending: None,
+        };
+        let stepper = Stepper::start(&stack.model, &ground, &mut state, &mut scratch, &settings);
+        watch.see(&state, &scratch);
+        watch.end(&state);
+        let scenario = scenario.clone();
+        let fixed = Arc::new(Fixed { scenario, ground, stack, settled, settings, before });
+        Ok(Self { fixed, state, scratch, stepper, watch, failure: None })
+    }
+
+    /// Advances by up to `most` steps, less if the run ends before. Impacts divide a step into several.
+    ///
+    /// Returns the number of steps that were taken.
+    pub fn step(&mut self, most: u64) -> u64 {
+        let before = self.stepper.steps;
+        while self.stepper.steps - before < most && self.goes_on() && self.take_step() {
+            self.watch.end(&self.state);
+        }
+        self.stepper.steps - before
+    }
+
+    /// Runs to the end and returns the result.
+    pub fn run(self) -> Run {
+        self.run_watched(&mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Runs to the end with an observer that may stop the run, and returns the result.
+    ///
+    /// The observer receives the progress at least every 0.05 s of simulated time.
+    pub fn run_watched(mut self, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Run {
+        // The result has no contacts.
+        self.scratch.keeps_contacts = false;
+        let end_time = self.end_time();
+        let (mut next_look, mut steps) = (self.state.time, 0);
+        loop {
+            let time = self.state.time;
+            steps += 1;
+            if time >= next_look || steps == PATIENCE {
+                (next_look, steps) = (time + PROGRESS, 0);
+                if observer(Progress { time, end_time }).is_break() {
+                    self.watch.ending = Some(Ending::Interrupted);
+                    break;
+                }
+            }
+            self.watch.end(&self.state);
+            if !(self.goes_on() && self.take_step()) {
+                break;
+            }
+        }
+        self.finish()
+    }
+
+    fn goes_on(&self) -> bool {
+        self.watch.ending.is_none()
+            && self.failure.is_none()
+            && !self.stepper.is_at_end(&self.state)
+    }
+
+    /// Takes a step and observes the accepted state; returns `false` if the step failed.
+    fn take_step(&mut self) -> bool {
+        let Self { fixed, state, scratch, stepper, watch, failure } = self;
+        match stepper.step(&fixed.stack.model, &fixed.ground, state, scratch) {
+            Ok(()) => {
+                watch.see(state, scratch);
+                true
+            }
+            Err(error) => {
+                *failure = Some(error);
+                false
+            }
+        }
+    }
+
+    /// Returns the result so far; a simulation that has not ended counts as interrupted.
+    pub fn finish(self) -> Run {
+        let ending = self.ending().unwrap_or(Ending::Interrupted);
+        let Self { fixed, state, scratch, stepper, watch, failure } = self;
+        // Other simulations may share the stack.
+        let Fixed { scenario, ground, stack, settled, settings, before } =
+            Arc::unwrap_or_clone(fixed);
+        let Watch { fates, elements, seats, frames, .. } = watch;
+        let ended = match failure {
+            Some(error) => Err(error),
+            None => Ok(Ended { energy: stepper.energy.summary(0), steps: stepper.steps }),
+        };
+        let judge = || judge(&stack, &fates);
+        let Verdict { outcome, energy, steps, warnings: warned, ending } =
+            Verdict::of(ended, judge, state.time, ground.end(), ending);
+        let warnings = ground
+            .warnings
+            .iter()
+            .cloned()
+            .chain(warned)
+            .chain(restitution_warning(&scenario))
+            .collect();
+        let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
+        Run {
+            outcome,
+            heading: heading.map(|(.., heading)| heading),
+            first_fall: fates.first_fall(),
+            fates: fates.at_end(&state),
+            elements: elements.0,
+            seats,
+            frames,
+            energy,
+            settled,
+            simulation: settings,
+            work: Work {
+                steps,
+                evaluations: scratch.evaluations - before.0,
+                contact_evaluations: scratch.contact_evaluations - before.1,
+            },
+            end_time: state.time,
+            ending,
+            warnings,
+            ground,
+            stack: Arc::unwrap_or_clone(stack),
+            last: state,
+            scenario,
+        }
+    }
+
+    /// Sets the force from outside on a body, in place of an earlier one; it acts until it is changed.
+    ///
+    /// The work of such forces is part of the energy balance.
+    ///
+    /// # Errors
+    /// If there is no such body, it follows the ground, or a number is not finite.
+    pub fn apply(&mut self, applied: Applied<Spatial>) -> Result<(), ApplyError> {
+        let model = &self.fixed.stack.model;
+        self.stepper.apply(model, &mut self.state, &mut self.scratch, applied)
+    }
+
+    /// Returns the simulated time (s).
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// Returns the time (s) at which the run ends unless it ends earlier, at rest or after a collapse.
+    pub fn end_time(&self) -> f64 {
+        self.fixed.settings.end_time
+    }
+
+    /// Returns the number of accepted steps.
+    pub fn steps(&self) -> u64 {
+        self.stepper.steps
+    }
+
+    /// Returns the reason for the end of the run; `None` while it goes on.
+    pub fn ending(&self) -> Option<Ending> {
+        if self.failure.is_some() {
+            return Some(Ending::Broken);
+        }
+        let at_end = || self.stepper.is_at_end(&self.state);
+        self.watch.ending.or_else(|| at_end().then(|| Ending::of_time(&self.fixed.scenario)))
+    }
+
+    /// Returns the current state.
+    pub fn state(&self) -> &State<Spatial> {
+        &self.state
+    }
+
+    /// Returns the forces, contacts and loads in the current state.
+    pub fn scratch(&self) -> &Scratch<Spatial> {
+        &self.scratch
+    }
+
+    /// Returns the contact forces between all bodies that touch in the current state.
+    pub fn forces(&self) -> Vec<ForceBetween<Spatial>> {
+        let parts = &self.fixed.stack.parts;
+        let supports = |body: BodyId| {
+            let part = &parts[body];
+            leans_on(part.kind, part.carrier, &part.supports)
+        };
+        ForceBetween::all(&self.scratch.pair_forces, supports)
+    }
+
+    /// Returns the energy balance since the start.
+    pub fn energy(&self) -> EnergySummary {
+        self.stepper.energy.summary(0)
+    }
+
+    /// Returns the fates of all bodies so far.
+    pub fn fates(&self) -> &Fates {
+        &self.watch.fates
+    }
+
+    /// Returns the scenario.
+    pub fn scenario(&self) -> &Scenario {
+        &self.fixed.scenario
+    }
+
+    /// Returns the stack.
+    pub fn stack(&self) -> &Stack {
+        &self.fixed.stack
+    }
+
+    /// Returns the ground motion.
+    pub fn ground(&self) -> &Ground {
+        &self.fixed.ground
+    }
+
+    /// Returns `true` if both simulations are clones of one simulation, which may be in different states.
+    pub fn is_clone_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.fixed, &other.fixed)
+    }
+}
+
+impl Watch {
+    /// Observes the initial state or an accepted step.
+    fn see(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
+        // The state in which the first loss of seat is found still counts as standing.
+        let standing = self.fates.collapse().is_none();
+        self.fates.observe(state, scratch);
+        self.elements.observe(state, standing, scratch);
+        self.seats.observe(state.time, standing, scratch);
+        if state.time >= self.frames.times.len() as f64 * self.every {
+            self.frames.times.push(state.time);
+            let pose = |pose: &Pose<Spatial>| {
+                let (p, q) = (pose.position, pose.orientation);
+                [p.x, p.y, p.z, q.w, q.v.x, q.v.y, q.v.z]
+            };
+            self.frames.poses.push(state.poses.iter().map(pose).collect());
+            let twist = |twist: &Twist<Spatial>| {
+                let (v, w) = (twist.linear, twist.angular);
+                [v.x, v.y, v.z, w.x, w.y, w.z]
+            };
+            self.frames.twists.push(state.twists.iter().map(twist).collect());
+        }
+    }
+
+    /// Ends the run if one of its criteria is met in the state that was seen last.
+    fn end(&mut self, state: &State<Spatial>) {
+        if self.ending.is_some() {
+            return;
+        }
+        let collapse = self.fates.collapse();
+        if self.rest.observe(state, collapse.is_some()) {
+            self.ending = Some(Ending::Rest);
+        } else if collapse.is_some_and(|(at, _)| at + self.after_collapse <= state.time) {
+            self.ending = Some(Ending::AfterCollapse);
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Simulations in space that advance step by step: the bits of a run, copies, and forces from outside.
+
+use barrelstack::Scenario;
+use barrelstack_dynamics::{Applied, Vec3};
+use barrelstack_space::{Ground, Run, Simulation, run};
+
+fn scenario(name: &str, changes: &[&str]) -> Scenario {
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+    Scenario::builtin(name, &changes).unwrap()
+}
+
+fn started(scenario: &Scenario) -> Simulation {
+    Simulation::new(scenario, Ground::of(scenario).unwrap()).unwrap()
+}
+
+/// Returns everything that a run recorded; the text of a number identifies its bits.
+fn recorded(run: &Run) -> String {
+    let seen = (&run.frames, &run.last, &run.fates, &run.elements, &run.seats, &run.energy);
+    format!("{seen:?} {:?}", (&run.outcome, run.work, run.end_time, run.ending, &run.warnings))
+}
+
+#[test]
+fn steps_in_any_portions_have_the_bits_of_the_run_and_so_has_a_copy() {
+    let stack = ["stack.view='spatial'", "stack.levels=2", "run.duration='3 s'"];
+    for (name, changes) in [("demo-napa", &stack[..]), ("rolling-ball", &[])] {
+        let scenario = scenario(name, changes);
+        let run = run::run(&scenario).unwrap();
+        let mut simulation = started(&scenario);
+        assert!(!simulation.scratch().contacts.is_empty());
+        simulation.step(run.work.steps / 2);
+        let kept = simulation.clone();
+        while simulation.ending().is_none() {
+            simulation.step(7);
+        }
+        assert_eq!(recorded(&simulation.finish()), recorded(&run), "{name}");
+        assert_eq!(recorded(&kept.run()), recorded(&run), "{name}");
+    }
+}
+
+#[test]
+fn a_ball_is_pushed_off_its_course() {
+    let scenario = scenario("rolling-ball", &[]);
+    let mut simulation = started(&scenario);
+    let push = Applied {
+        body: 1,
+        force: Vec3::new(0.0, 0.0, 50.0),
+        point: Vec3::default(),
+        moment: Vec3::default(),
+    };
+    simulation.apply(push).unwrap();
+    simulation.step(200);
+    // The seat carries less by the force.
+    let weight = simulation.stack().model.bodies()[1].mass * scenario.run.gravity;
+    let carried = simulation.scratch().pair_forces[0].force.z.abs();
+    // measured 1e-5 N
+    assert!((carried + 50.0 - weight).abs() < 1e-2, "{carried} of {weight}");
+    assert!(simulation.energy().residual_ratio() < 1e-3, "{:?}", simulation.energy());
+}
