@@ -243,11 +243,15 @@ mod tests {
 
     #[test]
     fn draws_are_those_of_every_earlier_program() {
-        let stack = drawn(&[], 3);
-        let stack = stack.stack().unwrap();
-        println!("{:?} {:?}", stack.interfaces.barrel_rack, stack.overrides[4]);
-        assert_eq!(friction(&drawn(&[], 3)).to_bits(), 0);
-        assert_eq!(stack.overrides[4].offset_x.to_bits(), 0);
+        // Computed when places and constants were still fields of one table.
+        let all = drawn(&[], 3);
+        let stack = all.stack().unwrap();
+        let body = &stack.overrides[4];
+        assert_eq!(friction(&all), 0.201_701_724_401_093_19);
+        assert_eq!(
+            (body.mass, body.offset_x),
+            (Some(271.600_363_458_756_5), -0.000_339_739_266_084_507_1)
+        );
     }
 
     #[test]

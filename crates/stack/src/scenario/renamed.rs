@@ -181,7 +181,7 @@ mod tests {
         let error = Scenario::parse("mine.toml", &both, &[]).unwrap_err();
         assert_eq!(
             error.sentence(),
-            "mine.toml:4:11: `unknowns.damping` is stated, too, and replaces this key; leave one of them out"
+            "mine.toml:4:1: `unknowns.damping` is stated, too, and replaces this key; leave one of them out"
         );
         let error = Scenario::builtin("demo-napa", &["imperfections.kind=some".to_owned()]);
         let sentence = error.unwrap_err().sentence();
