@@ -169,7 +169,7 @@ impl Sample {
         stripes: &[Stripe],
         sampled: impl Fn(&Stripe) -> Interval,
     ) -> Vec<Option<Fitted>> {
-        let fit = self.fit(Shape::Free);
+        let fit = self.fit(Shape::Levels);
         let of = |stripe: &Stripe| {
             if self.is_certain() {
                 let Interval { low, high } = sampled(stripe);
@@ -179,5 +179,50 @@ impl Sample {
             Some(self.effect(&fit.as_ref()?.at(stripe.intensity)?))
         };
         stripes.iter().map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test")]
+
+    use barrelstack_fragility::wilson;
+
+    use super::*;
+    use crate::protect::shaken;
+    use crate::scenario::{Scenario, Until};
+
+    #[test]
+    fn every_drawn_constant_of_a_stack_is_known_and_its_deviates_return() {
+        for (rack, count) in [("two-barrel", 6), ("rack-on-rack", 9)] {
+            let change = format!("stack.rack=\"{rack}\"");
+            let scenario = ["stack.view=transverse".to_owned(), change];
+            let scenario = Scenario::builtin("demo-napa", &scenario).unwrap();
+            let motion = "[[motion]]\nbundled = \"napa-college-2014\"\n\n";
+            let study = shaken("s", (&scenario, Until::Verdict), 1, motion, &[0.3]).unwrap();
+            let drawn = drawn(&study);
+            assert_eq!(drawn.len(), study.distributions().count(), "{rack}");
+            assert_eq!(drawn.len(), count, "{rack}");
+            for one in &drawn {
+                assert_ne!(one.unit, "SI", "{}", one.field);
+                let constant = one.constant();
+                assert!((0.05..1.0).contains(&constant.dispersion), "{}", one.field);
+                for deviate in [-2.0, -0.3, 0.0, 1.7] {
+                    let value = (constant.value)(deviate).unwrap();
+                    let found = one.distribution.deviate(value).unwrap();
+                    assert!((found - deviate).abs() < 1e-6, "{} {found}", one.field);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_uncertain_constants_the_range_is_the_interval_of_sampling() {
+        let stripe = Stripe { intensity: 0.5, cases: 24, failures: 7 };
+        let sampled = |of: &Stripe| wilson(of.failures, of.cases, 0.95);
+        let found = Sample::default().at_levels(&[stripe], sampled);
+        let (effect, interval) = (found[0].as_ref().unwrap(), sampled(&stripe));
+        assert_eq!(effect.range, [interval.low, interval.high]);
+        assert!((effect.as_stated - 7.0 / 24.0).abs() < 1e-15 && effect.decisive().is_none());
     }
 }

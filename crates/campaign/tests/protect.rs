@@ -8,6 +8,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack::Scenario;
+use barrelstack_campaign::Direction;
 use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::protect::{ProtectError, Ranking, Reached, Request, Shaking, protect};
 use barrelstack_campaign::study::{RunOptions, StudyError, StudyTable};
@@ -165,4 +166,66 @@ fn a_stack_that_stands_as_it_is_is_said_to_with_what_the_motions_can_prove() {
     let percent =
         bound.and_then(|rest| rest.split(" % (95 % confidence)").next()?.parse::<f64>().ok());
     assert!(percent.is_some_and(|percent| (20.0..=100.0).contains(&percent)), "{headline}");
+}
+
+/// The shares of draws in sentence, page and JSON are those counted by brute force.
+#[test]
+fn the_order_over_constants_is_counted_in_draws_that_all_protections_share() {
+    let folder = tempfile::tempdir().unwrap();
+    let levels = Shaking::Levels(vec![0.4, 0.8]);
+    let request =
+        Request { shaking: levels, motions: 8, rounds: 1, budget: Some(60.0), ..request() };
+    let found = ranking(&request, folder.path()).unwrap();
+    let base = found.as_it_is().unwrap();
+    assert!(base.draws.len() > 1000 && found.all.len() > 1, "{}", found.all.len());
+    let count = |one: &[f64], other: &[f64]| {
+        let less = one.iter().zip(other).filter(|(a, b)| a < b).count() as f64;
+        let equal = one.iter().zip(other).filter(|(a, b)| a == b).count() as f64;
+        (less + 0.5 * equal) / one.len() as f64
+    };
+    let document = serde_json::to_value(found.to_document()).unwrap();
+    for (at, one) in found.all.iter().enumerate() {
+        let row = &document["protections"][at];
+        let [low, high] = one.range.unwrap();
+        assert!(low <= high && row["range"] == serde_json::json!([low, high]));
+        let brute = (one.protection != base.protection).then(|| count(&one.draws, &base.draws));
+        assert_eq!(one.better_than_as_it_is, brute, "{}", one.protection.name);
+        assert_eq!(row["better_than_as_it_is"].as_f64(), brute);
+        let next = found.all.get(at + 1).map(|next| count(&one.draws, &next.draws));
+        assert_eq!(one.better_than_next, next);
+    }
+    if let Some(best) = found.best() {
+        // A share near none or all has more digits in the sentence.
+        let share = 100.0 * best.better_than_as_it_is.unwrap();
+        let share =
+            if (10.0..=99.0).contains(&share) { format!("{share:.0}") } else { String::new() };
+        let said = &found.document.verdict.sentences;
+        let words = format!("{share} % of their draws");
+        assert!(
+            said.iter().any(|one| one.replace('\u{a0}', " ").contains(&words)),
+            "{words}: {said:?}"
+        );
+    }
+}
+
+/// In space the losses of the stack as it is are the means of its cases, in all directions at once.
+#[test]
+fn a_ranking_in_space_rests_on_cases_in_space() {
+    let changes = ["stack.levels=2", "stack.view=spatial", "motion.scale.factor=1"];
+    let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned)).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let request = Request { scenario, rounds: 1, budget: Some(0.0), ..request() };
+    let found = ranking(&request, folder.path()).unwrap();
+    let base = found.as_it_is().unwrap();
+    assert_eq!((base.direction, base.runs), (Direction::Space, 4));
+    let table = folder.path().join("as-it-is/spatial-1/table.parquet");
+    let table = StudyTable::from_parquet(std::fs::read(table).unwrap()).unwrap();
+    let outcomes = table.texts("outcome").unwrap().iter();
+    let falls = outcomes.filter(|one| one.as_deref() == Some("collapse")).count();
+    assert!((base.collapse.mean - falls as f64 / 4.0).abs() < 1e-12);
+    let heights = table.texts("fall_heights").unwrap().iter().flatten();
+    let fallen: usize =
+        heights.map(|all| all.split(';').filter(|one| !one.is_empty()).count()).sum();
+    assert!((base.fallen.mean - fallen as f64 / 4.0).abs() < 1e-12, "{fallen}");
+    assert_eq!(table.numbers("direction of the motion").map(<[_]>::len), Some(4));
 }

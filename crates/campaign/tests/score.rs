@@ -6,8 +6,13 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack::Scenario;
-use barrelstack_campaign::score::{Capacity, Protocol, ScoreError, Sheet, score};
-use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack::outcome::Outcome;
+use barrelstack_campaign::Direction;
+use barrelstack_campaign::score::{
+    Capacity, Protocol, ScoreError, Sheet, contenders, league, score,
+};
+use barrelstack_campaign::study::{Role, RunOptions, StudyError, StudyTable};
+use barrelstack_space::run::run;
 
 /// Returns a short protocol: stacks of two levels under three motions.
 fn brief(velocities: &[f64]) -> Protocol {
@@ -87,4 +92,129 @@ fn a_scene_without_racks_has_no_score() {
     let scene = Scenario::builtin("sliding-block", &[]).unwrap();
     let refused = scored(&scene, &Protocol::rockscore(), folder.path()).unwrap_err();
     assert!(refused.to_string().contains("use the scenario of a stack"), "{refused}");
+}
+
+/// Returns a protocol with seven motions at three levels.
+fn sampled() -> Protocol {
+    Protocol { synthetic: 4, ..brief(&[0.3, 0.9, 2.4]) }
+}
+
+#[test]
+fn the_range_over_constants_is_that_of_the_least_row_in_every_draw() {
+    let folder = tempfile::tempdir().unwrap();
+    let sheet = scored(&demo(&[]), &sampled(), folder.path()).unwrap();
+    // By brute force: sort the least velocity of every draw, and count a fortieth off at each end.
+    let count = sheet.rows[0].draws.len();
+    assert!(count > 1000 && sheet.rows.iter().all(|row| row.draws.len() == count));
+    let mut least: Vec<f64> = (0..count)
+        .map(|draw| sheet.rows.iter().map(|row| row.draws[draw]).fold(f64::MAX, f64::min))
+        .collect();
+    assert_eq!(least, sheet.draws());
+    least.sort_by(f64::total_cmp);
+    let [low, high] = sheet.range().unwrap();
+    let end = |share: f64| 100.0 * least[(share * count as f64) as usize];
+    assert!((end(0.025) - f64::from(low)).abs() < 2.0, "{low} {}", end(0.025));
+    assert!((end(0.975) - f64::from(high)).abs() < 2.0, "{high} {}", end(0.975));
+    assert!(low <= sheet.score() && sheet.score() <= high, "{low} {} {high}", sheet.score());
+    // The same numbers in the sentence, on the page and in the JSON.
+    let document = serde_json::to_value(sheet.to_document()).unwrap();
+    assert_eq!(document["range"], serde_json::json!([low, high]));
+    let said = format!("the score is between {low} and {high} with a probability of 95 %");
+    let page = html(&sheet.document).replace('\u{a0}', " ");
+    assert!(page.contains(&said), "{said}");
+    let states = document["states"].as_array().unwrap();
+    for (row, state) in sheet.rows.iter().zip(states) {
+        let range = row.range().unwrap();
+        assert_eq!(state["range"], serde_json::json!([range.low, range.high]));
+    }
+}
+
+#[test]
+fn too_few_runs_have_no_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let sheet = scored(&demo(&[]), &brief(&[0.3, 0.9]), folder.path()).unwrap();
+    assert!(sheet.draws().is_empty() && sheet.range().is_none());
+    assert!(serde_json::to_value(sheet.to_document()).unwrap()["range"].is_null());
+}
+
+#[test]
+fn every_rack_and_device_of_the_catalog_is_in_the_league_or_is_reported() {
+    let protocol = Protocol { synthetic: 0, ..brief(&[0.3]) };
+    let (scenario, folder) = (demo(&["stack.view=transverse"]), tempfile::tempdir().unwrap());
+    let options = RunOptions::default();
+    let report = |_, _| ControlFlow::Continue(());
+    let found = league(&scenario, &protocol, folder.path(), &options, &report).unwrap();
+    let mut names: Vec<&str> = found.rows.iter().map(|(one, _)| one.name.as_str()).collect();
+    names.extend(found.not_scored.iter().map(|(name, _)| name.as_str()));
+    let all = contenders(&scenario);
+    assert_eq!(names.len(), all.len());
+    assert!(all.iter().all(|one| names.contains(&one.name.as_str())), "{names:?}");
+    assert!(found.rows.windows(2).all(|pair| pair[0].1.score() >= pair[1].1.score()));
+    let csv = found.to_csv();
+    assert!(csv.starts_with("name,kind,score (cm/s),sampling_low (cm/s)"), "{csv}");
+    assert_eq!(csv.lines().count(), 1 + found.rows.len());
+    // A row is the score of the scenario with its changes.
+    let (one, sheet) = found.rows.iter().find(|(one, _)| one.kind == "rack").unwrap();
+    let changes = [&one.changes[..], &["stack.view=transverse".to_owned()]].concat();
+    let alone = tempfile::tempdir().unwrap();
+    let again = scored(&Scenario::builtin("demo-napa", &changes).unwrap(), &protocol, alone.path());
+    let stripes = |sheet: &Sheet| -> Vec<_> {
+        sheet.rows.iter().map(|row| row.curve.stripes.clone()).collect()
+    };
+    assert_eq!(stripes(sheet), stripes(&again.unwrap()));
+}
+
+/// Returns the field of a scenario that a column of a drawn constant states, and the same field of fallen bodies.
+fn fields(column: &str) -> Vec<String> {
+    let Some((quantity, pair)) = column.split_once(' ').filter(|(_, pair)| pair.contains('-'))
+    else {
+        return vec!["stack.azimuth".to_owned()];
+    };
+    match quantity {
+        "friction" => [format!("interface.{pair}"), format!("interface.fallen-{pair}")]
+            .map(|place| format!("{place}.friction.coefficient"))
+            .to_vec(),
+        other => vec![format!("interface.{pair}.{other}")],
+    }
+}
+
+/// In space a score rests on runs that are those of their scenarios to the last bit.
+#[test]
+fn a_score_in_space_is_that_of_direct_runs() {
+    let protocol = Protocol { periods: Vec::new(), ..brief(&[0.5, 1.4]) };
+    let space = ["stack.view=spatial", "stack.levels=2"];
+    let folder = tempfile::tempdir().unwrap();
+    let sheet = scored(&demo(&space), &protocol, folder.path()).unwrap();
+    assert_eq!(sheet.protocol.name, "rockscore/2-space");
+    assert!(sheet.rows.iter().all(|row| row.direction == Direction::Space));
+    assert_eq!(sheet.rows.len(), 2);
+    let row = &sheet.rows[0];
+    let table = folder.path().join("as-good-as-new/spatial/table.parquet");
+    let table = StudyTable::from_parquet(std::fs::read(table).unwrap()).unwrap();
+    let mut failures = [0, 0];
+    for case in 0..table.rows() {
+        let number = |column: &str| table.numbers(column).unwrap()[case].unwrap();
+        let component = if table.texts("record").unwrap()[case].as_deref().unwrap().ends_with('1') {
+            "horizontal-1"
+        } else {
+            "horizontal-2"
+        };
+        let mut changes: Vec<String> = space.map(str::to_owned).to_vec();
+        changes.push("run.until=verdict".to_owned());
+        changes.push(format!("motion.component={component}"));
+        changes.push(format!("motion.scale.factor={}", number("scale_factor")));
+        for factor in table.of_role(Role::Factor) {
+            let (name, unit) = (&factor.spec.name, &factor.spec.unit);
+            let value = format!("{} {unit}", number(name));
+            changes.extend(fields(name).iter().map(|field| format!("{field}={}", value.trim())));
+        }
+        let run = run(&Scenario::builtin("demo-napa", &changes).unwrap()).unwrap();
+        let fell = matches!(run.outcome, Outcome::Collapse { .. });
+        assert_eq!(table.texts("outcome").unwrap()[case].as_deref(), Some(run.outcome.kind()));
+        assert_eq!(number("end_time").to_bits(), run.end_time.to_bits(), "case {case}");
+        failures[usize::from(number("level") > 1.0)] += u32::from(fell);
+    }
+    let found = [0.5, 1.4].map(|level| row.at(level).unwrap().failures);
+    assert_eq!(found, failures);
+    assert!(failures[1] > 0, "nothing falls");
 }

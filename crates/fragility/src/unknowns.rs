@@ -35,6 +35,9 @@ const PRIOR_GROUPS: f64 = 0.6;
 /// Standard deviation of the coefficient of the logarithm of an intensity in its prior distribution, which is normal.
 const PRIOR_SLOPE: f64 = 4.0;
 
+/// Scale of the prior distribution of the departure of a single intensity from the curve.
+const PRIOR_LEVELS: f64 = 0.3;
+
 /// Index of `b` in a sample.
 const MIDDLE: usize = 1;
 
@@ -217,8 +220,8 @@ pub struct Shaken {
 /// How the share of failures depends on the intensity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// Every intensity has a share of its own, which no other intensity bounds.
-    Free,
+    /// The share at each intensity may depart from a lognormal curve, so that it need not grow with the intensity.
+    Levels,
     /// The share follows a lognormal curve of the intensity.
     Lognormal,
 }
@@ -227,7 +230,7 @@ pub enum Shape {
 ///
 /// ```text
 /// share(z, x) = Φ[(b(x) + Σ aⱼ zⱼ + Σ cᵢⱼ (zᵢ zⱼ − δᵢⱼ)) / √(1 + σ²)]
-/// b(x)        = bₓ for each intensity, or b₀ + b₁ ln(x/x₀)
+/// b(x)        = b₀ + b₁ ln(x/x₀), and for single intensities + bₓ
 /// ```
 ///
 /// `σ` is the standard deviation between motions: the runs under one motion have a common coefficient in the regression,
@@ -237,8 +240,10 @@ pub enum Shape {
 pub struct Intensities {
     /// Coefficients `b`, `aⱼ`, `cᵢⱼ` and `σ` of each sample.
     samples: Vec<Vec<f64>>,
-    /// Intensities with a share of their own; for a lognormal curve, only `x₀`.
+    /// Intensities that may depart from the curve.
     levels: Vec<f64>,
+    /// `x₀`.
+    middle: f64,
     shape: Shape,
     unknowns: usize,
 }
@@ -261,39 +266,32 @@ pub fn shaken(
         return None;
     }
     let levels = match shape {
-        Shape::Free => sorted(runs.iter().map(|run| run.intensity)),
-        Shape::Lognormal => {
-            vec![exp(mean(runs.iter().map(|run| ln(run.intensity))))]
-        }
+        Shape::Levels => sorted(runs.iter().map(|run| run.intensity)),
+        Shape::Lognormal => Vec::new(),
     };
+    let middle = exp(mean(runs.iter().map(|run| ln(run.intensity))));
     let mut motions: Vec<usize> = runs.iter().map(|run| run.motion).collect();
     motions.sort_unstable();
     motions.dedup();
     let row = |run: &Shaken| {
         let own = motions.iter().map(|motion| f64::from(u8::from(*motion == run.motion)));
-        let known = known(shape, &levels, run.intensity);
+        let known = known(&levels, middle, run.intensity);
         known.into_iter().chain(terms(&run.deviates).skip(1)).chain(own).collect()
     };
     let rows: Vec<Vec<f64>> = runs.iter().map(row).collect();
     let failed: Vec<bool> = runs.iter().map(|run| run.failed).collect();
-    let mut priors = match shape {
-        Shape::Free => vec![Prior::Normal(PRIOR_MIDDLE); levels.len()],
-        Shape::Lognormal => vec![Prior::Normal(PRIOR_MIDDLE), Prior::Normal(PRIOR_SLOPE)],
-    };
+    let mut priors = vec![Prior::Normal(PRIOR_MIDDLE), Prior::Normal(PRIOR_SLOPE)];
+    priors.extend(levels.iter().map(|_| Prior::Student(PRIOR_LEVELS)));
     priors.extend(priors_of_constants(unknowns));
     priors.extend(motions.iter().map(|_| Prior::Group));
     let samples = posterior(&rows, &failed, &priors, &mut uniform);
-    Some(Intensities { samples, levels, shape, unknowns })
+    Some(Intensities { samples, levels, middle, shape, unknowns })
 }
 
 /// Returns the terms of `b(x)`.
-fn known(shape: Shape, levels: &[f64], intensity: f64) -> Vec<f64> {
-    match shape {
-        Shape::Free => {
-            levels.iter().map(|level| f64::from(u8::from(*level == intensity))).collect()
-        }
-        Shape::Lognormal => vec![1.0, ln(intensity / levels[0])],
-    }
+fn known(levels: &[f64], middle: f64, intensity: f64) -> Vec<f64> {
+    let own = levels.iter().map(|level| f64::from(u8::from(*level == intensity)));
+    [1.0, ln(intensity / middle)].into_iter().chain(own).collect()
 }
 
 fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
@@ -307,10 +305,10 @@ impl Intensities {
     /// Returns the share of failures at an intensity as a function of the constants; `None` for an intensity without
     /// runs, unless the share follows a curve.
     pub fn at(&self, intensity: f64) -> Option<Conditional> {
-        if self.shape == Shape::Free && !self.levels.contains(&intensity) {
+        if self.shape == Shape::Levels && !self.levels.contains(&intensity) {
             return None;
         }
-        let terms = known(self.shape, &self.levels, intensity);
+        let terms = known(&self.levels, self.middle, intensity);
         let of = |sample: &Vec<f64>| {
             let (own, rest) = sample.split_at(terms.len());
             let (constants, deviation) = rest.split_at(rest.len() - 1);

@@ -100,7 +100,8 @@ fn every_headline_says_the_rack_and_the_direction() {
         page.verdict.headline,
         "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), across the barrels and \
          along them: in 24 motions none fell (the probability is at most 12 % with 95 % confidence); in severe shaking \
-         (36 cm/s) not even two levels do, along the barrels."
+         (36 cm/s) not even two levels do, along the barrels. Over the friction, stiffness and damping of the seats, \
+         which are uncertain, up to 3 levels do: the probability is 0 to 12 % (95 % range)."
     );
     // One collapse in 24 leaves up to 18 % possible, which is not rated low.
     let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
@@ -135,4 +136,39 @@ fn static_margins_stand_beside_each_height() {
     ] {
         assert!(text.contains(row), "{row}\n{text}");
     }
+}
+
+#[test]
+fn what_is_low_is_also_stated_over_the_uncertain_constants() {
+    // Along the barrels 4 % per level: up to three levels stay below the limit of 12 %.
+    let some = made(|levels, _, velocity| if levels < 5 && velocity < 0.3 { 0 } else { 24 });
+    let headline = document(&some).verdict.headline;
+    assert!(headline.contains("Up to 4 levels"), "{headline}");
+    let over = "which are uncertain, up to 3 levels do: the probability is 0 to 12 % (95 % range).";
+    assert!(headline.ends_with(over), "{headline}");
+    // The same range in the table and in the JSON.
+    let text = markdown(&document(&some), "figures").text.replace('\u{a0}', " ");
+    assert!(text.contains("0–12 %, friction of barrels on racks"), "{text}");
+    let json = serde_json::to_value(some.to_document()).unwrap();
+    let row = |levels: u32| {
+        let all = json["heights"].as_array().unwrap();
+        let of = |one: &&serde_json::Value| {
+            one["levels"] == levels && one["direction"] == "longitudinal"
+        };
+        all.iter().find(of).unwrap()["at"][1].clone()
+    };
+    assert_eq!(row(3)["range"], serde_json::json!([0.0, 0.12]));
+    assert_eq!(row(3)["decides"]["name"], "friction of barrels on racks");
+    // Where even two levels exceed the limit, the constant that decides is named.
+    let mut wide = some;
+    for height in &mut wide.heights {
+        height.effects.iter_mut().flatten().for_each(|effect| effect.range[1] = 0.4);
+    }
+    let headline = document(&wide).verdict.headline;
+    let over = "not even two levels do: the probability is 0 to 40 % (95 % range), along the barrels, and the friction of \
+                barrels on racks decides.";
+    assert!(headline.ends_with(over), "{headline}");
+    // Without a known effect nothing is claimed.
+    wide.heights.iter_mut().for_each(|height| height.effects.fill(None));
+    assert!(!document(&wide).verdict.headline.contains("uncertain"));
 }

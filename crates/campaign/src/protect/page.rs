@@ -368,9 +368,15 @@ fn rests_on(all: &Ranking) -> Vec<String> {
             .into(),
         "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; \
          none has been tested.".into(),
-        "The stack stands alone, in a plane model: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
-         do not tear unless the scenario states a strength."
-            .into(),
+        format!(
+            "The stack stands alone{}: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
+             do not tear unless the scenario states a strength.",
+            if all.request.scenario.is_spatial() {
+                ", in space, and the horizontal direction of the motion is drawn for every run"
+            } else {
+                ", in a plane model"
+            }
+        ),
         "Between two levels of shaking the loss is interpolated linearly in the logarithm of the velocity. Below \
          the lowest level it decreases to zero at half of that level; above the highest level it remains constant."
             .into(),

@@ -111,7 +111,7 @@ impl Runs {
         let certain =
             self.sample.is_certain().then(|| self.estimate(|run| run.collapsed, weights, 1.0));
         let unknown = Over { range: certain.map(|all| [all.low, all.high]), fallen: Vec::new() };
-        let Some(fit) = self.sample.fit(Shape::Free) else { return unknown };
+        let Some(fit) = self.sample.fit(Shape::Levels) else { return unknown };
         let near = |level: f64| {
             let found = self.sample.intensities().find(|known| (known / level - 1.0).abs() < 1e-3);
             Some(fit.at(found?)?.shares())

@@ -90,16 +90,20 @@ class Heights(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every height, direction and level of shaking: cases, collapses, Wilson's 95 % interval (1) of the
-        probability of collapse, and mean share of the barrels that fall (1)."""
+        """One row for every height, direction and level of shaking: cases, collapses, lower and upper bound (1) of the
+        probability of collapse, each with 95 % confidence, its 95 % range (1) over the uncertain constants of the seats,
+        and mean share of the barrels that fall (1)."""
         rows = [
             {**one, "levels": height["levels"], "direction": height["direction"], "low": low, "high": high}
+            | {"range_low": least, "range_high": most}
             for height in self.document["heights"]
             for one in height["at"]
             for low, high in [one["interval"]]
+            for least, most in [one["range"] or (None, None)]
         ]
         names = {name: name for name in ("levels", "direction")} | {"pgv": "pgv (m/s)"}
-        return table_of(rows, names | {name: name for name in ("cases", "collapsed", "low", "high", "fallen_share")})
+        shares = ("cases", "collapsed", "low", "high", "range_low", "range_high", "fallen_share")
+        return table_of(rows, names | {name: name for name in shares})
 
 
 def heights(
@@ -166,7 +170,9 @@ class Protections(Page):
     @property
     def table(self) -> Table:
         """One row for every protection tried, in the order of the page: cost for a stack (US$, lower and upper),
-        probability of collapse (1, or 1/year at a site), barrels fallen and saved, each with its 95 % interval.
+        probability of collapse (1, or 1/year at a site), barrels fallen and saved, each with its 95 % interval; the 95 %
+        range of the probability over the uncertain constants of the seats, and the share (1) of the draws of these
+        constants in which fewer barrels fall than with the stack as it is, and than with the next row.
         """
         rows: list[dict[str, Any]] = []
         for one in self.document["protections"]:
@@ -175,6 +181,8 @@ class Protections(Page):
             for key in ("collapse", "barrels_fallen", "barrels_saved"):
                 found = one[key] or {"mean": None, "low": None, "high": None}
                 row |= {key: found["mean"], f"{key}_low": found["low"], f"{key}_high": found["high"]}
+            row["range_low"], row["range_high"] = one["range"] or (None, None)
+            row |= {key: one[key] for key in ("better_than_as_it_is", "better_than_next")}
             rows.append(row)
         units = {"cost_low": "cost_low (US$)", "cost_high": "cost_high (US$)"}
         return table_of(rows, {name: units.get(name, name) for name in rows[0]})
@@ -296,17 +304,26 @@ class RockScore(Page):
         return score
 
     @property
+    def range(self) -> tuple[int, int] | None:
+        """The 95 % range of the score (cm/s) over the uncertain friction, stiffness and damping of the seats, sampling error
+        included; None if a run has no verdict."""
+        found: list[int] | None = self.document["range"]
+        return None if found is None else (found[0], found[1])
+
+    @property
     def table(self) -> Table:
         """One row for every state in every direction: the decisive velocity (m/s), its derivation, its 95 %
-        interval, and the share (1) that collapsed at each level of shaking."""
+        interval, its 95 % range over the uncertain constants, and the share (1) that collapsed at each level of
+        shaking."""
         rows: list[dict[str, Any]] = []
         for one in self.document["states"]:
             low, high = one["interval"] or (None, None)
             row: dict[str, Any] = {key: one[key] for key in ("state", "direction", "velocity", "found", "runs")}
             row |= {"low": low, "high": high}
+            row["range_low"], row["range_high"] = one["range"] or (None, None)
             levels = zip(self.document["velocities"], one["collapsed"], strict=True)
             rows.append(row | {f"collapsed_{100.0 * velocity:g}": share for velocity, share in levels})
-        units = {key: f"{key} (m/s)" for key in ("velocity", "low", "high")}
+        units = {key: f"{key} (m/s)" for key in ("velocity", "low", "high", "range_low", "range_high")}
         return table_of(rows, {name: units.get(name, name) for name in rows[0]})
 
 
