@@ -4,7 +4,8 @@
     python3 run.py                          every engine, every case: hours of none, minutes of some
     python3 run.py --engine mujoco          one engine; the rows of the others are kept
     python3 run.py --case rock-free         cases whose names begin so; prints, and with --write keeps their rows
-    python3 run.py --check my_engine.py     one file anywhere, on every case at its default step; prints, writes nothing
+    python3 run.py --check my_engine.py     one file anywhere, on every case at its default step; prints, writes nothing;
+                                            with --fine it halves the step, too, with --case it takes some cases
     python3 run.py --page                   writes the page again from results.csv
 """
 
@@ -337,14 +338,17 @@ def load_cases(prefix=""):
     return [json.loads(f.read_text(encoding="utf-8")) for f in files]
 
 
+def line(outcome, engine, case, quantity, setting, step, value, answer, error, note):
+    print(f"{outcome:7} {engine:12} {case:24} {quantity:36} {setting:8} {step:9} {value:>12} {answer:>12} {error:>8}  {note}", flush=True)
+
+
 def show(rows):
     for r in rows:
         value = f"{r['value']:.6g}" if isinstance(r["value"], float) else str(r["value"])
         answer = f"{r['answer']:.6g}" if isinstance(r["answer"], float) else str(r["answer"])
         error = f"{r['error']:.2f}" if isinstance(r["error"], float) else ""
         step = f"{r['step']:.2e}" if r["step"] else ""
-        print(f"{r['outcome']:7} {r['engine']:12} {r['case']:24} {r['quantity']:36} {r['setting']:8} {step:9} "
-              f"{value:>12} {answer:>12} {error:>8}  {r['note']}")
+        line(r["outcome"], r["engine"], r["case"], r["quantity"], r["setting"], step, value, answer, error, r["note"])
 
 
 # ---------------------------------------------------------------- the page
@@ -550,6 +554,8 @@ def main():
     if not cases:
         sys.exit(f"no case begins with `{words.case}`")
     trial = bool(words.check or words.case and not words.write)
+    if trial:
+        line("outcome", "engine", "case", "quantity", "setting", "step", "value", "answer", "err/tol", "note")
     for path in paths:
         rows = []
         with ThreadPoolExecutor(words.jobs) as pool:
