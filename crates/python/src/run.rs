@@ -267,6 +267,12 @@ impl Run {
 }
 
 /// State of a run, passed to an observer.
+///
+/// Examples
+/// --------
+/// >>> times = list()
+/// >>> run = Scenario.load("sliding-block").observe(lambda glance: times.append(glance.time), every=50)
+/// >>> assert min(times) == 0 and len(times) > 10
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Glance {
     #[pyo3(get)]

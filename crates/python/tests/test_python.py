@@ -58,6 +58,14 @@ def test_numpy_archives_with_a_number_as_step_are_records(tmp_path: Path) -> Non
         Record.read(path, unit="m/s2")
 
 
+def test_numbers_of_numpy_are_values_of_fields() -> None:
+    scenario = Scenario.load("candia-8-barrels").set("interface.rack-ground.friction.coefficient", np.float64(0.25))
+    assert scenario.interface["rack-ground"].friction.coefficient == 0.25
+    assert scenario.set({"stack.levels": np.int64(3), "run.settle": np.bool_(False)}).stack.levels == 3
+    made = Scenario({"extends": "candia-8-barrels", "run": {"similitude": np.float32(0.5)}})
+    assert made.fields.run.similitude == 0.5
+
+
 def test_scenarios_and_records_are_pickled_and_copied(tmp_path: Path) -> None:
     record = Record.bundled().scale(pgv=0.5)
     again: Record = pickle.loads(pickle.dumps(record))

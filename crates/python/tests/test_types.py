@@ -64,9 +64,10 @@ def test_examples_run(path: Path, tmp_path: Path) -> None:
     assert done.stdout
 
 
-def test_the_example_of_the_readme_runs(tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_the_example_of_a_first_page_runs(page: str, tmp_path: Path) -> None:
     pytest.importorskip("polars", reason="no polars")
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    text = (ROOT / page).read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert len(blocks) == 1
     environment = {**os.environ, "MPLBACKEND": "Agg"}

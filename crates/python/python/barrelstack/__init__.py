@@ -130,6 +130,11 @@ def scenarios() -> dict[str, str]:
     -------
     dict
         Names, with their texts including all comments, as starting points.
+
+    Examples
+    --------
+    >>> "demo-napa" in scenarios()
+    True
     """
     return dict(_native.scenarios())
 
@@ -145,6 +150,11 @@ def schema(of: str = "scenario") -> dict[str, Any]:
     Returns
     -------
     dict
+
+    Examples
+    --------
+    >>> schema("study")["title"]
+    'barrelstack study'
     """
     found: dict[str, Any] = json.loads(_native.schema(of))
     return found
@@ -157,6 +167,11 @@ def studies() -> dict[str, str]:
     -------
     dict
         Names, with their texts including all comments.
+
+    Examples
+    --------
+    >>> studies()["napa-four-levels"].splitlines()[0]
+    '# How strong must the ground shake to bring down eight barrels on four levels?'
     """
     return dict(_native.studies())
 
@@ -168,6 +183,11 @@ def formats() -> dict[str, str]:
     -------
     dict
         Names, with their publishers.
+
+    Examples
+    --------
+    >>> formats()["peer"]
+    'PEER AT2 (NGA, NGA-West2, PEER 2000)'
     """
     return dict(_native.formats())
 

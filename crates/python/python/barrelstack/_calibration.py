@@ -20,7 +20,15 @@ _ALL = ("k", "c", "mu-br", "mu-rg")
 
 
 class Estimate(NamedTuple):
-    """A parameter with its 95 % interval."""
+    """A parameter with its 95 % interval.
+
+    Examples
+    --------
+    >>> found = Calibration.friction({"angle (deg)": [21.4, 22.0, 21.7, 22.9, 21.1]})
+    >>> estimate = found.estimates["static friction"]
+    >>> round(estimate.low, 2), round(estimate.value, 2), round(estimate.high, 2), estimate.unit
+    (0.38, 0.4, 0.42, '1')
+    """
 
     name: str
     #: Best estimate in SI units.
@@ -55,9 +63,10 @@ class Calibration(Page):
     Examples
     --------
     >>> found = Calibration.friction({"angle (deg)": [21.4, 22.0, 21.7, 22.9, 21.1]}, interface="rack-ground")
-    >>> found.estimates["static friction"].value
+    >>> round(found.estimates["static friction"].value, 2)
     0.4
-    >>> print(found.scenario)  # lines to paste
+    >>> found.scenario.splitlines()[:2]  # lines to paste
+    ['[interface.rack-ground.friction]', 'coefficient = 0.4004']
     """
 
     @property

@@ -19,7 +19,14 @@ Path = str | os.PathLike[str]
 
 
 class Difference(NamedTuple):
-    """An input that is not equal in all runs."""
+    """An input that is not equal in all runs.
+
+    Examples
+    --------
+    >>> block = Scenario.load("sliding-block")
+    >>> compare({"long": block, "short": block.set("run.duration", "0.5 s")}).differences[0].values
+    ['1 s', '0.5 s']
+    """
 
     #: Path of the input, as in :meth:`Scenario.set`.
     path: str
@@ -30,7 +37,15 @@ class Difference(NamedTuple):
 
 
 class Comparison(Page):
-    """Comparison of two or more runs, made by :func:`compare`."""
+    """Comparison of two or more runs, made by :func:`compare`.
+
+    Examples
+    --------
+    >>> block = Scenario.load("sliding-block")
+    >>> both = compare({"long": block, "short": block.set("run.duration", "0.5 s")})
+    >>> list(both.runs), both.differences[0].path
+    (['long', 'short'], 'run.duration')
+    """
 
     @property
     def runs(self) -> dict[str, dict[str, Any]]:
@@ -75,8 +90,9 @@ def compare(
 
     Examples
     --------
-    >>> stack = Scenario.load("demo-napa")
-    >>> compare({"as it is": stack, "one level less": stack.set("stack.levels", 4)}).report("both.html")
+    >>> stack = Scenario.load("candia-8-barrels")
+    >>> both = compare({"as it is": stack, "one level less": stack.set("stack.levels", 3)}, variants=4)
+    >>> both.report("both.html")
     """
     named = isinstance(runs, Mapping)
     pairs = list(runs.items()) if isinstance(runs, Mapping) else [(one.title, one) for one in runs]
@@ -86,7 +102,15 @@ def compare(
 
 
 class Heights(Page):
-    """Safe heights, made by :func:`heights`."""
+    """Safe heights, made by :func:`heights`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> found = heights(tempfile.mkdtemp(), synthetic=0, highest=2)  # two motions: too few for a rating
+    >>> sorted(set(found.table["direction"]))
+    ['longitudinal', 'transverse']
+    """
 
     @property
     def table(self) -> Table:
@@ -152,6 +176,12 @@ def heights(
     Notes
     -----
     The numbers are those of ``barrelstack heights``, bit for bit.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> heights(tempfile.mkdtemp(), rack="rack-on-rack", synthetic=0, highest=2).headline
+    'Too few motions to rate any stack on rack-on-rack racks ...'
     """
     with reporting(progress, "heights") as report:
         files = [os.fspath(path) for path in records]
@@ -159,7 +189,16 @@ def heights(
 
 
 class Protections(Page):
-    """Ranking of protections of a stack by benefit and cost, made by :func:`protect`."""
+    """Ranking of protections of a stack by benefit and cost, made by :func:`protect`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> stack = Scenario.load("candia-8-barrels").set("stack.levels", 2)
+    >>> found = protect(stack, tempfile.mkdtemp(), pgv=["50 cm/s"], count=2, rounds=1, budget=20)
+    >>> found.table["name"][0], found.changes("as it is")
+    ('as it is', [])
+    """
 
     @property
     def best(self) -> str | None:
@@ -270,6 +309,13 @@ def protect(
     Notes
     -----
     The numbers are those of ``barrelstack protect``, bit for bit.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> stack = Scenario.load("candia-8-barrels").set("stack.levels", 2)
+    >>> protect(stack, tempfile.mkdtemp(), pgv=["50 cm/s"], count=2, rounds=1, budget=20).headline
+    'A stack of 2 levels on candia-2008 racks ...'
     """
     if site is not None and pgv is not None:
         raise ValueError("a hazard curve already states the intensities: give either site or pgv")
@@ -294,7 +340,14 @@ def protect(
 
 
 class RockScore(Page):
-    """The RockScore of a rack and its devices, made by :func:`score`."""
+    """The RockScore of a rack and its devices, made by :func:`score`.
+
+    Examples
+    --------
+    >>> sheet = score("demo-napa", "rock")  # some twenty seconds on two cores
+    >>> sheet.table["state"][0], len(sheet.table)
+    ('as good as new', 4)
+    """
 
     @property
     def score(self) -> int:
@@ -355,6 +408,11 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
     Notes
     -----
     The numbers are those of ``barrelstack score``, bit for bit.
+
+    Examples
+    --------
+    >>> 20 < score("demo-napa", "rock").score < 35  # cm/s; some twenty seconds on two cores
+    True
     """
     stack = scenario if isinstance(scenario, Scenario) else Scenario.load(scenario)
     with reporting(progress, f"RockScore of {stack.title!r}") as report:
@@ -362,7 +420,14 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
 
 
 class Reproduction(Page):
-    """Comparison with the numbers of the paper, made by :func:`reproduce`."""
+    """Comparison with the numbers of the paper, made by :func:`reproduce`.
+
+    Examples
+    --------
+    >>> found = reproduce(studies=False)
+    >>> "published" in found.table and len(found.table) > 30
+    True
+    """
 
     @property
     def table(self) -> Table:
@@ -399,6 +464,11 @@ def reproduce(record: Path | None = None, *, studies: bool = True, progress: Pro
     Notes
     -----
     Candia, de la Llera and Almazán (2008), 14th World Conference on Earthquake Engineering.
+
+    Examples
+    --------
+    >>> reproduce(studies=False).headline
+    '... published results agree, 0 differ; not compared: ...'
     """
     with reporting(progress, "the cases of the paper") as report:
         return Reproduction(_native.reproduce(None if record is None else os.fspath(record), studies, report))

@@ -60,9 +60,9 @@ def ensemble(
 
     Examples
     --------
-    >>> table = ensemble([{"stack.levels": n, "motion.scale.pgv": "60 cm/s"} for n in (2, 3, 4)])
+    >>> table = ensemble([{"stack.levels": 2, "motion.sine.amplitude": f"{size} cm"} for size in (2, 6, 14)])
     >>> table["outcome"]
-    ['stable', 'collapse', 'collapse']
+    ['stable', 'stable', 'collapse']
     """
     known = dict(records or {})
     if hasattr(cases, "__arrow_c_stream__"):

@@ -58,6 +58,14 @@ class Error(Exception):
         The position, if it is in a file; lines and columns count from 1.
     value
         The wrong value as ``field=value``, if it is not in a file.
+
+    Examples
+    --------
+    >>> try:
+    ...     Scenario.load("demo-napa").set("stack.levels", 99)
+    ... except Error as error:
+    ...     print(type(error).__name__, error.value)
+    ScenarioError stack.levels=99
     """
 
     #: Row of a table of cases that caused the error, counted from 0.
@@ -83,27 +91,82 @@ class Error(Exception):
 
 
 class ScenarioError(Error, ValueError):
-    """A scenario or a study is invalid at a known position."""
+    """A scenario or a study is invalid at a known position.
+
+    Examples
+    --------
+    >>> try:
+    ...     Scenario("extends = 'demo-napa'\\nstack.levels = 99", name="mine.toml")
+    ... except ScenarioError as error:
+    ...     print(error.path, error.line)
+    mine.toml 2
+    """
 
 
 class RecordError(Error, ValueError):
-    """A strong-motion file cannot be read, or a request about one cannot be satisfied."""
+    """A strong-motion file cannot be read, or a request about one cannot be satisfied.
+
+    Examples
+    --------
+    >>> try:
+    ...     Record.read(b"not a record", name="mine.txt")
+    ... except RecordError as error:
+    ...     print(error.path)
+    mine.txt
+    """
 
 
 class RunError(Error):
-    """The run is impossible: the stack does not stand, or cannot be simulated."""
+    """The run is impossible: the stack does not stand, or cannot be simulated.
+
+    Examples
+    --------
+    >>> try:
+    ...     Scenario.load("candia-8-barrels").set("run.step", "0.1 s").check()
+    ... except RunError as error:
+    ...     print(error)
+    override `run.step="0.1 s"`: run.step = 100 ms is too long: ...
+    """
 
 
 class StudyError(Error):
-    """A study cannot be run, collected or decided."""
+    """A study cannot be run, collected or decided.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> try:
+    ...     Study.fragility(tempfile.mkdtemp())
+    ... except StudyError as error:
+    ...     print("no study")
+    no study
+    """
 
 
 class ArgumentError(Error, ValueError, TypeError, OverflowError):
-    """An argument has the wrong type or is out of range."""
+    """An argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    >>> try:
+    ...     Record.bundled().scale()
+    ... except ArgumentError as error:
+    ...     print(error)
+    scale takes a factor, or one measure: scale(pgv="60 cm/s")
+    """
 
 
 class FileError(Error, OSError):
-    """A file or a folder cannot be opened or written."""
+    """A file or a folder cannot be opened or written.
+
+    Examples
+    --------
+    >>> try:
+    ...     Record.read("missing.at2")
+    ... except FileError as error:
+    ...     print(error.path)
+    missing.at2
+    """
 
 
 class MissingFileError(FileError, FileNotFoundError):
@@ -111,7 +174,16 @@ class MissingFileError(FileError, FileNotFoundError):
 
 
 class NoItemError(Error, KeyError, IndexError):
-    """There is no item with this name or number."""
+    """There is no item with this name or number.
+
+    Examples
+    --------
+    >>> try:
+    ...     Scenario.load("sliding-block").run().histories["block_rotaton"]
+    ... except NoItemError as error:
+    ...     print(error)
+    there is no history 'block_rotaton'; did you mean 'block_rotation'?
+    """
 
     def __str__(self) -> str:
         """Returns the message without the quotation marks that a KeyError adds."""
@@ -119,11 +191,30 @@ class NoItemError(Error, KeyError, IndexError):
 
 
 class NoFieldError(NoItemError, AttributeError):
-    """A scenario has no such field."""
+    """A scenario has no such field.
+
+    Examples
+    --------
+    >>> try:
+    ...     Scenario.load("demo-napa").stack.height
+    ... except NoFieldError as error:
+    ...     print(error)
+    [stack] has no field 'height'; it has ...
+    """
 
 
 class BarrelstackWarning(UserWarning):
-    """A caveat for the reader of a result."""
+    """A caveat for the reader of a result.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     run = Scenario.load("candia-8-barrels").run(Record.bundled().scale(pgv="20 cm/s"), variants=0)
+    >>> print(caught[0].message)
+    the run ends at 12.0 s, but the motion at 35.0 s: ...
+    """
 
 
 def _of_package(error: BaseException) -> bool:

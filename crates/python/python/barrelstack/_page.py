@@ -52,7 +52,14 @@ def table_of(rows: Iterable[Mapping[str, Any]], names: Mapping[str, str]) -> Tab
 
 
 class Page:
-    """A result with its numbers and its page."""
+    """A result with its numbers and its page.
+
+    Examples
+    --------
+    >>> page = compare([Scenario.load("sliding-block"), Scenario.load("sliding-block").set("run.duration", "0.5 s")])
+    >>> isinstance(page, Page), "<html" in page.html()
+    (True, True)
+    """
 
     def __init__(self, native: _native.Page) -> None:
         self._native = native

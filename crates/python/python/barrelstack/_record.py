@@ -27,7 +27,14 @@ USUAL = ("pga", "pgv", "pgd", "pgv/pga", "arias", "cav", "d5-75", "d5-95", "brac
 
 
 class Channel(NamedTuple):
-    """One component of a record."""
+    """One component of a record.
+
+    Examples
+    --------
+    >>> channel = Record.bundled()["E"]
+    >>> channel.time_step, channel.vertical, len(channel.acceleration)
+    (0.005, False, 6997)
+    """
 
     name: str
     #: Degrees clockwise from north; None if unknown, and for a vertical component.
@@ -43,7 +50,14 @@ class Channel(NamedTuple):
 
 
 class Intensity(NamedTuple):
-    """A measure of every component, in SI units."""
+    """A measure of every component, in SI units.
+
+    Examples
+    --------
+    >>> record = Record.made(pulse={"kind": "ricker", "amplitude": "0.4 g", "period": "0.8 s"})
+    >>> record.intensity("pga")[0]
+    Intensity(measure='pga', unit='m/s2', values={'H1': 3.92266})
+    """
 
     measure: str
     unit: str
@@ -59,7 +73,7 @@ class Record:
     Examples
     --------
     >>> record = Record.bundled("napa-college-2014").scale(pgv=0.6)
-    >>> round(record.intensity("pgv")[0].values["90"], 6)
+    >>> round(record.intensity("pgv")[0].values["E"], 6)
     0.6
     """
 

@@ -52,6 +52,14 @@ def read_folder(
     -----
     BarrelstackWarning
         For each file that is not a record, with the reason.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> Record.bundled().write(f"{folder}/napa.txt")
+    >>> list(read_folder(folder))
+    ['napa.txt']
     """
 
     def unreadable(reason: OSError) -> None:
@@ -102,6 +110,12 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
     ------
     RecordError
         When there is no such measure.
+
+    Examples
+    --------
+    >>> table = intensities({"napa": Record.bundled()}, "pga", "pgv")
+    >>> table["component"]
+    ['E', 'N', 'Up']
     """
     columns: dict[str, list[object]] = {"record": [], "component": []}
     for name, record in records.items():
@@ -117,7 +131,16 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
 
 
 class Selection(NamedTuple):
-    """Records whose spectra have a target's mean and spread, made by :func:`select`."""
+    """Records whose spectra have a target's mean and spread, made by :func:`select`.
+
+    Examples
+    --------
+    >>> source = {"kind": "boore", "magnitude": 6.5, "distance": "10 km"}
+    >>> records = {f"motion {n}": Record.made(synthetic={**source, "seed": n}) for n in range(8)}
+    >>> selection = select(records, "ec8:ag=0.3,site=B", count=3, spectrum="h1")
+    >>> len(selection.records), selection.found.shape == selection.target.shape
+    (3, True)
+    """
 
     #: The selected records by name, each multiplied by its factor.
     records: dict[str, Record]
@@ -198,6 +221,14 @@ def select(
     -----
     The selection equals that of ``barrelstack motion select`` for the same spectra and periods: Jayaram, Lin and Baker
     (2011), Earthquake Spectra 27:797-815.
+
+    Examples
+    --------
+    >>> source = {"kind": "boore", "magnitude": 6.5, "distance": "10 km"}
+    >>> records = {f"motion {n}": Record.made(synthetic={**source, "seed": n}) for n in range(8)}
+    >>> selection = select(records, "ec8:ag=0.3,site=B", count=3, spectrum="h1", scale=(0.5, 4.0))
+    >>> all(0.5 <= factor <= 4.0 for factor in selection.factors.values())
+    True
     """
     wanted: str | tuple[list[float], list[float]]
     given: tuple[float, float] | None = None

@@ -35,7 +35,14 @@ def warn(sentences: list[str]) -> None:
 
 
 class Outcome(NamedTuple):
-    """Outcome of a run."""
+    """Outcome of a run.
+
+    Examples
+    --------
+    >>> outcome = Scenario.load("candia-8-barrels").run(variants=0).outcome
+    >>> outcome.kind, outcome.mode, outcome.first
+    ('collapse', 'ejection', 'R4')
+    """
 
     #: ``stable``, ``collapse``, ``not-judged``, ``interrupted`` or ``invalid``.
     kind: str
@@ -55,7 +62,16 @@ class Outcome(NamedTuple):
 
 
 class Demands(Mapping[str, "float | None"]):
-    """Demands on the stack during a part of the run, by name, in SI units; None if not applicable."""
+    """Demands on the stack during a part of the run, by name, in SI units; None if not applicable.
+
+    Examples
+    --------
+    >>> demands = Scenario.load("candia-8-barrels").run(variants=0).demands
+    >>> demands.units["base_slip_peak"]
+    'm'
+    >>> 0.01 < demands["top_drift_ratio"] < 0.1
+    True
+    """
 
     def __init__(self, values: dict[str, float | None]) -> None:
         self._values = values
@@ -96,7 +112,11 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
 
     Examples
     --------
-    >>> run.histories["B4.1_displacement_x"]  # m, relative to the ground and the position at rest
+    >>> histories = Scenario.load("sliding-block").run().histories
+    >>> histories.units["block_displacement_x"]  # relative to the ground and the position at rest
+    'm'
+    >>> histories["block_displacement_x"].shape == histories.time.shape
+    True
     """
 
     def __init__(self, native: _native.Run) -> None:
@@ -144,6 +164,12 @@ class Force(NamedTuple):
 
     If neither body rests on the other, the force is that on the body named first. Largest forces are those with the
     largest magnitude in any step, with their sign.
+
+    Examples
+    --------
+    >>> run = Scenario.load("candia-8-barrels").run(variants=0)
+    >>> round(run.forces["R1 on ground"].at_rest)  # N: the weight of the stack
+    23144
     """
 
     #: Vertical force at rest (N).
@@ -163,7 +189,14 @@ class Force(NamedTuple):
 
 
 class Envelope(NamedTuple):
-    """Normal stress along the boundary of a body, force per length of boundary."""
+    """Normal stress along the boundary of a body, force per length of boundary.
+
+    Examples
+    --------
+    >>> envelope = Scenario.load("candia-8-barrels").run(variants=0).envelopes["B1.1"]
+    >>> envelope.closed, envelope.points.shape
+    (True, (720, 2))
+    """
 
     #: Positions (m) in the frame of the body, shape (points, 2): x and z.
     points: NDArray[np.float64]
@@ -182,7 +215,14 @@ class Envelope(NamedTuple):
 
 
 class Frames(NamedTuple):
-    """Poses of all bodies, one set per frame."""
+    """Poses of all bodies, one set per frame.
+
+    Examples
+    --------
+    >>> frames = Scenario.load("sliding-block").run().frames
+    >>> frames.bodies, frames.poses.shape == (len(frames.time), 2, 3)
+    (['ground', 'block'], True)
+    """
 
     #: Times (s), shape (frames,).
     time: NDArray[np.float64]
@@ -198,6 +238,12 @@ class Run:
     """Results of a scenario in one plane, with all recordings of the shown run.
 
     Made by :meth:`Scenario.run`.
+
+    Examples
+    --------
+    >>> run = Scenario.load("sliding-block").run()
+    >>> round(float(run.histories["block_displacement_x"][-1]), 2)  # m
+    0.17
     """
 
     def __init__(self, native: _native.Run) -> None:

@@ -63,7 +63,7 @@ class Section:
     >>> stack.levels
     5
     >>> stack.help("levels")
-    'levels = 5: Levels of barrels.'
+    'levels = 5: Number of levels of barrels.'
     """
 
     def __init__(self, path: str, fields: Mapping[str, tuple[str, str]]) -> None:

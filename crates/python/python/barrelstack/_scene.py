@@ -26,9 +26,11 @@ class Scene:
     Examples
     --------
     >>> scene = Scene("A block slides", run={"duration": "1 s"})
-    >>> scene.body("block", shape={"type": "rectangle", "width": "1 m", "height": "0.3 m"}, mass="100 kg",
-    ...            position=["0 m", "0.15 m"], velocity=["1 m/s", "0 m/s"], nodes="corners")
-    >>> scene.interface("block", "ground", stiffness="5 MN/m", damping="10 kN s/m", friction={"coefficient": 0.3})
+    >>> shape = {"type": "rectangle", "width": "1 m", "height": "0.3 m"}
+    >>> start = {"position": ["0 m", "0.15 m"], "velocity": ["1 m/s", "0 m/s"]}
+    >>> scene = scene.body("block", shape=shape, mass="100 kg", nodes="corners", **start)
+    >>> friction = {"coefficient": 0.3}
+    >>> scene = scene.interface("block", "ground", stiffness="5 MN/m", damping="10 kN s/m", friction=friction)
     >>> scene.run().outcome.kind
     'not-judged'
     """

@@ -19,7 +19,13 @@ __all__ = ["OutcomeInSpace", "Poses", "SpatialRun"]
 
 
 class OutcomeInSpace(NamedTuple):
-    """Outcome of a run in space."""
+    """Outcome of a run in space.
+
+    Examples
+    --------
+    >>> Scenario.load("rolling-ball").run_in_space().outcome.kind
+    'not-judged'
+    """
 
     #: ``stable``, ``collapse``, ``not-judged`` or ``invalid``.
     kind: str
@@ -42,7 +48,14 @@ class OutcomeInSpace(NamedTuple):
 
 
 class Poses(NamedTuple):
-    """Poses of all bodies in space, one set per frame."""
+    """Poses of all bodies in space, one set per frame.
+
+    Examples
+    --------
+    >>> frames = Scenario.load("rolling-ball").run_in_space().frames
+    >>> frames.bodies, frames.poses.shape == (len(frames.time), 2, 7)
+    (['ground', 'ball'], True)
+    """
 
     #: Times (s), shape (frames,): a view without a copy.
     time: NDArray[np.float64]
@@ -58,6 +71,12 @@ class SpatialRun:
     """Results of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
 
     Made by :meth:`Scenario.run_in_space`.
+
+    Examples
+    --------
+    >>> run = Scenario.load("rolling-ball").run_in_space()
+    >>> bool(run.frames.poses[-1, 1, 0] > run.frames.poses[0, 1, 0])  # the ball has moved to the right
+    True
     """
 
     def __init__(self, native: _native.SpatialRun, stated: str) -> None:

@@ -23,7 +23,13 @@ __all__ = ["Chunk", "Curve", "Fragility", "Hunts", "Study"]
 
 
 class Chunk(NamedTuple):
-    """A chunk of a study: cases that are computed and stored together."""
+    """A chunk of a study: cases that are computed and stored together.
+
+    Examples
+    --------
+    >>> Study.load("napa-four-levels").plan()[0]
+    Chunk(number=0, cases=20, first=0, last=19)
+    """
 
     number: int
     cases: int
@@ -32,7 +38,25 @@ class Chunk(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """The fragility of one limit state."""
+    """The fragility of one limit state.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> study = Study({
+    ...     "base": {"extends": "candia-8-barrels", "stack": {"levels": 3}},
+    ...     "motion": [{"synthetic": {"kind": "boore", "count": 6, "magnitude": 6, "distance": "8 km"}}],
+    ...     "intensity": {"measure": "pgv", "levels": ["20 cm/s", "40 cm/s", "60 cm/s", "80 cm/s"]},
+    ...     "design": {"kind": "stripes"},
+    ... })
+    >>> folder = tempfile.mkdtemp()
+    >>> table = study.run(folder)
+    >>> curve = study.fragility(folder).curves["collapse"]
+    >>> 0.2 < curve.median < 0.8  # m/s
+    True
+    >>> curve.raw.shape, float(curve.probability(curve.median))
+    ((4, 5), 0.5)
+    """
 
     limit_state: str
     #: Median (SI unit of the measure); None if the data support no curve.
@@ -71,7 +95,23 @@ class Curve(NamedTuple):
 
 
 class Fragility(Page):
-    """Results of a study: curves, modes, losses, sensitivities; made by :meth:`Study.fragility`."""
+    """Results of a study: curves, modes, losses, sensitivities; made by :meth:`Study.fragility`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> table = Study({
+    ...     "base": {"extends": "candia-8-barrels", "stack": {"levels": 2}},
+    ...     "factor": [{"field": "motion.sine.amplitude", "values": ["2 cm", "6 cm", "10 cm", "14 cm"]}],
+    ...     "design": {"kind": "full-factorial"},
+    ... }).run(folder)
+    >>> fragility = Study.fragility(folder)
+    >>> fragility.headline
+    '2 of 4 cases collapse.'
+    >>> fragility.curves["collapse"].raw.shape[1]
+    5
+    """
 
     @property
     def measure(self) -> tuple[str, str]:
@@ -81,7 +121,7 @@ class Fragility(Page):
 
     @property
     def curves(self) -> dict[str, Curve]:
-        """A curve for every limit state, by name; the first is the first loss of a seat."""
+        """A curve for every limit state, by name: ``"collapse"`` first, then ``"fallen-1"``, one fallen barrel, and more."""
         found: dict[str, Curve] = {}
         for one in self.document["fragility"]:
             raw = [[row["intensity"], row["cases"], row["failures"], *row["interval"]] for row in one["raw"]]
@@ -136,7 +176,22 @@ class Fragility(Page):
 
 
 class Hunts(NamedTuple):
-    """An incremental dynamic analysis: the result of each motion at each level."""
+    """An incremental dynamic analysis: the result of each motion at each level.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> table = Study({
+    ...     "base": {"extends": "candia-8-barrels", "stack": {"levels": 3}},
+    ...     "motion": [{"synthetic": {"kind": "boore", "count": 2, "magnitude": 6, "distance": "8 km"}}],
+    ...     "intensity": {"measure": "pgv"},
+    ...     "design": {"kind": "ida", "first": "20 cm/s", "step": "20 cm/s", "runs": 5},
+    ... }).run(folder)
+    >>> hunts = Study.ida(folder)
+    >>> len(hunts.motions), hunts.capacities.shape
+    (2, (2,))
+    """
 
     #: Names of the motions.
     motions: list[str]
@@ -167,8 +222,11 @@ class Study:
     Examples
     --------
     >>> study = Study.load("napa-four-levels")
-    >>> study.run("napa")
-    >>> study.fragility("napa").curves["first-seat"].median
+    >>> study.cases, study.motions, len(study.plan())
+    (240, 24, 12)
+    >>> folder = "napa"
+    >>> study.run_chunk(folder, 0), len(study.plan(folder)), len(study.collect(folder))
+    (True, 11, 20)
     """
 
     def __init__(self, of: str | Mapping[str, Any], name: str = "study") -> None:

@@ -16,7 +16,13 @@ __all__ = ["Column", "Table"]
 
 
 class Column(NamedTuple):
-    """Description of a column."""
+    """Description of a column.
+
+    Examples
+    --------
+    >>> intensities({"napa": Record.bundled()}, "pgv").columns[2]
+    Column(name='pgv', unit='m/s', role='factor', kind='number', meaning='')
+    """
 
     name: str
     #: SI unit; empty for dimensionless numbers and for texts.
@@ -45,7 +51,11 @@ class Table(Columns):
 
     Examples
     --------
-    >>> polars.DataFrame(table).filter(polars.col("outcome") == "collapse")
+    >>> table = ensemble([{"stack.levels": 2, "motion.sine.amplitude": f"{size} cm"} for size in (2, 14)])
+    >>> len(table), table["outcome"]
+    (2, ['stable', 'collapse'])
+    >>> table.numbers("top_drift_ratio").shape
+    (2,)
     """
 
     def __init__(self, native: _native.Table) -> None:
