@@ -6,7 +6,7 @@
 from barrelstack import Record, Scenario
 
 stack = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.duration": "40 s"})
-stack = stack.set({"imperfections.stiffness": 0.6, "imperfections.friction": 0.35})
+stack = stack.set({"unknowns.stiffness": 0.6, "unknowns.friction": 0.35})
 found = stack.run(Record.bundled().scale(pgv="65 cm/s"), variants=64).ensemble
 low, high = found["interval"]
 least, most = found["range"]
@@ -18,4 +18,4 @@ for one in found["decides"]:
     print(f"{one['name']}: {100 * one['total']:.0f} % of the variance remains if all others are known")
 # %% [markdown]
 # The interval tells how well 64 variants determine the share if the constants have the assumed distributions. The range tells how far the share moves with the constants themselves, and would remain with any number of variants: only a measurement narrows it.
-# Both rest on the assumed spreads, which are stated under `imperfections`.
+# Both rest on the assumed spreads, which are stated under `unknowns`.
