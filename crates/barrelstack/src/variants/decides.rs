@@ -28,7 +28,8 @@ described! {
         /// Unit of the constant; "1" for a pure number.
         pub unit: &'static str,
         /// Standard deviation of the logarithm of the constant; for a restitution, of the logarithm
-        /// of its damping ratio.
+        /// of its damping ratio; for static friction, its largest excess over the stated value, as
+        /// a fraction.
         pub dispersion: f64 as "1",
         /// Share of collapses as a function of the constant, from its 5 % to its 95 % fractile,
         /// averaged over all other constants.
@@ -105,6 +106,9 @@ impl Unknown {
             FRICTION_RACK_GROUND => {
                 Some("pull an empty rack over the floor, and read the force on a luggage scale")
             }
+            STATIC_BARREL_RACK => Some(
+                "pull an empty barrel along a rack, and read the force at which it starts to slide and the one that keeps it sliding",
+            ),
             STIFFNESS => Some("set a full barrel down on a rack, and read how far it sinks"),
             _ => None,
         }
@@ -113,6 +117,7 @@ impl Unknown {
 
 const FRICTION_RACK_GROUND: &str = "interface.rack-ground.friction.coefficient";
 const FRICTION_BARREL_RACK: &str = "interface.barrel-rack.friction.coefficient";
+const STATIC_BARREL_RACK: &str = "interface.barrel-rack.friction.static_coefficient";
 const FRICTION_RACK_RACK: &str = "interface.rack-rack.friction.coefficient";
 const STIFFNESS: &str = "interface.barrel-rack.stiffness";
 const RESTITUTION: &str = "interface.barrel-rack.restitution";
@@ -125,6 +130,8 @@ struct Drawn {
     field: &'static str,
     unit: &'static str,
     dispersion: f64,
+    /// Returns the factor of the constant for its dispersion and a standard normal deviate.
+    factor: fn(f64, f64) -> f64,
     /// Multiplies the constant in a law by a factor.
     change: fn(&mut Interface, f64),
     /// Returns the constant from a law.
@@ -141,22 +148,24 @@ impl Drawn {
     /// Returns the value of the constant at a standard normal deviate.
     fn at(&self, deviate: f64) -> Option<f64> {
         let mut law = self.law;
-        (self.change)(&mut law, libm::exp(self.dispersion * deviate));
+        (self.change)(&mut law, (self.factor)(self.dispersion, deviate));
         (self.value)(&law)
     }
 }
 
 /// Returns the constants that may decide whether a seat is lost: friction, stiffness and damping of
-/// seats. The constants of impacts, and of bodies that have fallen, count as sampling error, like
-/// positions and masses.
+/// seats. The constants of impacts and of bodies that have fallen, sticks and the position of rails
+/// count as sampling error, like positions and masses.
 fn drawn(laws: &StackInterfaces, spread: &Unknowns, posts: bool) -> Vec<Drawn> {
     let seat = laws.barrel_rack;
+    let lognormal = |dispersion: f64, deviate: f64| libm::exp(dispersion * deviate);
     let friction = |axis, name, field, dispersion, law| Drawn {
         axis,
         name,
         field,
         unit: "1",
         dispersion,
+        factor: lognormal,
         change: Interface::roughen,
         value: coefficient,
         law,
@@ -168,6 +177,7 @@ fn drawn(laws: &StackInterfaces, spread: &Unknowns, posts: bool) -> Vec<Drawn> {
             field: STIFFNESS,
             unit: unit(&seat),
             dispersion: spread.stiffness,
+            factor: lognormal,
             change: Interface::stiffen,
             value: |law| Some(stiffness(law)),
             law: seat,
@@ -196,9 +206,23 @@ fn drawn(laws: &StackInterfaces, spread: &Unknowns, posts: bool) -> Vec<Drawn> {
                 (false, Basis::Node | Basis::Seat) => "N·s/m",
             },
             dispersion: spread.damping,
+            factor: lognormal,
             change: Interface::damp,
             value: damping,
             law: seat,
+        },
+        Drawn {
+            dispersion: spread.static_friction,
+            factor: draw::excess,
+            change: Interface::hold,
+            value: static_coefficient,
+            ..friction(
+                Shared::StaticFriction,
+                "static friction of barrels on racks",
+                STATIC_BARREL_RACK,
+                0.0,
+                seat,
+            )
         },
     ];
     if posts {
@@ -220,6 +244,13 @@ fn coefficient(law: &Interface) -> Option<f64> {
             Some(coefficient)
         }
         Friction::None => None,
+    }
+}
+
+fn static_coefficient(law: &Interface) -> Option<f64> {
+    match law.friction {
+        Friction::Coulomb { static_coefficient, .. } => Some(static_coefficient),
+        Friction::Regularized { .. } | Friction::None => None,
     }
 }
 
@@ -367,5 +398,36 @@ impl Spread {
     /// Returns the most influential decisive constant; `None` if no constant is decisive.
     pub fn decisive(&self) -> Option<&Unknown> {
         self.decides.iter().find(|one| one.is_decisive())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STATIC_BARREL_RACK, drawn};
+    use crate::Scenario;
+
+    #[test]
+    fn constants_enter_the_fit_if_they_are_drawn() {
+        let fields = |changes: &[&str]| {
+            let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+            let scenario = Scenario::builtin("demo-napa", &changes).unwrap();
+            let laws = &scenario.stack().unwrap().interfaces;
+            drawn(laws, scenario.unknowns().unwrap(), false)
+        };
+        let names =
+            |changes: &[&str]| fields(changes).iter().map(|one| one.field).collect::<Vec<_>>();
+        assert_eq!(names(&[]).len(), 4);
+        // The fit stays lean: what changes the share by less than its sampling error does not enter.
+        assert_eq!(names(&["unknowns.stick=0.5", "unknowns.rails=5 mm"]), names(&[]));
+        let held = fields(&["unknowns.static_friction=0.4"]);
+        let held = held.iter().find(|one| one.field == STATIC_BARREL_RACK).unwrap();
+        // The catalog states 0.30 for kinetic and static friction; 5 %, 50 % and 95 % of the excess of 0.4.
+        for (deviate, exact) in [(-1.644_854, 0.306), (0.0, 0.36), (1.644_854, 0.414)] {
+            let found = held.at(deviate).unwrap();
+            assert!((found - exact).abs() < 1e-6, "{found} {exact}");
+        }
+        let none =
+            names(&["unknowns.friction=0", "unknowns.friction_ground=0", "unknowns.damping=0"]);
+        assert_eq!(none, ["interface.barrel-rack.stiffness"]);
     }
 }

@@ -1,6 +1,6 @@
 //! Draws a variant of a stack: the scenario with all its uncertain parameters drawn at random.
 
-use barrelstack_fragility::{normal_quantile, sobol};
+use barrelstack_fragility::{normal, normal_quantile, sobol};
 
 use crate::scenario::{
     BodyOverride, Imperfections, Interface, Scenario, Scene, StackBody, StackInterfaces, StackSpec,
@@ -59,6 +59,12 @@ impl Point {
     }
 }
 
+/// Returns a factor that is uniformly distributed from 1 to 1 plus the given excess, for a standard
+/// normal deviate.
+pub(super) fn excess(largest: f64, deviate: f64) -> f64 {
+    1.0 + largest * normal(deviate)
+}
+
 /// Returns the standard normal deviate of a shared quantity in a variant, by its number from 1.
 pub(super) fn deviate(imperfections: &Imperfections, axis: Shared, number: u32) -> f64 {
     Point::of(imperfections, number).normal(axis as usize)
@@ -111,7 +117,7 @@ fn constants(laws: &mut StackInterfaces, spread: &Unknowns, point: &Point) {
     .map(|(axis, dispersion)| point.lognormal(axis, dispersion));
     let damping = point.lognormal(Shared::SeatDamping, spread.damping);
     let stick = point.lognormal(Shared::Stick, spread.stick);
-    let hold = 1.0 + spread.static_friction * point.uniform(Shared::StaticFriction as usize);
+    let hold = excess(spread.static_friction, point.normal(Shared::StaticFriction as usize));
     for wood in [&mut laws.barrel_rack, &mut laws.fallen_barrel_rack] {
         wood.hold(hold);
     }

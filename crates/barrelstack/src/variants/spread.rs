@@ -38,8 +38,8 @@ described! {
         /// sampling error included. Null if there are fewer than 16 variants, if one of them has no
         /// verdict, or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of stacks that collapse if all uncertain constants are as stated; null if `range`
-        /// is null.
+        /// Share of stacks that collapse if all uncertain constants are at their medians, which are
+        /// the stated values, except for static friction if it is drawn; null if `range` is null.
         pub share_as_stated: Option<f64> as "1",
         /// The uncertain constants of the seats, the most influential first; empty if `range` is
         /// null.
