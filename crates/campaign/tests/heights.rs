@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use barrelstack_campaign::heights::{HeightsError, Request, VELOCITIES, View, heights};
 use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack_report::html;
 
 fn stopped_at_once(request: &Request) -> (Result<(), HeightsError>, u64) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -43,4 +44,40 @@ fn a_record_that_is_not_there_is_refused_before_anything_is_run() {
     let request = Request { records: vec!["no-such-file.AT2".into()], ..Request::default() };
     let said = stopped_at_once(&request).0.expect_err("no such file").to_string();
     assert!(said.contains("no-such-file.AT2"), "{said}");
+}
+
+/// The range of every height at every level is the same in the results, in the JSON and on the page.
+#[test]
+fn ranges_over_constants_are_the_same_wherever_they_are_stated() {
+    let folder = tempfile::tempdir().unwrap();
+    let request = Request { synthetic: 3, highest: 2, ..Request::default() };
+    let report = |_, _| ControlFlow::Continue(());
+    let found = heights(&request, folder.path(), &RunOptions::default(), &report).unwrap();
+    let document = serde_json::to_value(found.to_document()).unwrap();
+    let page = html(&found.document).replace('\u{a0}', " ");
+    for (height, row) in found.heights.iter().zip(document["heights"].as_array().unwrap()) {
+        assert_eq!(height.effects.len(), VELOCITIES.len());
+        for (at, velocity) in VELOCITIES.into_iter().enumerate() {
+            let [low, high] = height.at(velocity).unwrap().range.unwrap();
+            let effect = height.effects[at].as_ref().unwrap();
+            assert_eq!(effect.range, [low, high]);
+            assert!(low <= effect.as_stated && effect.as_stated <= high);
+            assert_eq!(effect.decides.len(), 6);
+            assert_eq!(row["at"][at]["range"], serde_json::json!([low, high]));
+            assert_eq!(row["at"][at]["share_as_stated"].as_f64(), Some(effect.as_stated));
+            let decides = &row["at"][at]["decides"]["name"];
+            assert_eq!(decides.as_str(), height.decisive(velocity).map(|one| one.name));
+        }
+    }
+    // The page states the range in the direction in which it reaches further.
+    for velocity in VELOCITIES {
+        let ranges = found.heights.iter().filter_map(|height| height.at(velocity)?.range);
+        let [low, high] = ranges.reduce(|a, b| if b[1] >= a[1] { b } else { a }).unwrap();
+        let words = format!("{:.0}–{:.0} %", 100.0 * low, 100.0 * high);
+        assert!(page.contains(&words), "{words}");
+    }
+    // More shaking widens what the constants may do, or leaves nothing to stand.
+    let highest =
+        |at: usize| found.heights.iter().map(|h| h.effects[at].as_ref().unwrap().range[1]);
+    assert!(highest(0).fold(0.0, f64::max) < highest(5).fold(0.0, f64::max));
 }

@@ -166,29 +166,42 @@ fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel
     found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
 }
 
+/// Returns the largest number of levels whose range over the uncertain constants stays within the limit of a low chance,
+/// at a level of PGV (m/s), provided that those of all smaller numbers do as well.
+fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
+    let low =
+        |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
+    all.request.heights().take_while(low).last()
+}
+
 /// Describes up to which height the chance of collapse at a level of PGV (m/s) is low whatever the uncertain constants
 /// are; empty if their effect is unknown.
 fn over_constants(all: &Heights, velocity: f64) -> String {
-    let low =
-        |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
-    let highest = all.request.heights().take_while(low).last();
+    let highest = highest_over_constants(all, velocity);
     let Some((height, _, [from, to])) = widest(all, highest.unwrap_or(LOWEST), velocity) else {
         return String::new();
     };
     let uncertain = "the friction, stiffness and damping of the seats, which are uncertain,";
     let shares = format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * to);
-    match highest {
-        Some(levels) => format!(
+    if let Some(levels) = highest {
+        return format!(
             " Over {uncertain} up to {levels} levels do: the probability is {shares} (95 % range)."
-        ),
-        None => format!(
-            " Over {uncertain} not even two levels do: the probability is {shares} (95 % range), {}{}.",
-            height.view.words(),
-            height
-                .decisive(velocity)
-                .map_or_else(String::new, |one| { format!(", and the {} decides", one.name) })
-        ),
+        );
     }
+    let decides = height
+        .decisive(velocity)
+        .map_or_else(String::new, |one| format!(", and the {} decides", one.name));
+    let weaker = VELOCITIES
+        .into_iter()
+        .map_while(|velocity| Some((velocity, highest_over_constants(all, velocity)?)))
+        .last();
+    let weaker = weaker.map_or_else(String::new, |(velocity, levels)| {
+        format!("; in {} up to {levels} levels do", named(velocity))
+    });
+    format!(
+        " Over {uncertain} not even two levels do: the probability is {shares} (95 % range), {}{decides}{weaker}.",
+        height.view.words()
+    )
 }
 
 /// Tabulates the range over the uncertain constants, in the direction in which it reaches further.

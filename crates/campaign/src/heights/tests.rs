@@ -168,6 +168,13 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     let over = "not even two levels do: the probability is 0 to 40 % (95 % range), along the barrels, and the friction of \
                 barrels on racks decides.";
     assert!(headline.ends_with(over), "{headline}");
+    // Weaker shaking in which they do not is named.
+    for height in &mut wide.heights {
+        height.effects[0].as_mut().unwrap().range[1] = 0.1;
+    }
+    let headline = document(&wide).verdict.headline;
+    let weaker = "decides; in strong shaking (12 cm/s) up to 6 levels do.";
+    assert!(headline.ends_with(weaker), "{headline}");
     // Without a known effect nothing is claimed.
     wide.heights.iter_mut().for_each(|height| height.effects.fill(None));
     assert!(!document(&wide).verdict.headline.contains("uncertain"));

@@ -86,6 +86,8 @@ pub fn league(
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
     }
+    let refused = |source| ScoreError::State { state: "as the protocol stacks it".into(), source };
+    let scenario = &changed(scenario, &protocol.stacked()).map_err(refused)?;
     let (mut ready, mut not_scored) = (Vec::<(Contender, Prepared)>::new(), Vec::new());
     for contender in contenders(scenario) {
         let made = changed(scenario, &contender.changes)

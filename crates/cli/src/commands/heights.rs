@@ -68,7 +68,7 @@ fn lines(found: &Heights) -> Vec<String> {
     for view in View::ALL {
         lines.push(format!("  collapsed, shaken {}", view.words()));
         let heads =
-            found.request.heights().map(|levels| format!("{:>16}", format!("{levels} levels")));
+            found.request.heights().map(|levels| format!("{:>18}", format!("{levels} levels")));
         lines.push(format!("  {:>10}{}", "shaking", heads.collect::<String>()));
         for velocity in VELOCITIES {
             let cells = found.request.heights().map(|levels| {
@@ -79,7 +79,7 @@ fn lines(found: &Heights) -> Vec<String> {
                         .map(|[low, high]| format!(" ({:.0} to {:.0})", 100.0 * low, 100.0 * high));
                     format!("{:.0} %{}", 100.0 * at.stripe.fraction(), range.unwrap_or_default())
                 });
-                format!("{share:>16}")
+                format!("{share:>18}")
             });
             lines.push(format!(
                 "  {:>10}{}",

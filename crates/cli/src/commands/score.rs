@@ -15,7 +15,7 @@ use crate::printer;
 pub(crate) struct ScoreArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Score every rack and device of the catalog in stacks like this one, and write a league table and its CSV.
+    /// Score every rack and device of the catalog in such stacks, and write the table and its CSV.
     #[arg(long, conflicts_with = "json")]
     catalog: bool,
     /// Use one motion in NUMBER of the protocol, for an estimate in less time; the sheet states it.
