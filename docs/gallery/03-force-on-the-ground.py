@@ -1,13 +1,13 @@
 """Force of the bottom rack on the ground.
 
-The vertical force varies about the weight of the stack as the stack rocks; the horizontal force cannot exceed the friction.
+The vertical force varies about the weight of the stack; the horizontal force cannot exceed the friction.
 """
 
 import matplotlib.pyplot as plt
 from barrelstack import Record, Scenario
 
 stack = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.duration": "40 s"})
-run = stack.run(Record.bundled().scale(pgv="50 cm/s"), variants=0)
+run = stack.run(Record.bundled().process("compact").scale(pgv="50 cm/s"), variants=0)
 force = run.forces["R1 on ground"]
 figure, ax = plt.subplots(figsize=(8, 3), layout="constrained")
 ax.plot(run.histories.time, force.vertical / 1e3, linewidth=0.7, label="vertical")

@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 from barrelstack import Record, Scenario, compare
 
 stack = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.duration": "40 s"})
-stack = stack.with_record(Record.bundled().scale(pgv="65 cm/s"))
+stack = stack.with_record(Record.bundled().process("compact").scale(pgv="65 cm/s"))
 strap = {"levels": 3, "ties": "levels-together", "pretension": "3 kN"}
 runs = {"as it is": stack, "strapped": stack.set("stack.strap", strap), "two levels": stack.set("stack.levels", 2)}
 figure, ax = plt.subplots(figsize=(7, 2.4), layout="constrained")

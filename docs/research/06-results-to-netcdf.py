@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from barrelstack import Record, Scenario
 
-record = Record.bundled().scale(pgv="40 cm/s")
+record = Record.bundled().process("compact").scale(pgv="40 cm/s")
 run = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.duration": "40 s"}).run(record, variants=0)
 units = run.histories.units
 columns = {name: ("time", run.histories[name], {"units": units[name]}) for name in units if name != "time"}

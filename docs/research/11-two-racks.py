@@ -5,7 +5,7 @@
 # %%
 from barrelstack import Record, Scenario, compare
 
-record = Record.bundled().scale(pgv="90 cm/s")
+record = Record.bundled().process("compact").scale(pgv="90 cm/s")
 stack = Scenario.load("demo-napa").set({"stack.view": "transverse", "stack.levels": 3}).with_record(record)
 racks = {name: stack.set("stack.rack.base", name) for name in ("two-barrel", "rack-on-rack")}
 both = compare(racks, variants=12)

@@ -8,12 +8,12 @@ import numpy as np
 from barrelstack import Record, Scenario
 
 stack = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.duration": "40 s"})
-run = stack.run(Record.bundled().scale(pgv="50 cm/s"), variants=0)
+run = stack.run(Record.bundled().process("compact").scale(pgv="50 cm/s"), variants=0)
 names = ("kinetic", "potential", "elastic", "stick", "friction", "damped")
 energy = {name: run.histories[f"energy_{name}"] for name in names}
 work = run.histories["energy_ground_work"]
-plt.stackplot(run.histories.time, energy["friction"], energy["damped"], labels=("friction", "dampers"))
-plt.gcf().legend(loc="upper center", title="dissipated energy (J) over time (s)")
+plt.stackplot(run.histories.time, energy["friction"], energy["damped"])
+plt.gca().set(xlabel="time (s)", ylabel="dissipated energy (J)", title="friction (below) and dampers (above)")
 assert np.allclose(sum(part - part[0] for part in energy.values()), work, atol=1e-5 * work.max())
 assert np.diff(energy["friction"]).min() > -1e-6 and np.diff(energy["damped"]).min() > -1e-6
 # %%

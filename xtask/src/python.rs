@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use crate::steps::{build_program, cargo, program, target};
 
 /// Packages that the tests need.
-const TESTS: [&str; 22] = [
+const TESTS: [&str; 16] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
@@ -25,13 +25,10 @@ const TESTS: [&str; 22] = [
     "ipykernel",
     "mkdocs>=1.6,<2",
     "distributed",
-    "scipy",
-    "SALib",
-    "statsmodels",
-    "xarray",
-    "netCDF4",
-    "joblib",
 ];
+
+/// Packages that only research tasks of the site need; a task without its package is not executed.
+const RESEARCH: [&str; 6] = ["SALib", "joblib", "netCDF4", "scipy", "statsmodels", "xarray"];
 
 /// Packages that only the heavy tests need, because their installation takes long.
 const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
@@ -144,7 +141,7 @@ pub(crate) fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
 /// The environment is kept between runs.
 fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     let python = environment_at(&target(root).join("python"))?;
-    let mut needed = TESTS.to_vec();
+    let mut needed = [&TESTS[..], &RESEARCH].concat();
     if heavy {
         needed.extend(HEAVY);
     }

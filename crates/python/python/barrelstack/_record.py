@@ -119,6 +119,12 @@ class Record:
         Notes
         -----
         Units and steps are never guessed.
+
+        Examples
+        --------
+        >>> Record.made(pulse={"kind": "ricker", "amplitude": "0.4 g", "period": "0.8 s"}).write("pulse.csv")
+        >>> Record.read("pulse.csv").channels[0].time_step
+        0.002
         """
         given = (unit, time_step, sensitivity)
         if isinstance(source, (bytes, bytearray)):
@@ -177,6 +183,11 @@ class Record:
         Notes
         -----
         A synthetic motion is the first realization of its seed, as in a study.
+
+        Examples
+        --------
+        >>> Record.made(sine={"amplitude": "10 cm", "period": "0.8 s", "cycles": 5}).intensity("pgd")[0].unit
+        'm'
         """
         kinds = [name for name in ("sine", "pulse", "synthetic") if name in motion]
         if len(kinds) != 1:
@@ -238,6 +249,11 @@ class Record:
         ------
         RecordError
             When a number is not finite, the step is not above zero, or there are fewer than two samples.
+
+        Examples
+        --------
+        >>> Record.from_arrays({"H1": [0.0, 0.1, 0.0], "UP": [0.0, 0.05, 0.0]}, 0.01, unit="g", name="mine")
+        <Record 'mine': H1, UP; 3 samples of 0.01 s, unknown>
         """
         if isinstance(acceleration, Mapping):
             parts = list(acceleration.items())
@@ -395,6 +411,12 @@ class Record:
         ------
         RecordError
             When the record has no such component.
+
+        Examples
+        --------
+        >>> record = Record.bundled()
+        >>> float(abs(record.velocity("E")).max()) == record.intensity("pgv")[0].values["E"]
+        True
         """
         return self._native.integrated(self._native.find(component))[0]
 
@@ -429,6 +451,11 @@ class Record:
         RecordError
             When the record has no such component, or when an azimuth is requested but the azimuths of two horizontals
             are unknown.
+
+        Examples
+        --------
+        >>> [channel.name for channel in Record.bundled().component("vertical").channels]
+        ['Up']
         """
         return Record(self._native.component(name))
 
@@ -475,6 +502,12 @@ class Record:
         ------
         RecordError
             When a setting is out of range for the record.
+
+        Examples
+        --------
+        >>> record = Record.bundled().process("compact", high_pass=0.2)
+        >>> record.stage
+        'corrected'
         """
         steps = (mean, detrend, taper, high_pass, low_pass, order, keep_pads, close)
         return Record(self._native.process(chain, *steps))
@@ -501,6 +534,12 @@ class Record:
         ------
         RecordError
             When the measure does not scale with the motion, or is zero.
+
+        Examples
+        --------
+        >>> record = Record.bundled().scale(pga="0.4 g", of="E")
+        >>> round(record.intensity("pga")[0].values["E"], 6)  # m/s²
+        3.92266
         """
         if factor is not None and not target:
             return Record(self._native.multiplied(float(factor)))
@@ -552,6 +591,14 @@ class Record:
         ------
         RecordError
             When a setting is out of range, or the tolerance is not reached.
+
+        Examples
+        --------
+        >>> record = Record.bundled().process("compact")
+        >>> matched = record.match("ec8:ag=0.3,site=B", of="E", periods=(0.15, 2.5), tolerance=0.08)
+        >>> periods, acceleration = matched.spectrum([0.5], of="E")
+        >>> bool(8.0 < acceleration[0] < 10.0)  # m/s²: 2.5 · 1.2 · 0.3 g is 8.83
+        True
         """
         if method not in ("time", "frequency"):
             raise ValueError(f'expected the method "time" or "frequency", found {method!r}')
@@ -584,6 +631,11 @@ class Record:
         ------
         RecordError
             When there is no such measure.
+
+        Examples
+        --------
+        >>> [row.unit for row in Record.bundled().intensity("pgv", "sa(1.0)", "d5-95")]
+        ['m/s', 'm/s2', 's']
         """
         names = [channel[0] for channel in self._native.channels()]
         rows: list[Intensity] = []
@@ -616,6 +668,12 @@ class Record:
             Periods (s).
         acceleration : ndarray, shape (n,)
             Pseudo-spectral acceleration (m/s²): exact for accelerations that are linear between samples.
+
+        Examples
+        --------
+        >>> periods, acceleration = Record.bundled().spectrum([0.2, 1.0], of="rotd50")
+        >>> acceleration.shape
+        (2,)
         """
         at = _native.standard_periods(30) if periods is None else np.ascontiguousarray(periods, dtype=np.float64)
         return at, self._native.spectrum(at, damping, of)

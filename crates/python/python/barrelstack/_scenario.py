@@ -200,6 +200,11 @@ class Scenario:
         ------
         ScenarioError
             When there is no such scenario, or at the first invalid field.
+
+        Examples
+        --------
+        >>> Scenario.load("candia-8-barrels", stack__levels=3).stack.levels
+        3
         """
         sets = [f"{path.replace('__', '.')}={literal(value)}" for path, value in changes.items()]
         path = os.fspath(name)
@@ -226,6 +231,12 @@ class Scenario:
         ------
         ScenarioError
             When no field has the path, or the value is invalid; ``value`` names both.
+
+        Examples
+        --------
+        >>> scenario = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "motion.sine.amplitude": "5 cm"})
+        >>> scenario.stack.levels, scenario.motion.sine.amplitude
+        (3, '0.05 m')
         """
         changes = path if isinstance(path, Mapping) else {path: value}
         sets = [f"{path}={literal(value)}" for path, value in changes.items()]
@@ -242,6 +253,12 @@ class Scenario:
         Returns
         -------
         Scenario
+
+        Examples
+        --------
+        >>> scenario = Scenario.load("candia-8-barrels").with_record(Record.bundled().process("compact").scale(pgv=0.4))
+        >>> round(scenario.ground().intensity("pgv")[0].values["H1"], 3)
+        0.4
         """
         return self._of(self._native, record, self._name)
 

@@ -58,7 +58,7 @@ class Scene:
         name
             Name of the body in results.
         shape
-            The fields of the shape, such as ``{"type": "disc", "radius": "35 cm"}``, or of its ``parts``.
+            The fields of the shape, such as ``{"type": "circle", "radius": "35 cm"}``, or of its ``parts``.
         mass
             Mass with its unit.
         position
@@ -117,6 +117,15 @@ class Scene:
         -------
         Scene
             This scene.
+
+        Examples
+        --------
+        >>> scene = Scene("A ball on a strap", run={"duration": "0.1 s", "settle": False})
+        >>> shape = {"type": "circle", "radius": "10 cm"}
+        >>> scene = scene.body("ball", shape=shape, mass="5 kg", position=["0 m", "1 m"])
+        >>> scene = scene.element("strap", "strap", "ground", "ball", stiffness="10 kN/m", at=["0 m", "2 m"], length="0.9 m")
+        >>> scene.run().summary["elements"][0]["name"]
+        'strap'
         """
         between = [first, second]
         self.elements.append({"name": name, "kind": kind, "between": between, "stiffness": stiffness, **fields})

@@ -320,6 +320,11 @@ class Study:
         Returns
         -------
         list of Chunk
+
+        Examples
+        --------
+        >>> sum(chunk.cases for chunk in Study.load("napa-four-levels").plan())
+        240
         """
         chunks = [Chunk(*facts) for facts in self._native.chunks()]
         if folder is None or not (Path(folder) / "study.json").is_file():
@@ -447,6 +452,15 @@ class Study:
         Returns
         -------
         Table
+
+        Examples
+        --------
+        >>> Study({
+        ...     "base": {"extends": "sliding-block", "run": {"duration": "0.1 s"}},
+        ...     "factor": [{"field": "interface.block-ground.friction.coefficient", "values": [0.2, 0.4]}],
+        ...     "design": {"kind": "full-factorial"},
+        ... }).table().numbers("interface.block-ground.friction.coefficient").tolist()
+        [0.2, 0.4]
         """
         return Table(self._native.table())
 
