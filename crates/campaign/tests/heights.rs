@@ -78,6 +78,6 @@ fn ranges_over_constants_are_the_same_wherever_they_are_stated() {
     }
     // More shaking widens what the constants may do, or leaves nothing to stand.
     let highest =
-        |at: usize| found.heights.iter().map(|h| h.effects[at].as_ref().unwrap().range[1]);
+        |at: usize| found.heights.iter().map(move |h| h.effects[at].as_ref().unwrap().range[1]);
     assert!(highest(0).fold(0.0, f64::max) < highest(5).fold(0.0, f64::max));
 }

@@ -59,11 +59,11 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
 /// not fill racks.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
-    if stack.columns % rack.barrels.max(1) != 0 {
+    if !stack.columns.is_multiple_of(rack.barrels.max(1)) {
         changes.push(format!("stack.columns={}", rack.barrels));
     }
     let along = stack.space.map(|space| space.columns_along).or(stack.columns_along);
-    if along.is_some_and(|along| along % rack.barrels_deep.max(1) != 0) {
+    if along.is_some_and(|along| !along.is_multiple_of(rack.barrels_deep.max(1))) {
         changes.push(format!("stack.columns_along={}", rack.barrels_deep));
     }
     changes
@@ -116,7 +116,7 @@ pub fn league(
         }
         before += cases;
     }
-    rows.sort_by(|a, b| b.1.score().cmp(&a.1.score()));
+    rows.sort_by_key(|(_, sheet)| std::cmp::Reverse(sheet.score()));
     let mut league = League { rows, not_scored, document: Document::default() };
     league.document = document(&league, scenario, protocol);
     Ok(league)

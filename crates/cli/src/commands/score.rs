@@ -43,7 +43,11 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     let place = |error| match error {
         ScoreError::Study(error) => of_option(error, "", &args.out),
         ScoreError::Stack(failure) => super::placed(failure, &scenario, &args.scenario),
-        other => other.into(),
+        other @ (ScoreError::NoStack(_)
+        | ScoreError::State { .. }
+        | ScoreError::Ground(_)
+        | ScoreError::Decision(_)
+        | ScoreError::Curve { .. }) => other.into(),
     };
     if args.catalog {
         let found = league(&scenario, &protocol, &args.out, &options, &report).map_err(place)?;
