@@ -29,8 +29,8 @@ SETTLED = 0.25
 # The first step (s), and the number of steps, each half of the one before.
 COARSEST = 1 / 240
 HALVINGS = 10
-# No finer step once a run has taken this long (s of the processor); no run may take longer than the limit (s).
-ENOUGH, LIMIT = 15.0, 300.0
+# No finer step once a run has taken this long (s of the processor).
+ENOUGH = 15.0
 
 
 # ---------------------------------------------------------------- from a trace to quantities
@@ -261,17 +261,17 @@ def build(paths):
         subprocess.run(["cargo", "build", "--release", "--quiet", "--manifest-path", manifest, *bins], check=True)
 
 
-def once(path, case, step):
+def once(path, case, step, limit):
     """Returns what an engine answers."""
     request = {k: v for k, v in case.items() if k != "quantities"}
     if step is not None:
         request["step"] = step
     try:
         # Elsewhere, since some engines write logs where they run.
-        done = subprocess.run(command(path), input=json.dumps(request), capture_output=True, text=True, timeout=LIMIT,
+        done = subprocess.run(command(path), input=json.dumps(request), capture_output=True, text=True, timeout=limit,
                               cwd=tempfile.gettempdir())
     except subprocess.TimeoutExpired:
-        return {"fault": f"no answer in {LIMIT:g} s"}
+        return {"fault": f"no answer in {limit:g} s"}
     try:
         # NaN and infinity are words that Python reads and the trace refuses.
         return json.loads(done.stdout)
@@ -304,10 +304,10 @@ def rows_of(name, case, answer, setting, note=""):
     return rows
 
 
-def measure(path, case, fine=True):
+def measure(path, case, fine=True, limit=300.0):
     """Rows at the default step, and at the first step that changes nothing beside one twice as long."""
     name = path.stem
-    answer = once(path, case, None)
+    answer = once(path, case, None, limit)
     rows = rows_of(name, case, answer, "default")
     if not fine or any(c["what"] == "case" for c in answer.get("cannot", [])):
         return rows + [{**row, "setting": "settled"} for row in rows] if fine else rows
@@ -321,7 +321,7 @@ def measure(path, case, fine=True):
     # Two wrong verdicts in a row are no convergence: a verdict has to stay for one halving more.
     enough = 2 if any(w["kind"] in ("exceeds", "first_exceeds") for w in case["quantities"]) else 1
     for _ in range(HALVINGS):
-        answer = once(path, case, step)
+        answer = once(path, case, step, limit)
         now = rows_of(name, case, answer, "settled")
         same = same + 1 if before and settled(before, now) else 0
         if same == enough:
@@ -421,8 +421,10 @@ def median(values):
 
 
 def page(rows):
-    names = engine_order(rows)
     cases = load_cases()
+    covered = {n: len({r["case"] for r in rows if r["engine"] == n and r["setting"] == "settled"} & {c["id"] for c in cases})
+               for n in engine_order(rows)}
+    names = [n for n in covered if covered[n] == len(cases)]
     count = sum(len(c["quantities"]) for c in cases)
     versions = {r["engine"]: r["version"] for r in rows if r["version"]}
 
@@ -457,7 +459,9 @@ def page(rows):
         text.append("| " + " | ".join(line) + " |")
     text += ["", "Cost is time of the processor for a simulated second, over the cases that an engine ran: of one core of "
              f"a {platform.machine()} machine that others used too, so compare within the table, and no digit after the first.",
-             "“Not settled” counts cases whose answer still changed at the finest step; they are scored at that step.", ""]
+             "“Not settled” counts cases whose answer still changed at the finest step; they are scored at that step."]
+    part = [f"{n} ({c} of {len(cases)} cases)" for n, c in covered.items() if n not in names]
+    text += (["Run on some cases only, and left out of the tables: " + ", ".join(part) + "."] if part else []) + [""]
     for setting, title in (("default", "at the default step"), ("settled", "at the step at which the answer settles")):
         text += [f"## Passed by category, {title}", "",
                  "| category | quantities | " + " | ".join(names) + " |", "|---|---:|" + "---:|" * len(names)]
@@ -535,6 +539,7 @@ def main():
     parser.add_argument("--check", metavar="FILE", help="an engine anywhere")
     parser.add_argument("--fine", action="store_true", help="with --check or --case: halve the step, too")
     parser.add_argument("--write", action="store_true", help="with --case: replace the rows of these cases")
+    parser.add_argument("--limit", type=float, default=300.0, help="a run that takes longer by the clock (s) is failed")
     parser.add_argument("--jobs", type=int, default=2, help="runs at the same time")
     parser.add_argument("--page", action="store_true", help="writes the page alone")
     words = parser.parse_args()
@@ -559,7 +564,7 @@ def main():
     for path in paths:
         rows = []
         with ThreadPoolExecutor(words.jobs) as pool:
-            for done in pool.map(lambda case: measure(path, case, words.fine or not trial), cases):
+            for done in pool.map(lambda case: measure(path, case, words.fine or not trial, words.limit), cases):
                 rows += done
                 if trial:
                     show(done)
