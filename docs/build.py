@@ -76,7 +76,9 @@ def signature(thing: Any) -> str:
 def members(thing: Any) -> list[str]:
     """Returns the documentation of the methods and properties of a class, in their order."""
     found = []
-    for name, value in vars(thing).items():
+    private = [one for one in thing.__mro__[1:] if one.__module__.startswith("barrelstack.")]
+    hidden = [one for one in private if one.__name__ not in barrelstack.__all__]
+    for name, value in [item for one in [thing, *hidden] for item in vars(one).items()]:
         if name.startswith("_"):
             continue
         raw = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
@@ -113,7 +115,7 @@ def api() -> str:
         if inspect.isclass(thing):
             own = inspect.getdoc(thing) or ""
             text.append(f"## `{name}`\n\n{docstring(own)}\n\n{fields(thing)}".rstrip())
-            text += [] if hasattr(thing, "_fields") else members(thing)
+            text += members(thing)
         elif callable(thing):
             text.append(f"## `{name}{signature(thing)}`\n\n{docstring(inspect.getdoc(thing) or '')}")
     return "\n\n".join(text) + "\n"

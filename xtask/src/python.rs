@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use crate::steps::{build_program, cargo, program, target};
 
 /// Packages that the tests need.
-const TESTS: [&str; 16] = [
+const TESTS: [&str; 20] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
@@ -25,6 +25,10 @@ const TESTS: [&str; 16] = [
     "ipykernel",
     "mkdocs>=1.6,<2",
     "distributed",
+    "gymnasium",
+    "joblib",
+    "scipy",
+    "xarray",
 ];
 
 /// Packages that only research tasks of the site need; a task without its package is not executed.

@@ -14,6 +14,7 @@ mod page;
 mod record;
 mod run;
 mod scenario;
+mod simulation;
 mod space;
 mod study;
 mod table;
@@ -38,6 +39,8 @@ mod _native {
     use crate::run::{Glance, Run};
     #[pymodule_export]
     use crate::scenario::{Scenario, fields, reference, scenarios, schema};
+    #[pymodule_export]
+    use crate::simulation::{Simulation, Simulations};
     #[pymodule_export]
     use crate::space::SpatialRun;
     #[pymodule_export]

@@ -286,6 +286,15 @@ def look(glance: barrelstack.Glance) -> bool:
 
 
 scenario.observe(look)
+simulation = scenario.simulation()
+print(simulation.step(10) + 1, simulation.state.pose("R1") + simulation.state.time, simulation.energy.kinetic + 1.0)
+simulation.apply_force("R1", (10.0, 0.0), at=[0.0, 0.1], moment=2.0)
+for name, force in simulation.forces.items():
+    print(name.upper(), force.sum(), [one.force for one in simulation.elements.values()])
+kept = simulation.copy()
+simulation.reset(kept)
+many = scenario.simulations(4)
+print(many.step(3).sum(), many.state.poses.shape, many.ended.any())
 """
 
 

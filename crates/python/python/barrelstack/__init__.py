@@ -5,6 +5,7 @@
     Scenario ── run ──▶ Run          a stack and its ground motion ─▶ outcome, histories, report
     Record   ──────────┘             strong ground motion: read, made from arrays, processed, scaled, measured
     Scenario ── run_in_space ─▶ SpatialRun   the same in space, under all three components
+    Scenario ── simulation ─▶ Simulation     step by step, with forces of a controller; simulations: many together
     ensemble ──────────▶ Table       many cases at once
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
     Scene    ── run ──▶ Run          any planar bodies
@@ -41,6 +42,7 @@ from ._errors import (
     BarrelstackWarning,
     Error,
     FileError,
+    MissingPackageError,
     NoFieldError,
     NoItemError,
     RecordError,
@@ -55,6 +57,7 @@ from ._records import Selection, intensities, read_folder, select
 from ._run import Demands, Envelope, Force, Frames, Glance, Histories, Outcome, Run
 from ._scenario import Scenario, Section
 from ._scene import Scene
+from ._simulation import Contacts, ElementForce, Energy, Simulation, Simulations, State
 from ._space import OutcomeInSpace, Poses, SpatialRun
 from ._study import Chunk, Curve, Fragility, Hunts, Study
 from ._table import Column, Table
@@ -69,9 +72,12 @@ __all__ = [
     "Chunk",
     "Column",
     "Comparison",
+    "Contacts",
     "Curve",
     "Demands",
     "Difference",
+    "ElementForce",
+    "Energy",
     "Envelope",
     "Error",
     "Estimate",
@@ -84,6 +90,7 @@ __all__ = [
     "Histories",
     "Hunts",
     "Intensity",
+    "MissingPackageError",
     "NoFieldError",
     "NoItemError",
     "Outcome",
@@ -102,7 +109,10 @@ __all__ = [
     "Scene",
     "Section",
     "Selection",
+    "Simulation",
+    "Simulations",
     "SpatialRun",
+    "State",
     "Study",
     "StudyError",
     "Table",

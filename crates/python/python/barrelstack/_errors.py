@@ -9,6 +9,7 @@
     ├── StudyError      a folder, a shard, a study without a verdict
     ├── ArgumentError   an argument of the wrong type or out of range; also a ValueError, TypeError and OverflowError
     ├── FileError       a file or folder that cannot be opened or written; also an OSError
+    ├── MissingPackageError     an optional package that a function needs is not installed; also an ImportError
     └── NoItemError     a name or number that a table, histories or a record does not have; also a KeyError and
         │               IndexError
         └── NoFieldError    a field that a scenario does not have; also an AttributeError
@@ -32,6 +33,7 @@ __all__ = [
     "BarrelstackWarning",
     "Error",
     "FileError",
+    "MissingPackageError",
     "NoFieldError",
     "NoItemError",
     "RecordError",
@@ -173,6 +175,10 @@ class MissingFileError(FileError, FileNotFoundError):
     """A file or a folder does not exist."""
 
 
+class MissingPackageError(Error, ImportError):
+    """An optional package that a function needs is not installed."""
+
+
 class NoItemError(Error, KeyError, IndexError):
     """There is no item with this name or number.
 
@@ -231,6 +237,9 @@ def _converted(error: Exception) -> Error:
         path = None if error.filename is None else os.fsdecode(error.filename)
         kind = MissingFileError if isinstance(error, FileNotFoundError) else FileError
         return kind(f"{path}: {error.strerror}" if path is not None else str(error), path=path)
+    if isinstance(error, ImportError):
+        name = (error.name or str(error)).split(".")[0]
+        return MissingPackageError(f"this function needs the package {name}, which is not installed: pip install {name}")
     if isinstance(error, LookupError):
         return NoItemError(str(error.args[0]) if error.args else "there is no such item")
     if isinstance(error, AttributeError):
@@ -247,7 +256,7 @@ def _guard(function: Callable[..., Any]) -> Callable[..., Any]:
             return function(*args, **kwargs)
         except Error:
             raise
-        except (TypeError, ValueError, OverflowError, OSError, LookupError, AttributeError) as error:
+        except (TypeError, ValueError, OverflowError, OSError, LookupError, AttributeError, ImportError) as error:
             if not _of_package(error):
                 raise
             raise _converted(error) from error
@@ -265,21 +274,25 @@ def guard(module: dict[str, Any], names: list[str]) -> None:
     names
         Public names of the package.
     """
+    owners: list[type] = []
     for name in names:
         thing = module[name]
         if inspect.isfunction(thing):
             module[name] = _guard(thing)
             setattr(sys.modules[thing.__module__], name, module[name])
-        elif inspect.isclass(thing) and thing.__module__.startswith("barrelstack."):
-            for member, value in list(vars(thing).items()):
-                if member.startswith("_") and member not in GUARDED or isinstance(value, type):
-                    continue
-                if isinstance(value, (classmethod, staticmethod)):
-                    setattr(thing, member, type(value)(_guard(value.__func__)))
-                elif isinstance(value, property) and value.fget is not None:
-                    setattr(thing, member, property(_guard(value.fget), value.fset, value.fdel, value.__doc__))
-                elif inspect.isfunction(value) and not issubclass(thing, Exception):
-                    setattr(thing, member, _guard(value))
+        elif inspect.isclass(thing):
+            # Public methods may be those of a private class.
+            owners += [one for one in thing.__mro__ if one.__module__.startswith("barrelstack.") and one not in owners]
+    for owner in owners:
+        for member, value in list(vars(owner).items()):
+            if member.startswith("_") and member not in GUARDED or isinstance(value, type):
+                continue
+            if isinstance(value, (classmethod, staticmethod)):
+                setattr(owner, member, type(value)(_guard(value.__func__)))
+            elif isinstance(value, property) and value.fget is not None:
+                setattr(owner, member, property(_guard(value.fget), value.fset, value.fdel, value.__doc__))
+            elif inspect.isfunction(value) and not issubclass(owner, Exception):
+                setattr(owner, member, _guard(value))
 
 
 def outside() -> int:

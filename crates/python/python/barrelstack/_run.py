@@ -18,7 +18,7 @@ from ._errors import BarrelstackWarning, outside
 from ._kept import Kept
 from ._page import frame
 from ._store import store
-from ._table import Columns, Table
+from ._table import Column, Columns, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -143,6 +143,14 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
             hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(self._units)}"
             raise KeyError(f"there is no history {name!r}; {hint}")
         return self._native.channel(self._places[name])
+
+    _index = "time"
+
+    def _arrays(self) -> list[tuple[Column, NDArray[Any]]]:
+        def column(name: str, unit: str) -> Column:
+            return Column(name, unit, "", "number", name.replace("_", " "))
+
+        return [(column(name, unit), np.array(self[name])) for name, unit in self._units.items()]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._units)

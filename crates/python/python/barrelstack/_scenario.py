@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import html
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping
@@ -14,6 +15,7 @@ from ._progress import Progress, reporting
 from ._quantity import literal, plain
 from ._record import Record
 from ._run import Glance, Run, warn
+from ._simulation import Simulation, Simulations
 from ._space import SpatialRun
 
 if TYPE_CHECKING:
@@ -474,6 +476,66 @@ class Scenario:
         warn(run.warnings)
         return run
 
+    def simulation(self, *, plane: str | None = None, variant: int = 0) -> Simulation:
+        """Returns a simulation that advances step by step and can be acted upon, in a plane or in space.
+
+        Parameters
+        ----------
+        plane
+            ``"transverse"`` (across the barrels) or ``"longitudinal"`` (along them) if the scenario has both planes; by
+            default the first.
+        variant
+            The variant, 0 for the nominal stack.
+
+        Returns
+        -------
+        Simulation
+            At the start of the motion, with the stack at rest.
+
+        Raises
+        ------
+        RunError
+            When the stack cannot be built or does not stand.
+        RecordError
+            When the motion cannot be read.
+        ValueError
+            When there is no such plane or variant.
+
+        Notes
+        -----
+        Settling, step, ground motion, devices and end of the run are those of :meth:`run`, and so are all bits, until a
+        force is applied.
+        """
+        return Simulation(_native.Simulation.start(self._shaken, plane, variant))
+
+    def simulations(self, count: int, *, plane: str | None = None) -> Simulations:
+        """Returns simulations of variants 1 to ``count`` that advance together on all cores.
+
+        Parameters
+        ----------
+        count
+            Number of simulations. A free scene has no variants; it is repeated.
+        plane
+            As in :meth:`simulation`.
+
+        Returns
+        -------
+        Simulations
+            Simulation ``k`` has the bits of ``run(variants=count, variant=k + 1)``.
+
+        Raises
+        ------
+        RunError
+            When a stack cannot be built or does not stand.
+        RecordError
+            When the motion cannot be read.
+        ValueError
+            When there is no such plane, or the count is not positive.
+        """
+        if count < 1:
+            raise ValueError(f"the number of simulations must be positive, found {count}")
+        return Simulations(_native.Simulations.start(self._shaken, plane, count))
+
     def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
         """Runs the scenario as stated, in one plane, with an observer that may stop the run.
 
@@ -520,6 +582,19 @@ class Scenario:
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)
+
+    def _repr_html_(self) -> str:
+        sections: dict[str, list[str]] = {}
+        for path, value, meaning in self._native.settings():
+            section, _, field = path.partition(".")
+            row = "".join(f"<td>{html.escape(text)}</td>" for text in (field or path, value, meaning))
+            sections.setdefault(section if field else "", []).append(f"<tr>{row}</tr>")
+        tables = "".join(
+            f"<details><summary>{html.escape(section or 'general')}</summary><table>{''.join(rows)}</table></details>"
+            for section, rows in sections.items()
+        )
+        record = "" if self._record is None else f"<p>motion: {html.escape(self._record.name)}</p>"
+        return f"<p><strong>{html.escape(self.title)}</strong></p>{record}{tables}"
 
     def __repr__(self) -> str:
         return f"<Scenario {self.title!r}, {self.fingerprint}>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 from collections.abc import Mapping
@@ -269,6 +270,14 @@ class Study:
         """Pickles the study for workers: as its text, or as its path, which the workers must be able to read."""
         text, name = self._source
         return (Study.load, (text,)) if name is None else (Study, (text, name))
+
+    def _repr_html_(self) -> str:
+        text, name = self._source
+        facts = {"design": self.design, "cases": self.cases, "motions": self.motions, "fingerprint": self.fingerprint}
+        facts |= {"file": text} if name is None else {}
+        rows = "".join(f"<tr><th>{key}</th><td>{html.escape(str(value))}</td></tr>" for key, value in facts.items())
+        stated = "" if name is None else f"<details><summary>text</summary><pre>{html.escape(text)}</pre></details>"
+        return f"<p><strong>{html.escape(self.title)}</strong></p><table>{rows}</table>{stated}"
 
     @property
     def title(self) -> str:

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import html
 import os
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
 from ._store import store
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import xarray
 
 __all__ = ["Column", "Table"]
 
@@ -44,6 +50,81 @@ class Columns:
     @property  # type: ignore[misc]
     def __class__(self) -> type:
         return dict
+
+    #: Column that numbers the rows; None if they have no such column.
+    _index: str | None = None
+
+    def _arrays(self) -> list[tuple[Column, NDArray[Any]]]:
+        """Returns the columns as arrays: integers, numbers with NaN, or texts with None."""
+        raise NotImplementedError
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Returns the columns as a DataFrame of pandas; histories are indexed by time.
+
+        Returns
+        -------
+        pandas.DataFrame
+            SI units; ``attrs["units"]`` has the unit of each column.
+
+        Raises
+        ------
+        MissingPackageError
+            When pandas is not installed.
+        """
+        import pandas
+
+        columns = self._arrays()
+        frame = pandas.DataFrame({column.name: values for column, values in columns})
+        if self._index is not None:
+            frame = frame.set_index(self._index)
+        frame.attrs["units"] = {column.name: column.unit for column, _ in columns}
+        return frame
+
+    def to_polars(self) -> polars.DataFrame:
+        """Returns the columns as a DataFrame of polars, which keeps no units.
+
+        Returns
+        -------
+        polars.DataFrame
+            SI units.
+
+        Raises
+        ------
+        MissingPackageError
+            When polars is not installed.
+        """
+        import polars
+
+        columns: Any = self
+        return polars.DataFrame(columns)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Returns the columns as a Dataset of xarray, with the attributes ``units`` and ``long_name``.
+
+        Returns
+        -------
+        xarray.Dataset
+            SI units. The dimension of a table is ``case``, that of histories ``time``.
+
+        Raises
+        ------
+        MissingPackageError
+            When xarray is not installed.
+        """
+        import xarray
+
+        dimension = self._index or "case"
+        variables = {}
+        for column, values in self._arrays():
+            attributes = {"long_name": column.meaning} if column.meaning else {}
+            if column.kind == "text":
+                values = np.array(["" if text is None else text for text in values], dtype=str)
+            else:
+                attributes["units"] = column.unit or "1"
+            variables[column.name] = xarray.Variable((dimension,), values, attributes)
+        coordinates = {name: one for name, one in variables.items() if name == dimension}
+        data = {name: one for name, one in variables.items() if name != dimension}
+        return xarray.Dataset(data, coordinates, {"source": "barrelstack"})
 
 
 class Table(Columns):
@@ -103,6 +184,16 @@ class Table(Columns):
         """
         return self._native.numbers(name)
 
+    def _arrays(self) -> list[tuple[Column, NDArray[Any]]]:
+        def array(column: Column) -> NDArray[Any]:
+            if column.kind == "text":
+                return np.array(self[column.name], dtype=object)
+            numbers = self.numbers(column.name)
+            whole = column.kind == "integer" and not np.isnan(numbers).any()
+            return numbers.astype(np.int64) if whole else numbers
+
+        return [(column, array(column)) for column in self.columns]
+
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Exports an Arrow stream; units are in the metadata of the fields."""
         return self._native.__arrow_c_stream__(requested_schema)
@@ -143,8 +234,32 @@ class Table(Columns):
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         return _restored, ([(*column[:4], self[column.name]) for column in self.columns],)
 
+    def _repr_html_(self) -> str:
+        columns = self.columns
+        head = "".join(
+            f'<th title="{html.escape(column.meaning)}">{html.escape(column.name)}'
+            f"{f'<br>({html.escape(column.unit)})' if column.unit else ''}</th>"
+            for column in columns
+        )
+        values = [self[column.name] for column in columns]
+        shown = min(len(self), SHOWN)
+        rows = "".join(f"<tr>{''.join(f'<td>{_cell(one[at])}</td>' for one in values)}</tr>" for at in range(shown))
+        hidden = len(self) - shown
+        rest = f"<p>and {hidden} more rows</p>" if hidden else ""
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{rest}"
+
     def __repr__(self) -> str:
         return f"<Table: {len(self)} rows of {', '.join(self)}>"
+
+
+#: Number of rows that a notebook shows.
+SHOWN = 20
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    return f"{value:.6g}" if isinstance(value, float) else html.escape(str(value))
 
 
 def _restored(columns: list[tuple[str, str, str, str, list[Any]]]) -> Table:
