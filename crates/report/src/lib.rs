@@ -103,4 +103,4 @@ pub use table::{Cell, Column, ColumnOf, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use trial::Trial;
-pub use vtk::{SolidBody, Solids, paraview, paraview_of_solids};
+pub use vtk::{SolidBody, SolidTie, Solids, paraview, paraview_of_solids};
