@@ -17,6 +17,7 @@ schema = 1
 title = \"a moment\"
 [base.stack]
 levels = 2
+columns = 2
 [base.run]
 duration = \"0.05 s\"
 [base.motion.pulse]
@@ -25,7 +26,7 @@ amplitude = \"1 g\"
 period = \"0.3 s\"
 ";
 
-/// A factor with a distribution, and one with values.
+/// A factor with a distribution.
 const FACTORS: &str = "\
 [[factor]]
 name = \"friction\"
@@ -52,7 +53,7 @@ const DESIGNS: [(&str, &str, &str); 8] = [
     (
         "ida",
         "",
-        "[intensity]\nmeasure = \"pga\"\n[design]\nfirst = \"0.1 g\"\nstep = \"0.1 g\"\nruns = 2\n",
+        "[intensity]\nmeasure = \"pga\"\n[design]\nfirst = \"0.1 g\"\nstep = \"0.1 g\"\nruns = 3\n",
     ),
 ];
 

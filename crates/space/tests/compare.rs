@@ -14,7 +14,7 @@ use barrelstack_space::run::{Run, run};
 use barrelstack_space::{AnyAnswer, answer, summary};
 
 fn demo(changes: &[&str]) -> Scenario {
-    let short = ["run.duration=9 s", "run.stop_after_collapse=0.3 s", "stack.levels=2"];
+    let short = ["run.duration=9 s", "run.stop_after_collapse=1.5 s", "stack.levels=2"];
     let all = short.iter().chain(changes).map(|change| (*change).to_owned());
     Scenario::builtin("demo-napa", &all.collect::<Vec<_>>()).unwrap()
 }
