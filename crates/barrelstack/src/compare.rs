@@ -7,44 +7,104 @@ mod tables;
 
 use std::ops::ControlFlow;
 
-use barrelstack_report::described;
+use barrelstack_report::{History, Pane, described};
 
+use crate::assemble::PartKind;
 use crate::ensemble::CaseResult;
 use crate::outcome::Outcome;
+use crate::report;
 use crate::run::{Run, RunFailure};
 use crate::scenario::{Scenario, View};
-use crate::summary::Summary;
+use crate::summary::{AnySummary, Summary};
 use crate::variants::{Advance, Answer, Shown, Spread, common_number};
 
 pub use labels::labels;
 pub use page::document;
 pub use paired::Paired;
 
-/// One run of a comparison.
+/// One run of a comparison, in a plane or in space.
 #[derive(Clone, Debug)]
 pub struct Side {
     /// Name of the run, short enough for a column heading.
     pub name: String,
-    /// The run.
-    pub run: Run,
     /// Summary of the run.
-    pub summary: Summary,
+    pub summary: AnySummary,
+    /// The scenario as stated.
+    pub stated: Scenario,
+    /// The scenario that was run; it may be a variant of the stated scenario.
+    pub scenario: Scenario,
+    /// The plane of the run; `None` in space and for a free scene.
+    pub view: Option<View>,
+    /// Outcome of the run.
+    pub outcome: Outcome,
+    /// Simulated time (s) that the run reached.
+    pub end_time: f64,
+    /// Duration (s) of the ground motion that remained when `run.duration` ended the run; `None` if nothing remained.
+    pub cut: Option<f64>,
+    /// Time (s) of the first loss of a seat.
+    pub collapse_time: Option<f64>,
+    /// The moving picture.
+    pub pane: Pane,
+    /// Histories of the ground motion, the first of which is an acceleration.
+    pub ground: Vec<History>,
+    /// Histories to be plotted, each with its times (s) and values.
+    pub traced: Vec<(Traced, [Vec<f64>; 2])>,
+    /// Provenance of the result, as pairs of name and value.
+    pub provenance: Vec<(String, String)>,
     /// Results in the plane that is not shown, if the scenario has both planes.
     pub other: Option<OtherPlane>,
-    /// For each plane, the shown plane first: `true` for each variant that collapses, in the order
-    /// of the variant numbers; `None` for a variant without a verdict.
-    pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
+    /// For each plane (the shown plane first) or for space, by name: `true` for each variant that collapses, in the
+    /// order of the variant numbers; `None` for a variant without a verdict.
+    pub collapsed: Vec<(Option<&'static str>, Vec<Option<bool>>)>,
 }
 
-/// Results of a stack in the plane that is not shown.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OtherPlane {
-    /// Plane in which these results were computed.
-    pub view: View,
-    /// Outcome of the run in this plane, for the same variant number as the shown run.
-    pub outcome: Outcome,
-    /// Statistics of the variants; `None` if no variants were run.
-    pub spread: Option<Spread>,
+/// A history that a comparison plots for all runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Traced {
+    /// Displacement (cm) of the top left barrel in the plane of the model, relative to the ground.
+    Top,
+    /// Displacement (cm) of the top left barrel in space, across the barrels.
+    TopAcross,
+    /// Displacement (cm) of the top left barrel in space, along the barrels.
+    TopAlong,
+    /// Slip (cm) of the bottom rack in the plane of the model.
+    Base,
+    /// Slip (cm) of the bottom rack in space, across the barrels.
+    BaseAcross,
+    /// Slip (cm) of the bottom rack in space, along the barrels.
+    BaseAlong,
+    /// Vertical force (kN) between the bottom rack and the ground.
+    BaseForce,
+}
+
+/// Results of a scenario that can be compared: in planes or in space.
+pub trait Comparable: Sized {
+    /// Returns the scenario.
+    fn scenario(&self) -> &Scenario;
+
+    /// Returns the number of the shown variant.
+    fn variant(&self) -> u32;
+
+    /// Returns the results of all variants, in each plane or in space; `None` where no variants were run.
+    fn results(&self) -> Vec<Option<Vec<CaseResult>>>;
+
+    /// Runs another variant, and returns the results with that variant shown; the observer receives the progress and
+    /// may cancel.
+    ///
+    /// # Errors
+    /// When that variant cannot be run.
+    fn with_variant(
+        &self,
+        number: u32,
+        observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+    ) -> Result<Self, RunFailure>;
+
+    /// Returns the share of variants that collapse (for a single run, 0 or 1) where it is largest, and the plane in
+    /// which it is; `None` for the plane in space and for a free scene.
+    fn worst(&self) -> (f64, Option<View>);
+
+    /// Returns a side of a comparison, shown in a plane if the scenario has it.
+    fn side(self, name: String, plane: Option<View>) -> Side;
 }
 
 /// Makes all answers show the same variant under the same component of the motion.
@@ -55,14 +115,14 @@ pub struct OtherPlane {
 ///
 /// # Errors
 /// When the common variant cannot be run.
-pub fn aligned(
-    answers: Vec<(String, Answer)>,
+pub fn aligned<A: Comparable>(
+    answers: Vec<(String, A)>,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
-) -> Result<Vec<(String, Answer)>, RunFailure> {
-    let all: Vec<&Answer> = answers.iter().map(|(_, answer)| answer).collect();
+) -> Result<Vec<(String, A)>, RunFailure> {
+    let all: Vec<&A> = answers.iter().map(|(_, answer)| answer).collect();
     let Some(number) = common_number(&all)? else { return Ok(answers) };
-    let align = |(name, answer): (String, Answer)| {
-        if answer.decides.summary.variant == number {
+    let align = |(name, answer): (String, A)| {
+        if answer.variant() == number {
             return Ok((name, answer));
         }
         Ok((name, answer.with_variant(number, observer)?))
@@ -73,21 +133,47 @@ pub fn aligned(
 /// Returns the runs of the answers with their names.
 ///
 /// If all answers have both planes, every run is shown in the governing plane of the worst answer.
-pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
-    let share = |answer: &Answer| match &answer.decides.summary.ensemble {
-        Some(spread) => spread.share.unwrap_or(0.0),
-        None => f64::from(u8::from(answer.decides.run.outcome.is_collapse())),
-    };
-    let worst = answers
-        .iter()
-        .map(|(_, answer)| answer)
-        .reduce(|worst, answer| if share(answer) > share(worst) { answer } else { worst });
-    let plane = worst.and_then(|answer| answer.decides.run.assembly.view);
-    let side = |(name, answer): (String, Answer)| {
-        let Answer { decides, other, .. } = answer;
+pub fn sides<A: Comparable>(answers: Vec<(String, A)>) -> Vec<Side> {
+    let all = answers.iter().map(|(_, answer)| answer.worst());
+    let worst = all.reduce(|worst, one| if one.0 > worst.0 { one } else { worst });
+    let plane = worst.and_then(|(_, plane)| plane);
+    answers.into_iter().map(|(name, answer)| answer.side(name, plane)).collect()
+}
+
+impl Comparable for Answer {
+    fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    fn variant(&self) -> u32 {
+        self.decides.summary.variant
+    }
+
+    fn results(&self) -> Vec<Option<Vec<CaseResult>>> {
+        let variants = self.shown().map(|shown| shown.variants.as_ref());
+        variants.map(|variants| variants.map(|found| found.results.clone())).collect()
+    }
+
+    fn with_variant(
+        &self,
+        number: u32,
+        observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+    ) -> Result<Self, RunFailure> {
+        self.showing(number, observer)
+    }
+
+    fn worst(&self) -> (f64, Option<View>) {
+        let Shown { run, summary, .. } = &self.decides;
+        let share = share_of(summary.ensemble.as_ref(), &run.outcome);
+        (share, run.assembly.view)
+    }
+
+    fn side(self, name: String, plane: Option<View>) -> Side {
+        let Self { decides, other, .. } = self;
         let collapsed = |shown: &Shown| {
             let results = shown.variants.as_ref()?.results.get(1..)?;
-            Some((shown.run.assembly.view, results.iter().map(CaseResult::collapsed).collect()))
+            let view = shown.run.assembly.view.map(View::name);
+            Some((view, results.iter().map(CaseResult::collapsed).collect()))
         };
         let (shown, other) = match other {
             Some(other) if other.run.assembly.view == plane => (other, Some(decides)),
@@ -99,9 +185,77 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
             let (outcome, spread) = (run.outcome, summary.ensemble);
             Some(OtherPlane { view: run.assembly.view?, outcome, spread })
         });
-        Side { name, run: shown.run, summary, other, collapsed }
-    };
-    answers.into_iter().map(side).collect()
+        Side { other, collapsed, ..Side::of_run(name, &shown.run, summary) }
+    }
+}
+
+/// Returns the share of variants that collapse; for a single run, 0 or 1.
+pub fn share_of(ensemble: Option<&Spread>, outcome: &Outcome) -> f64 {
+    match ensemble {
+        Some(spread) => spread.share.unwrap_or(0.0),
+        None => f64::from(u8::from(outcome.is_collapse())),
+    }
+}
+
+impl Side {
+    /// Returns a single run in a plane, without variants and without another plane.
+    pub fn of_run(name: String, run: &Run, summary: Summary) -> Self {
+        let assembly = &run.assembly;
+        let recorded = |values: Vec<f64>| [run.recording.times.clone(), values];
+        // Along x, of the first body of a kind on a level.
+        let displacement = |kind: PartKind, level: u32| {
+            let body = assembly.of_kind(kind).find(|b| assembly.parts[*b].level == Some(level))?;
+            let channel = run.recording.displacement(&assembly.parts[body].name)?;
+            Some(recorded(channel.values.iter().map(|v| 100.0 * v).collect()))
+        };
+        let force = run.recording.joints.first();
+        let force = force.map(|base| recorded(base.vertical.iter().map(|v| 1e-3 * v).collect()));
+        let traced = [
+            (Traced::Top, displacement(PartKind::Barrel, assembly.levels)),
+            (Traced::Base, displacement(PartKind::Rack, 1)),
+            (Traced::BaseForce, force),
+        ];
+        Self {
+            name,
+            stated: (*run.stated).clone(),
+            scenario: run.scenario.clone(),
+            view: assembly.view,
+            outcome: run.outcome.clone(),
+            end_time: run.end_time,
+            cut: run.cut(),
+            collapse_time: run.fates.collapse_time(),
+            pane: Pane {
+                mark: String::new(),
+                name: String::new(),
+                verdict: report::headline(run, &summary),
+                tone: report::tone(run, &summary),
+                scene: report::scene(run),
+                traces: report::traces(run),
+            },
+            ground: report::ground_histories(run),
+            traced: traced.into_iter().filter_map(|(what, of)| Some((what, of?))).collect(),
+            provenance: report::provenance(run, &summary),
+            summary: AnySummary::Planar(Box::new(summary)),
+            other: None,
+            collapsed: Vec::new(),
+        }
+    }
+
+    /// `true` for a run in space.
+    fn is_spatial(&self) -> bool {
+        matches!(self.summary, AnySummary::Spatial(_))
+    }
+}
+
+/// Results of a stack in the plane that is not shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherPlane {
+    /// Plane in which these results were computed.
+    pub view: View,
+    /// Outcome of the run in this plane, for the same variant number as the shown run.
+    pub outcome: Outcome,
+    /// Statistics of the variants; `None` if no variants were run.
+    pub spread: Option<Spread>,
 }
 
 /// Error of a comparison.
@@ -164,7 +318,7 @@ described! {
         /// Names of the runs that were stopped early or never started; they are not compared.
         pub unfinished: Vec<String> = unfinished,
         /// The inputs that differ between the runs.
-        pub differences: Vec<Difference> = differences(sides.iter().map(|side| &*side.run.stated)),
+        pub differences: Vec<Difference> = differences(sides.iter().map(|side| &side.stated)),
     }
 
     /// One run of a comparison.
@@ -173,7 +327,7 @@ described! {
         /// Name of the run.
         pub name: String = side.name.clone(),
         /// Summary of the run.
-        pub summary: Summary = side.summary.clone(),
+        pub summary: AnySummary = side.summary.clone(),
         /// Statistics of the variants in the plane that is not shown; null if the scenario has one
         /// plane.
         pub ensemble_of_other_plane: Option<Spread> =

@@ -22,7 +22,6 @@ use crate::report;
 use crate::run::Run;
 use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, View};
 use crate::variants::{Answer, Shown};
-use crate::verify::Verification;
 use barrelstack_input::system;
 
 /// Names of the files that every run writes once.
@@ -192,12 +191,15 @@ impl Folder {
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(
-        &self,
-        answer: &Answer,
-        verification: Option<&Verification>,
-    ) -> Result<(), ExportError> {
-        let files = files(answer, verification)?;
+    pub fn write(&self, answer: &Answer) -> Result<(), ExportError> {
+        self.write_files(&files(answer)?)
+    }
+
+    /// Writes files, each given with its name; otherwise works like [`Folder::write`].
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn write_files(&self, files: &[(String, Vec<u8>)]) -> Result<(), ExportError> {
         self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
@@ -252,29 +254,22 @@ impl Folder {
     /// When a file cannot be written.
     pub fn write_with_engine(
         &self,
-        answer: &Answer,
-        verification: Option<&Verification>,
+        document: &Document,
+        scenario: &Scenario,
         page: &str,
     ) -> Result<(), ExportError> {
-        let document = report::answer_document(answer, verification);
-        let start = start_of(&answer.scenario);
+        let start = start_of(scenario);
         let trial = Trial { page, start: &start.to_string() };
-        let bytes = html_with(&document, &trial).into_bytes();
+        let bytes = html_with(document, &trial).into_bytes();
         self.put(&std::iter::once(("report.html", bytes.as_slice())))
     }
 
-    /// Writes the report for printing, `report.pdf`, into the folder.
+    /// Writes a report for printing, `report.pdf`, into the folder.
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write_pdf(
-        &self,
-        answer: &Answer,
-        verification: Option<&Verification>,
-        paper: Paper,
-    ) -> Result<(), ExportError> {
-        let document = report::answer_document(answer, verification);
-        let bytes = document_pdf(&document, paper);
+    pub fn write_pdf(&self, document: &Document, paper: Paper) -> Result<(), ExportError> {
+        let bytes = document_pdf(document, paper);
         self.put(&std::iter::once(("report.pdf", bytes.as_slice())))
     }
 }
@@ -290,15 +285,11 @@ fn first_in(folder: &Path) -> Option<String> {
 ///
 /// # Errors
 /// When the archive of histories cannot be written.
-pub fn files(
-    answer: &Answer,
-    verification: Option<&Verification>,
-) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+pub fn files(answer: &Answer) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     let Shown { run, summary, .. } = &answer.decides;
-    let document = report::answer_document(answer, verification);
-    let json = verification.map_or_else(|| summary.to_json(), |found| found.with_summary(summary));
+    let document = report::answer_document(answer);
     let mut files = vec![
-        ("summary.json".to_owned(), (json + "\n").into_bytes()),
+        ("summary.json".to_owned(), (summary.to_json() + "\n").into_bytes()),
         ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),
         ("variants.csv".to_owned(), variants_csv(answer).into_bytes()),
     ];

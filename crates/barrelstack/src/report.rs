@@ -23,15 +23,15 @@ use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::summary::Summary;
 use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
-use crate::verify::Verification;
 
 pub use glossary::WORDS;
 pub(crate) use inputs::{settings_table, shown};
-pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
+pub(crate) use sections::{standing_until, traces};
 pub use tables::{demand_table, device_table, interface_table};
+pub use trust::trust;
 pub use unknowns::unknowns;
-pub use words::{device as device_sentence, fine, stopped};
+pub use words::{command, device as device_sentence, fine, stopped};
 pub(crate) use words::{headline, provenance};
 
 /// Summarizes the result in a few plain sentences: the verdict, its cause, and its reliability.
@@ -44,17 +44,17 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
 
 /// Builds the whole report as a document that is independent of any output format.
 pub fn document(run: &Run, summary: &Summary) -> Document {
-    page(run, summary, (None, None), None)
+    page(run, summary, (None, None))
 }
 
 /// Builds the report of an answer.
 ///
 /// The report describes the governing plane, shows the stage of the other plane beside it, and
 /// includes the repeats of the shown run.
-pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> Document {
+pub fn answer_document(answer: &Answer) -> Document {
     let Answer { decides, other, .. } = answer;
     let variants = (decides.variants.as_ref(), other.as_ref());
-    page(&decides.run, &decides.summary, variants, verification)
+    page(&decides.run, &decides.summary, variants)
 }
 
 /// Returns the stage of an answer: the moving picture of the run, in each of its planes.
@@ -78,7 +78,6 @@ fn page(
     run: &Run,
     summary: &Summary,
     (variants, other): (Option<&Variants>, Option<&Shown>),
-    verification: Option<&Verification>,
 ) -> Document {
     let scene = drawing::scene_among(run, variants);
     let mut warnings = run.warnings.clone();
@@ -90,12 +89,12 @@ fn page(
             headline: headline(run, summary),
             dots: variants::words::dots(&summary.spreads()),
             advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
-            command: words::command(summary),
+            command: command(summary.remedy.as_ref()),
             fine: fine(run, summary),
-            sentences: words::details(run, summary, verification),
+            sentences: words::details(run, summary, summary.verification.as_ref()),
             tone: tone(run, summary),
         },
-        blocks: sections::all(run, summary, (variants, other), verification, &scene),
+        blocks: sections::all(run, summary, (variants, other), &scene),
         provenance: provenance(run, summary),
         words: WORDS.to_vec(),
         warnings,

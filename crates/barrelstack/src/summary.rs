@@ -1,9 +1,11 @@
 //! Summary of a run: a JSON document with the numbers that the report prints.
 
 mod devices;
+mod space;
 
 use barrelstack_dynamics::EnergySummary;
 use barrelstack_report::described;
+use barrelstack_report::described::{Described, Objects};
 
 use crate::assemble::{Part, PartKind};
 use crate::demand::{Demands, Span};
@@ -16,6 +18,7 @@ use crate::verify::Verification;
 use crate::watch::{Fate, Joint, PeakForces, StressEnvelope};
 
 pub use devices::{Device, Devices, ElementSummary};
+pub use space::{BodyInSpace, Directions, OutcomeInSpace, RunInSpace, SummaryInSpace};
 
 described! {
     /// The summary of a run. Lengths are in m, times in s, forces in N and angles in rad; a value
@@ -301,29 +304,98 @@ fn sound(run: &Run) -> bool {
 }
 
 fn outcome(run: &Run) -> OutcomeSummary {
-    // For an interrupted run, falls are reported per body but not in the outcome.
-    let ended = sound(run) && run.outcome != Outcome::Interrupted;
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
-    let summary = OutcomeSummary {
-        kind: run.outcome.kind(),
-        first_fall: run.fates.first_fall().filter(|_| ended),
-        barrels_fallen: ended.then(|| {
-            barrels.iter().filter(|body| run.fates.fate(**body).fell_at.is_some()).count()
-        }),
-        barrels: barrels.len(),
-        ..OutcomeSummary::default()
+    let fallen = barrels.iter().filter(|body| run.fates.fate(**body).fell_at.is_some());
+    OutcomeSummary::of(&run.outcome, run.fates.first_fall(), [fallen.count(), barrels.len()])
+}
+
+impl OutcomeSummary {
+    /// Summarizes an outcome, given the time (s) of the first fall of a barrel, the number of fallen barrels and the
+    /// number of all barrels.
+    pub fn of(outcome: &Outcome, first_fall: Option<f64>, [fallen, barrels]: [usize; 2]) -> Self {
+        // For an interrupted run, falls are reported per body but not in the outcome.
+        let ended = !matches!(outcome, Outcome::Invalid { .. } | Outcome::Interrupted);
+        let summary = Self {
+            kind: outcome.kind(),
+            first_fall: first_fall.filter(|_| ended),
+            barrels_fallen: ended.then_some(fallen),
+            barrels,
+            ..Self::default()
+        };
+        match outcome {
+            Outcome::Collapse { mode, time, first, from_level, to_level } => Self {
+                mode: Some(mode.name()),
+                time: Some(*time),
+                first: Some(first.clone()),
+                from_level: Some(*from_level),
+                to_level: Some(*to_level),
+                ..summary
+            },
+            Outcome::Invalid { reason } => Self { reason: Some(reason.clone()), ..summary },
+            Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted => summary,
+        }
+    }
+}
+
+/// The summary of a run in a plane or in space.
+#[derive(Clone, Debug, serde::Serialize)]
+#[serde(untagged)]
+pub enum AnySummary {
+    /// Summary of a run in a plane.
+    Planar(Box<Summary>),
+    /// Summary of a run in space.
+    Spatial(Box<SummaryInSpace>),
+}
+
+/// Returns a field of either summary.
+macro_rules! either {
+    ($of:expr, $one:pat => $value:expr) => {
+        match $of {
+            AnySummary::Planar($one) => $value,
+            AnySummary::Spatial($one) => $value,
+        }
     };
-    match &run.outcome {
-        Outcome::Collapse { mode, time, first, from_level, to_level } => OutcomeSummary {
-            mode: Some(mode.name()),
-            time: Some(*time),
-            first: Some(first.clone()),
-            from_level: Some(*from_level),
-            to_level: Some(*to_level),
-            ..summary
-        },
-        Outcome::Invalid { reason } => OutcomeSummary { reason: Some(reason.clone()), ..summary },
-        Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted => summary,
+}
+
+impl AnySummary {
+    /// Returns the outcome of the run.
+    pub fn outcome(&self) -> &OutcomeSummary {
+        match self {
+            Self::Planar(summary) => &summary.outcome,
+            Self::Spatial(summary) => &summary.outcome.common,
+        }
+    }
+
+    /// Returns the statistics of all variants; `None` if no variants were run.
+    pub fn ensemble(&self) -> Option<&Spread> {
+        either!(self, summary => summary.ensemble.as_ref())
+    }
+
+    /// Returns the demands on the stack until the first loss of seat.
+    pub fn demands(&self) -> &Demands {
+        either!(self, summary => &summary.demands)
+    }
+
+    /// Returns the number of the variant of the stack; 0 is the stack as stated.
+    pub fn variant(&self) -> u32 {
+        either!(self, summary => summary.variant)
+    }
+
+    /// Returns the changes that would have kept the stack up.
+    pub fn remedy(&self) -> Option<&Remedy> {
+        either!(self, summary => summary.remedy.as_ref())
+    }
+
+    /// Returns the warnings about inputs and results.
+    pub fn warnings(&self) -> &[String] {
+        either!(self, summary => &summary.warnings)
+    }
+}
+
+impl Described for AnySummary {
+    fn schema(objects: &mut Objects) -> serde_json::Value {
+        let either = [Summary::schema(objects), SummaryInSpace::schema(objects)];
+        serde_json::json!({ "anyOf": either })
     }
 }
 

@@ -18,6 +18,8 @@ use crate::scenario::{
 };
 use crate::summary::{OutcomeSummary, Summary};
 use crate::variants::run_together;
+use crate::watch::Channel;
+use barrelstack_dynamics::Simulation;
 
 pub use robust::Robust;
 
@@ -52,22 +54,22 @@ described! {
 
     /// One repeat of the run.
     #[derive(Clone, Debug)]
-    pub struct Repeat of base: &Run, other: &Run, change: &str {
+    pub struct Repeat {
         /// What the repeat changes in the run.
-        pub change: String = change.to_owned(),
+        pub change: String,
         /// Outcome of the repeat.
-        pub outcome: OutcomeSummary = Summary::of(other, None).outcome,
+        pub outcome: OutcomeSummary,
         /// True if kind, mode and first body are the same as in the run.
-        pub same_outcome: bool = same_outcome(base, other),
+        pub same_outcome: bool,
         /// Time at which a body is first farther than the distance `apart` from its position in the
         /// run; null if no body ever is.
-        pub apart_at: Option<f64> as "s" = apart_at(base, other),
+        pub apart_at: Option<f64> as "s",
         /// Largest difference between the fall times of a barrel in the repeat and in the run,
         /// before any repeat diverges; null if no barrel falls by then.
-        pub fall_difference: Option<f64> as "s" = None,
+        pub fall_difference: Option<f64> as "s",
         /// Time at which each barrel counts as fallen.
         #[serde(skip)]
-        falls: Vec<Option<f64>> = falls(other),
+        falls: Vec<Option<f64>>,
     }
 
     /// A repeat that was not made.
@@ -80,6 +82,90 @@ described! {
     }
 }
 
+/// A run that can be repeated, in a plane or in space.
+pub trait Repeatable: Sized + Send + Sync {
+    /// Runs a scenario; the observer receives the progress and may cancel.
+    ///
+    /// # Errors
+    /// When the scenario cannot be built or does not stand.
+    fn again(
+        scenario: &Scenario,
+        observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Self, RunFailure>;
+
+    /// Returns the scenario of the run.
+    fn scenario(&self) -> &Scenario;
+
+    /// Returns the integration settings.
+    fn simulation(&self) -> &Simulation;
+
+    /// `true` if the run was stopped early.
+    fn is_interrupted(&self) -> bool;
+
+    /// Returns the outcome.
+    fn outcome(&self) -> OutcomeSummary;
+
+    /// Returns the time (s) at which each barrel counts as fallen.
+    fn falls(&self) -> Vec<Option<f64>>;
+
+    /// Returns the times (s) of the samples.
+    fn times(&self) -> &[f64];
+
+    /// Returns, for every body, its displacement x, y, z (m) relative to the ground in every sample; zero along an axis
+    /// that the model lacks.
+    fn paths(&self) -> Vec<Vec<[f64; 3]>>;
+}
+
+impl Repeatable for Run {
+    fn again(
+        scenario: &Scenario,
+        observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Self, RunFailure> {
+        scenario.run_watched(observer)
+    }
+
+    fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    fn outcome(&self) -> OutcomeSummary {
+        Summary::of(self, None).outcome
+    }
+
+    fn falls(&self) -> Vec<Option<f64>> {
+        let barrels = self.assembly.of_kind(PartKind::Barrel);
+        barrels.map(|body| self.fates.fate(body).fell_at).collect()
+    }
+
+    fn times(&self) -> &[f64] {
+        &self.recording.times
+    }
+
+    fn paths(&self) -> Vec<Vec<[f64; 3]>> {
+        let channels: Vec<_> = self
+            .recording
+            .channels
+            .iter()
+            .filter(|channel| {
+                channel.name.contains("_displacement_") && !channel.name.starts_with("ground")
+            })
+            .collect();
+        // Displacement channels come in pairs, x and z of each body.
+        let path = |pair: &[&Channel]| {
+            pair[0].values.iter().zip(&pair[1].values).map(|(x, z)| [*x, 0.0, *z]).collect()
+        };
+        channels.chunks_exact(2).map(path).collect()
+    }
+}
+
 /// Repeats a run: with half the step, with nodes at half the spacing, and four times with every
 /// barrel displaced by up to a nanometer.
 ///
@@ -88,8 +174,8 @@ described! {
 ///
 /// # Errors
 /// When a repeat cannot be built or does not stand.
-pub fn verify(
-    base: &Run,
+pub fn verify<R: Repeatable>(
+    base: &R,
     progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
 ) -> Result<Verification, RunFailure> {
     let (change, finer) = finer_step(base);
@@ -98,19 +184,21 @@ pub fn verify(
         changes.push(change);
         scenarios.push(scenario);
     };
-    match finer_nodes(&base.scenario) {
+    match finer_nodes(base.scenario()) {
         Ok(scenario) => add("nodes at half the spacing".to_owned(), scenario),
         Err(reason) => skipped.push(Skipped { change: "nodes at half the spacing", reason }),
     }
     for seed in 1..=DISTURBED {
         let change = format!("disturbed by 1 nm, {seed} of {DISTURBED}");
-        add(change, disturbed(&base.scenario, seed));
+        add(change, disturbed(base.scenario(), seed));
     }
     let mut repeats = Vec::new();
     // A canceled repeat becomes `None`.
-    let repeat =
-        |at: usize, run: Run| (!run.interrupted).then(|| Repeat::of(base, &run, &changes[at]));
-    let done = run_together(&scenarios, base.simulation.end_time, progress, &repeat)?;
+    let own = (base.outcome(), base.paths());
+    let repeat = |at: usize, run: R| {
+        (!run.is_interrupted()).then(|| Repeat::of((base, &own), &run, &changes[at]))
+    };
+    let done = run_together(&scenarios, base.simulation().end_time, progress, &R::again, &repeat)?;
     for (repeat, change) in done.into_iter().zip(&changes) {
         if let Some(repeat) = repeat {
             repeats.push(repeat);
@@ -125,13 +213,13 @@ pub fn verify(
 
 /// Returns the scenario with half the time step (for an adaptive method, with a tenth of the
 /// tolerance), and the name of the change.
-fn finer_step(base: &Run) -> (String, Scenario) {
-    let mut scenario = base.scenario.clone();
+fn finer_step<R: Repeatable>(base: &R) -> (String, Scenario) {
+    let mut scenario = base.scenario().clone();
     if let Method::BogackiShampine { tolerance } = &mut scenario.run.method {
         *tolerance *= 0.1;
         return ("a tenth of the tolerance".into(), scenario);
     }
-    scenario.run.step = Some(0.5 * base.simulation.time_step / scenario.run.similitude.sqrt());
+    scenario.run.step = Some(0.5 * base.simulation().time_step / scenario.run.similitude.sqrt());
     ("half the step".into(), scenario)
 }
 
@@ -139,8 +227,11 @@ fn finer_step(base: &Run) -> (String, Scenario) {
 /// change the stack.
 fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
+    const IN_SPACE: &str = "bodies of a three-dimensional model have no contact nodes";
     let mut finer = scenario.clone();
     match &mut finer.scene {
+        Scene::Spatial(_) => return Err(IN_SPACE.into()),
+        Scene::Stack { stack, .. } if stack.space.is_some() => return Err(IN_SPACE.into()),
         Scene::Stack { stack, .. } => {
             let seats = [stack.interfaces.rack_ground, stack.interfaces.barrel_rack];
             if seats.iter().any(|interface| interface.basis == Basis::Node) {
@@ -157,9 +248,6 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
                 );
             }
             stack.rack.node_spacing *= 0.5;
-        }
-        Scene::Spatial(_) => {
-            return Err("bodies of a three-dimensional model have no contact nodes".into());
         }
         Scene::Free(scene) => {
             if scene.interfaces.iter().any(|interface| interface.law.basis == Basis::Node) {
@@ -193,17 +281,24 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     let mut offset = || DISTURBANCE * noise(&mut state);
     match &mut changed.scene {
         Scene::Stack { stack, .. } => {
-            let places = (1..=stack.levels)
-                .flat_map(|level| (1..=stack.columns).map(move |column| (level, column)));
-            stack.overrides.extend(places.map(|(level, column)| BodyOverride {
+            let (levels, columns) = (stack.levels, stack.columns);
+            let rows: Vec<Option<u32>> = match stack.space {
+                Some(space) => (1..=space.columns_along).map(Some).collect(),
+                None => vec![None],
+            };
+            let places = rows.into_iter().flat_map(|row| {
+                let of = move |level| (1..=columns).map(move |column| (level, column, row));
+                (1..=levels).flat_map(of)
+            });
+            stack.overrides.extend(places.map(|(level, column, row)| BodyOverride {
                 body: StackBody::Barrel,
                 level,
                 column: Some(column),
-                row: None,
+                row,
                 mass: None,
                 fill: None,
                 offset_x: offset(),
-                offset_y: 0.0,
+                offset_y: row.map_or(0.0, |_| offset()),
             }));
         }
         Scene::Spatial(scene) => {
@@ -231,33 +326,34 @@ fn noise(state: &mut u64) -> f64 {
     (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// `true` if kind, mode and first body of two runs agree.
-fn same_outcome(base: &Run, other: &Run) -> bool {
-    let [own, outcome] = [base, other].map(|run| Summary::of(run, None).outcome);
-    (outcome.kind, outcome.mode, outcome.first) == (own.kind, own.mode, own.first)
-}
-
-/// Returns the time (s) at which each barrel counts as fallen.
-fn falls(run: &Run) -> Vec<Option<f64>> {
-    run.assembly.of_kind(PartKind::Barrel).map(|body| run.fates.fate(body).fell_at).collect()
+impl Repeat {
+    /// Compares a repeat with the base run, which is given with its outcome and its paths.
+    fn of<R: Repeatable>(
+        (base, (own, paths)): (&R, &(OutcomeSummary, Vec<Vec<[f64; 3]>>)),
+        other: &R,
+        change: &str,
+    ) -> Self {
+        let outcome = other.outcome();
+        Self {
+            change: change.to_owned(),
+            // Kind, mode and first body.
+            same_outcome: (outcome.kind, outcome.mode, &outcome.first)
+                == (own.kind, own.mode, &own.first),
+            outcome,
+            apart_at: apart_at((base, paths), other),
+            fall_difference: None,
+            falls: other.falls(),
+        }
+    }
 }
 
 /// Returns the first sample time (s) at which a body is farther than [`APART`] from its position in
 /// the base run.
-fn apart_at(base: &Run, other: &Run) -> Option<f64> {
-    let limit = APART * base.scenario.run.similitude;
-    let pairs: Vec<_> = base
-        .recording
-        .channels
-        .iter()
-        .zip(&other.recording.channels)
-        .filter(|(channel, _)| {
-            channel.name.contains("_displacement_") && !channel.name.starts_with("ground")
-        })
-        .collect();
-    let times = &other.recording.times;
+fn apart_at<R: Repeatable>((base, paths): (&R, &[Vec<[f64; 3]>]), other: &R) -> Option<f64> {
+    let limit = APART * base.scenario().run.similitude;
+    let (times, others) = (other.times(), other.paths());
     let mut before = 0;
-    for (at, time) in base.recording.times.iter().enumerate() {
+    for (at, time) in base.times().iter().enumerate() {
         // Samples are taken at the first step after they are due, so their times differ between the
         // runs.
         while before + 2 < times.len() && times[before + 1] <= *time {
@@ -268,15 +364,13 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
             break;
         }
         let share = ((time - from) / (to - from)).clamp(0.0, 1.0);
-        // Displacement channels come in pairs, x and z of each body.
-        for body in pairs.chunks_exact(2) {
-            let [x, z] = [0, 1].map(|axis| {
-                let (mine, theirs) = body[axis];
-                let (a, b) = (theirs.values[before], theirs.values[before + 1]);
-                a + (b - a) * share - mine.values[at]
+        for (mine, theirs) in paths.iter().zip(&others) {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                let (a, b) = (theirs[before][axis], theirs[before + 1][axis]);
+                a + (b - a) * share - mine[at][axis]
             });
             // A value that is not finite counts as diverged.
-            let distance = libm::hypot(x, z);
+            let distance = libm::hypot(libm::hypot(x, z), y);
             if distance > limit || distance.is_nan() {
                 return Some(*time);
             }
@@ -286,11 +380,11 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
 }
 
 /// Evaluates all repeats.
-fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verification {
+fn judge<R: Repeatable>(base: &R, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verification {
     let predictable_until = repeats.iter().filter_map(|repeat| repeat.apart_at).reduce(f64::min);
     let until = predictable_until.unwrap_or(f64::INFINITY);
-    let scale = base.scenario.run.similitude;
-    let own = falls(base);
+    let scale = base.scenario().run.similitude;
+    let own = base.falls();
     for repeat in &mut repeats {
         let pairs = own.iter().zip(&repeat.falls);
         // A barrel that falls in only one of the two runs has an infinite difference.
@@ -301,7 +395,7 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
         });
         repeat.fall_difference = differences.reduce(f64::max);
     }
-    let robust = Robust::of(&Summary::of(base, None).outcome, &repeats);
+    let robust = Robust::of(&base.outcome(), &repeats);
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
 }
 
@@ -311,12 +405,6 @@ fn shortly(time: f64) -> String {
 }
 
 impl Verification {
-    /// Returns the summary of the run as JSON text, with this verification in its field
-    /// `verification`.
-    pub fn with_summary(&self, summary: &Summary) -> String {
-        Summary { verification: Some(self.clone()), ..summary.clone() }.to_json()
-    }
-
     fn judged(&self) -> bool {
         self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged")
     }

@@ -18,8 +18,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 
 fn side(name: &str, scenario: &Scenario) -> Side {
     let run = scenario.run().unwrap();
-    let summary = Summary::of(&run, None);
-    Side { name: name.into(), run, summary, other: None, collapsed: Vec::new() }
+    Side::of_run(name.into(), &run, Summary::of(&run, None))
 }
 
 /// Returns the rows of the table under a heading, as text.
@@ -112,7 +111,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     let drift = demands.rows.iter().find(|row| format!("{:?}", row[0]).contains("drift")).unwrap();
     // The numbers are those of the summaries.
     for (cell, side) in drift[2..].iter().zip(&sides) {
-        let own = 100.0 * side.summary.demands.top_drift_ratio.unwrap();
+        let own = 100.0 * side.summary.demands().top_drift_ratio.unwrap();
         assert_eq!(*cell, barrelstack_report::Cell::Measured(own, 1));
     }
     let inputs = table(&document, "Differences");
@@ -127,7 +126,7 @@ fn what_falls_leaves_the_picture_whichever_run_comes_first() {
     let disc = side("disc", &scenario("rolling-disc", &["run.duration=0.2 s"]));
     let changes = ["run.stop_after_collapse=1 s"];
     let stack = side("stack", &scenario("candia-8-barrels", &changes));
-    assert!(stack.run.fates.collapse_time().is_some());
+    assert!(stack.collapse_time.is_some());
     let range = |sides: &[Side], id: &str| plot(&compare::document(sides), id).y.range;
     let orders = [vec![disc.clone(), stack.clone()], vec![stack, disc]];
     let [first, second] = orders.each_ref().map(|sides| range(sides, "top-displacements"));
@@ -210,16 +209,13 @@ fn all_panes_show_one_variant_under_one_motion_and_the_headline_is_the_effect() 
         vec![answered("five levels", "stack.levels=5"), answered("two levels", "stack.levels=2")];
     let aligned = compare::aligned(answers, &mut |_| ControlFlow::Continue(())).unwrap();
     let sides = compare::sides(aligned);
-    let shown = |side: &Side| {
-        (side.summary.variant, side.run.assembly.view, side.run.scenario.motion.clone())
-    };
+    let shown = |side: &Side| (side.summary.variant(), side.view, side.scenario.motion.clone());
     assert_eq!(shown(&sides[0]), shown(&sides[1]));
     let document = compare::document(&sides);
     assert_eq!(lanes(&document), ["ground acceleration", "ground velocity"]);
     // Counts of the headline are those of the shares and of the pairs.
     let paired = &compare::Comparison::of(&sides[..], Vec::new()).paired[0];
-    let counts =
-        [&sides[0], &sides[1]].map(|side| side.summary.ensemble.as_ref().unwrap().collapsed);
+    let counts = [&sides[0], &sides[1]].map(|side| side.summary.ensemble().unwrap().collapsed);
     assert_eq!((paired.collapsed(), paired.pairs()), (counts, 6));
     let [from, to] = counts;
     let said =
@@ -266,7 +262,7 @@ fn without_variants_both_planes_are_judged_and_named() {
     ]);
     let outcomes = |side: &Side| {
         let other = side.other.as_ref().unwrap();
-        let shown = (side.run.assembly.view.unwrap(), side.run.outcome.clone());
+        let shown = (side.view.unwrap(), side.outcome.clone());
         [shown, (other.view, other.outcome.clone())]
     };
     assert!(outcomes(&sides[0]).iter().all(|(_, outcome)| *outcome == Outcome::Stable));

@@ -124,7 +124,7 @@ fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
         }
         assert!(compared > 5, "{compared} places compared");
     }
-    let document = answer_document(&answer, None);
+    let document = answer_document(&answer);
     let Some(Block::Player(player)) = document.blocks.first() else { panic!("no player") };
     let ghosts = player.scene.ghosts.as_ref().unwrap();
     assert_eq!((ghosts.count, ghosts.paths.len(), ghosts.ends.len()), (4, 8, 16));

@@ -353,7 +353,7 @@ fn a_page_of_both_planes_has_the_inputs_as_given_and_a_part_for_engineers_of_eac
         let hash = format!("{:016x}", scenario.fingerprint());
         assert_eq!(shown.summary.provenance.scenario_hash, hash);
     }
-    let page = markdown(&answer_document(&answer, None), "figures");
+    let page = markdown(&answer_document(&answer), "figures");
     for view in ["Across the barrels", "Along the barrels"] {
         let part = format!("{view}: bodies, demands, stresses, forces, motion, energies");
         assert!(page.text.contains(&part), "{part}");
@@ -370,7 +370,7 @@ fn a_page_of_both_planes_has_the_inputs_as_given_and_a_part_for_engineers_of_eac
     names.dedup();
     assert_eq!(names.len(), all);
     // The sentence about the motion says which plane it shakes.
-    let said = answer_document(&answer, None).verdict.sentences.join(" ");
+    let said = answer_document(&answer).verdict.sentences.join(" ");
     let view = own.run.assembly.view.unwrap().words();
     assert!(
         said.contains(&format!("{}, in the run that is shown, it is shaken", capital(view))),

@@ -138,7 +138,7 @@ fn the_summary_carries_its_verification() {
     let base = run("candia-8-barrels", &["stack.levels=1", "run.duration=0.2 s"]);
     let found = verified(&base);
     let summary = Summary::of(&base, None);
-    let text = found.with_summary(&summary);
+    let text = Summary { verification: Some(found), ..summary.clone() }.to_json();
     let whole: serde_json::Value = serde_json::from_str(&text).unwrap();
     let alone: serde_json::Value = serde_json::from_str(&summary.to_json()).unwrap();
     assert_eq!(whole["verification"]["robust"]["kind"], true);

@@ -9,15 +9,15 @@ mod sampler;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use barrelstack::ensemble::{Prepared, Width};
-use barrelstack::ground::Ground;
+use barrelstack::assemble::PartKind;
+use barrelstack::ensemble::Width;
 use barrelstack::run::RunFailure;
 use barrelstack::scenario::Scenario;
 use barrelstack_dynamics::math;
 use barrelstack_input::measured::TableError;
 use barrelstack_motion::Random;
 
-use self::ensemble::{Course, placed, simulate};
+use self::ensemble::{Built, Course, Shaking, placed, simulate};
 use self::observed::{Mode, Observed};
 use self::sampler::{Draw, Posterior, sample};
 use super::least_squares::normalized;
@@ -111,8 +111,8 @@ struct Trial<'a> {
     tunable: Tunable,
     /// Scenario of the test; its run lasts as long as the observation.
     scenario: Scenario,
-    /// Ground motion.
-    ground: Arc<Ground>,
+    /// Ground motion, in a plane or in space.
+    ground: Shaking,
     /// Standard deviation (m at full scale) of the positions of racks and barrels.
     scatter: f64,
 }
@@ -150,7 +150,7 @@ pub fn collapse(
     let mut stopped = false;
     let posterior = sample(parameters.len(), settings.simulations, settings.seed, |draws| {
         let before = courses.len();
-        let batch: Vec<Prepared> = draws
+        let batch: Vec<Built> = draws
             .iter()
             .flat_map(|draw| {
                 // One generator for all tests of a sample, so that every stack has its own placement.
@@ -158,7 +158,7 @@ pub fn collapse(
                 let built = |trial: &Trial<'_>| {
                     let scenario = trial.tunable.at(&trial.scenario, &point(draw));
                     let scenario = Arc::new(placed(&scenario, trial.scatter, &mut random));
-                    Prepared { scenario, ground: Arc::clone(&trial.ground) }
+                    Built { scenario, ground: trial.ground.clone() }
                 };
                 trials.iter().map(built).collect::<Vec<_>>()
             })
@@ -272,7 +272,7 @@ fn trials<'a>(
             }
         }
         check(at, observed, &scenario)?;
-        let ground = Arc::new(scenario.ground().map_err(RunFailure::from)?);
+        let ground = Shaking::of(&scenario).map_err(RunFailure::from)?;
         let scatter = settings.placement / scale;
         trials.push(Trial { observed, tunable, scenario, ground, scatter });
     }
@@ -284,15 +284,18 @@ fn trials<'a>(
 fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);
-    let run = short.run()?;
-    let barrels: Vec<&str> = run
-        .assembly
-        .of_kind(barrelstack::assemble::PartKind::Barrel)
-        .map(|body| run.assembly.parts[body].name.as_str())
-        .collect();
+    let barrels: Vec<String> = if short.is_spatial() {
+        let run = barrelstack_space::run::run(&short)?;
+        let barrels = run.stack.of_kind(PartKind::Barrel);
+        barrels.map(|body| run.stack.parts[body].name.clone()).collect()
+    } else {
+        let run = short.run()?;
+        let barrels = run.assembly.of_kind(PartKind::Barrel);
+        barrels.map(|body| run.assembly.parts[body].name.clone()).collect()
+    };
     let named = observed.falls.iter().map(|(barrel, _)| barrel).chain(&observed.first_barrel);
     for barrel in named {
-        if !barrels.contains(&barrel.as_str()) {
+        if !barrels.contains(barrel) {
             return Err(CalibrateError::Scenario(format!(
                 "test {}: the scenario has no barrel \"{barrel}\"; it has {}",
                 at + 1,

@@ -570,3 +570,27 @@ fn observations_are_refused_at_their_place() {
     let words = "test 1: the scenario has no barrel \"B9.1\"; it has B1.1, B1.2, B2.1";
     assert!(error.to_string().starts_with(words), "{error}");
 }
+
+#[test]
+fn a_stack_that_stood_in_space_is_judged_in_space() {
+    let changes = ["stack.view=spatial", "stack.levels=2"].map(str::to_owned);
+    let scenarios = [Scenario::builtin("demo-napa", &changes).unwrap()];
+    let found = |rows: &str| {
+        let table = Table::parse("video.csv", rows).unwrap();
+        let settings = Settings { simulations: 50, ..Settings::default() };
+        let observations = Observations::read(&table, &settings.errors).unwrap();
+        let fit = &[Parameter::FrictionBarrelRack];
+        collapse(&observations, &scenarios, fit, &settings, &|_, _| ControlFlow::Continue(()))
+    };
+    // Nothing happens in the first tenth of a second, whatever the friction.
+    let stood = found("mode,until (s),B2.1 fell (s)\nstands,0.1,stands\n").unwrap();
+    let fact = |name: &str| {
+        stood.facts.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    };
+    assert_eq!(fact("simulations"), Some("50"));
+    assert_eq!(fact("test 1: stands"), Some("100 % of the weight"));
+    let warned = stood.warnings.iter().any(|text| text.contains("do not determine friction"));
+    assert!(warned, "{:?}", stood.warnings);
+    let unknown = found("mode,until (s),B7.1 fell (s)\nstands,0.1,stands\n").unwrap_err();
+    assert!(unknown.to_string().contains("has no barrel \"B7.1\"; it has B1.1"), "{unknown}");
+}

@@ -6,11 +6,12 @@ use std::io::{ErrorKind, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context as _, bail};
-use barrelstack::Summary;
 use barrelstack::scenario::ScenarioError;
 use barrelstack::scenario::error::Place;
-use barrelstack::variants::{Answer, Shown};
+use barrelstack::summary::AnySummary;
+use barrelstack::variants::Shown;
 use barrelstack_report::{Characters, Verdict, described};
+use barrelstack_space::AnyAnswer;
 
 use serde::Serialize;
 
@@ -172,11 +173,8 @@ pub(crate) fn warning(text: &str) {
 }
 
 /// Prints all warnings about a result.
-pub(crate) fn warnings(answer: &Answer) {
-    let own = &answer.decides.summary.warnings;
-    let other = answer.other.iter().flat_map(|other| &other.summary.warnings);
-    let all = own.iter().chain(other.filter(|text| !own.contains(text)));
-    all.for_each(|text| warning(text));
+pub(crate) fn warnings(answer: &AnyAnswer) {
+    answer.warnings().into_iter().for_each(warning);
 }
 
 /// Returns the lines of a verdict: its headline, then its sentences.
@@ -186,23 +184,33 @@ pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
 }
 
 /// Returns the command that compares the remedy with the stack.
-pub(crate) fn side_by_side(summary: &Summary) -> Option<String> {
-    let command = summary.remedy.as_ref()?.comparison.as_ref()?;
+pub(crate) fn side_by_side(summary: &AnySummary) -> Option<String> {
+    let command = summary.remedy()?.comparison.as_ref()?;
     Some(format!("To compare them side by side: {command}"))
 }
 
 /// Prints the answer as text; `changes` are the values changed on the command line.
 pub(crate) fn answer(
-    answer: &Answer,
+    answer: &AnyAnswer,
     changes: &[String],
     characters: Characters,
 ) -> anyhow::Result<()> {
-    let Shown { run, summary, .. } = &answer.decides;
-    let mut all = vec![summary.title.clone()];
-    let sentences = barrelstack::report::sentences(run, summary);
-    let fine = barrelstack::report::fine(run, summary);
-    all.extend(sentences.into_iter().chain(fine).map(|sentence| format!("  {sentence}")));
-    all.extend(side_by_side(summary).map(|line| format!("  {line}")));
+    let mut all = vec![answer.title().to_owned()];
+    all.extend(answer.sentences().into_iter().map(|sentence| format!("  {sentence}")));
+    if let AnyAnswer::Planes(answer) = answer {
+        let Shown { run, summary, .. } = &answer.decides;
+        let fine = barrelstack::report::fine(run, summary);
+        all.extend(fine.into_iter().map(|sentence| format!("  {sentence}")));
+    }
+    all.extend(side_by_side(&answer.summary()).map(|line| format!("  {line}")));
+    let answer = match answer {
+        AnyAnswer::Planes(answer) => answer,
+        AnyAnswer::Space(answer) => {
+            all.push(String::new());
+            all.extend(aligned(&barrelstack_space::words::rows(&answer.run, &answer.summary)));
+            return lines(all);
+        }
+    };
     for (changes, shown) in std::iter::once((changes, &answer.decides))
         .chain(answer.other.iter().map(|one| (&[][..], one)))
     {
@@ -219,7 +227,11 @@ pub(crate) fn answer(
 /// Prints the comparison of a run with its repeats.
 pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow::Result<()> {
     let rows = found.rows();
+    lines(["", "verification"].map(str::to_owned).into_iter().chain(aligned(&rows)))
+}
+
+/// Returns pairs of name and value as lines, with all values below each other.
+fn aligned(rows: &[(String, String)]) -> impl Iterator<Item = String> {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;
-    let rows = rows.iter().map(|(name, value)| format!("  {name:width$}{value}"));
-    lines(["", "verification"].map(str::to_owned).into_iter().chain(rows))
+    rows.iter().map(move |(name, value)| format!("  {name:width$}{value}"))
 }

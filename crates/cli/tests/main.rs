@@ -13,6 +13,7 @@ mod common;
 mod compare;
 mod decision;
 mod documented;
+mod features;
 mod hostile_commands;
 mod hostile_records;
 mod hostile_scenarios;

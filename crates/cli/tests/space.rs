@@ -52,20 +52,87 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
 #[test]
 fn what_space_does_not_know_is_refused_before_any_work() {
     for (more, message) in [
-        (&["--verify"][..], "--verify is available for planar models"),
-        (&["--set=stack.rack=rack-on-rack"], "has posts"),
-        (&["--set=stack.barrel.fill=part"], "sloshing wine is supported only in a plane"),
+        (&["--with-engine=x", "--out=y"][..], "runs stacks in planes, but not in space"),
         (&["--set=stack.columns_along=3", "--set=stack.rack=four-barrel"], "stack.columns_along"),
     ] {
         let output = barrelstack([&SOLID[..], more].concat());
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
     }
-    // Commands that work in a plane say so.
-    let more = ["--set=stack.view=spatial", "--against=stack.levels=2"];
-    let output = barrelstack([&["compare", "demo-napa"], &more[..]].concat());
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("this analysis works in a plane"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_comparison_in_space_has_the_numbers_of_the_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("both");
+    let place = out.display().to_string();
+    let (few, weak) = ("--variants=2", "--against=motion.scale.factor=0.1");
+    let output = barrelstack(
+        [&["compare"], &SOLID[1..], &[few, weak, "--json", "--out", &place, "-q"]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let compared: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(compared["paired"][0]["view"], "spatial");
+    for (at, more) in [(0, None), (1, Some("--set=motion.scale.factor=0.1"))] {
+        // The last change counts.
+        let solid = SOLID.iter().copied().filter(|word| more.is_none() || !word.contains("factor"));
+        let all: Vec<&str> =
+            solid.chain(more).chain([few, "--no-remedy", "--json", "-q"]).collect();
+        let alone = barrelstack(all);
+        let alone: Value = serde_json::from_str(&stdout(&alone)).unwrap();
+        let side = &compared["runs"][at]["summary"];
+        assert_eq!(side["ensemble"], alone["ensemble"]);
+        assert_eq!(side["provenance"]["scenario_hash"], alone["provenance"]["scenario_hash"]);
+    }
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("player several") && page.contains("\"depth\""), "two stacks in depth");
+    assert!(out.join("figures/top-displacements-along.svg").is_file());
+}
+
+#[test]
+fn a_verified_run_in_space_keeps_its_verification_on_page_and_paper() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().display().to_string();
+    let more = ["--variants=0", "--verify", "--pdf", "--json", "--out", &place, "-q"];
+    let output = barrelstack([&SOLID[..], &more].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    assert_eq!(summary, stdout(&output));
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    // Half the step, and four disturbed repeats.
+    assert_eq!(summary["verification"]["repeats"].as_array().unwrap().len(), 5);
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains(">How far to trust this run</h2>"));
+    assert!(fs::read(folder.path().join("report.pdf")).unwrap().starts_with(b"%PDF-"));
+}
+
+#[test]
+fn every_part_of_a_rendering_is_there_in_space() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let place = out.display().to_string();
+    let common =
+        ["--set=run.duration=0.4 s", "--variants=0", "--size=64", "--rate=10", "--dpi=40", "-q"];
+    let strapped = ["--set=stack.strap.levels=2", "--set=stack.lid.levels=1", "--out", &place];
+    let output = barrelstack([&["render"], &SOLID[1..5], &common, &strapped].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for file in [
+        "report.md",
+        "report.pdf",
+        "animation/stack.gif",
+        "animation/stack.png",
+        "frames/frame-0001.png",
+        "figures/sequence-along-the-barrels.png",
+        "paraview/stack.pvd",
+    ] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    // Straps are lines of their own; lids belong to their racks.
+    let names = fs::read_to_string(out.join("paraview/bodies.csv")).unwrap();
+    assert!(
+        names.contains("R2-R1 left,device,0") || names.contains("B1.1-R1 left,device,0"),
+        "{names}"
+    );
 }
 
 #[test]
@@ -142,17 +209,28 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("out").display().to_string();
     for (command, message) in [
-        (&["run", "rolling-ball", "--verify"][..], "--verify is available for planar models"),
-        (&["run", "rolling-ball", "--variants=3"], "a free scene has no variants"),
-        (&["render", "rolling-ball", "--only=animation", "--out", &place], "use --only paraview"),
-        (
-            &["compare", "rolling-ball", "--against=run.duration=2 s"],
-            "this analysis works in a plane",
-        ),
+        (&["run", "rolling-ball", "--variants=3"][..], "a free scene has no variants"),
+        (&["run", "rolling-ball", "--with-engine=x", "--out", &place], "but not in space"),
     ] {
         let output = barrelstack(command);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
+    }
+    // What works for stacks in space works for free scenes.
+    for command in [
+        &["run", "rolling-ball", "--verify"][..],
+        &["render", "rolling-ball", "--only=animation", "--size=64", "--out", &place],
+        &[
+            "compare",
+            "rolling-ball",
+            "--against=run.duration=0.5 s",
+            "--overwrite",
+            "--out",
+            &place,
+        ],
+    ] {
+        let output = barrelstack([command, &["-q"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{command:?}: {}", stderr(&output));
     }
 }
 
@@ -162,12 +240,7 @@ fn what_works_in_planes_alone_refuses_space_at_its_field_before_any_work() {
     let (file, out) = (folder.path().join("mine.toml"), folder.path().join("out"));
     fs::write(&file, "schema = 1\nextends = \"demo-napa\"\n[stack]\nview = \"spatial\"\n").unwrap();
     let (file, out) = (file.display().to_string(), out.display().to_string());
-    for words in [
-        &["compare", "demo-napa", &file][..],
-        &["compare", &file, "--against=stack.levels=4"],
-        &["protect", &file],
-        &["score", &file],
-    ] {
+    for words in [&["protect", &file][..], &["score", &file]] {
         let output = barrelstack([words, &["-q", "--out", &out]].concat());
         assert_eq!(output.status.code(), Some(2), "{words:?}: {}", stderr(&output));
         let message = stderr(&output);

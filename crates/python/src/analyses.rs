@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use barrelstack::RunFailure;
 use barrelstack::compare::{Comparison, aligned, check, document, labels, sides};
-use barrelstack::variants::{self, RunChoice};
+use barrelstack::variants::RunChoice;
 use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::heights::{
     HeightsError, Request as HeightsRequest, heights as all_heights,
@@ -19,6 +19,7 @@ use barrelstack_campaign::study::RunOptions;
 use barrelstack_motion::TargetSpectrum;
 use barrelstack_reproduction::{ReproduceError, reproduce as run_all};
 use barrelstack_selection::{Candidate, Choosing, Condition, SelectionTarget, select as choose};
+use barrelstack_space::AnyAnswer;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use serde_json::json;
@@ -49,9 +50,8 @@ pub(crate) fn compare(
     let compared = run_interruptible(py, progress, |state| {
         let mut answers = Vec::new();
         for (at, (name, scenario)) in all.iter().enumerate() {
-            let answer = variants::answer(scenario, RunChoice::Typical, &mut |now| {
-                report_advance(state, now)
-            });
+            let answer =
+                AnyAnswer::of(scenario, RunChoice::Typical, &mut |now| report_advance(state, now));
             answers.push((name.clone(), answer.map_err(|failure| (failure, at))?));
             if state.stopped() {
                 break;

@@ -1,14 +1,13 @@
 //! Runs, with their outcomes, histories (without copies) and pages.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use barrelstack::ensemble;
-use barrelstack::export::Folder;
-use barrelstack::render::{Part, RenderFolder, Rendering};
+use barrelstack::export::{ExportError, Folder};
+use barrelstack::render::{Part, RenderFolder, Rendered, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
-use barrelstack::verify::Verification;
 use barrelstack::watch::{Joint, StressEnvelope};
 use barrelstack_report::{Format, document_pdf, html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
@@ -26,7 +25,6 @@ use crate::view::{Numbers, Rows, rows, view};
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Run {
     answer: Arc<Answer>,
-    repeated: Option<Arc<Verification>>,
     /// `true` for the plane that does not govern.
     beside: bool,
 }
@@ -40,8 +38,8 @@ type Peaks = ((f64, f64), (f64, f64));
 type JointFacts = (String, f64, Peaks, Peaks);
 
 impl Run {
-    pub(crate) fn of(answer: Answer, repeated: Option<Verification>) -> Self {
-        Self { answer: Arc::new(answer), repeated: repeated.map(Arc::new), beside: false }
+    pub(crate) fn of(answer: Answer) -> Self {
+        Self { answer: Arc::new(answer), beside: false }
     }
 
     fn shown(&self) -> &Shown {
@@ -58,15 +56,11 @@ impl Run {
     fn envelope(&self, at: usize) -> PyResult<&StressEnvelope> {
         self.run().stresses.envelopes.get(at).ok_or_else(|| missing("envelope"))
     }
-
-    fn verification(&self) -> Option<&Verification> {
-        self.repeated.as_deref()
-    }
 }
 
 /// Returns the members with the given names, in the order of `all`; all members if no names are
 /// given.
-fn chosen<T: Copy, const N: usize>(
+pub(crate) fn chosen<T: Copy, const N: usize>(
     what: &str,
     names: &[String],
     all: [T; N],
@@ -82,6 +76,23 @@ fn chosen<T: Copy, const N: usize>(
     Ok(all.into_iter().filter(requested).collect())
 }
 
+/// Writes parts of a rendering of a run that ends at a time (s); for each part, returns its folder
+/// or file and the number of files.
+pub(crate) fn rendered(
+    py: Python<'_>,
+    (folder, parts, overwrite): (&Path, &[String], bool),
+    (how, end_time): (&Rendering, f64),
+    write: impl FnOnce(&RenderFolder) -> Result<Vec<Rendered>, ExportError> + Send,
+) -> PyResult<Vec<(PathBuf, usize)>> {
+    let parts = chosen("part", parts, Part::ALL, Part::name)?;
+    how.check(end_time).map_err(PyValueError::new_err)?;
+    let written = py.detach(|| {
+        RenderFolder::prepare(folder, &parts, overwrite).and_then(|folder| write(&folder))
+    });
+    let written = written.map_err(errors::general)?;
+    Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
+}
+
 fn missing(what: &str) -> PyErr {
     PyIndexError::new_err(format!("there is no such {what}"))
 }
@@ -90,8 +101,8 @@ fn missing(what: &str) -> PyErr {
 impl Run {
     /// Returns the result of the other plane, if the scenario has both.
     fn other(&self) -> Option<Self> {
-        let (answer, repeated) = (Arc::clone(&self.answer), self.repeated.clone());
-        self.answer.other.as_ref().map(|_| Self { answer, repeated, beside: !self.beside })
+        let answer = Arc::clone(&self.answer);
+        self.answer.other.as_ref().map(|_| Self { answer, beside: !self.beside })
     }
 
     #[getter]
@@ -217,15 +228,12 @@ impl Run {
     }
 
     fn html(&self, py: Python<'_>) -> String {
-        py.detach(|| html(&report::answer_document(&self.answer, self.verification())))
+        py.detach(|| html(&report::answer_document(&self.answer)))
     }
 
     fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
         let paper = paper_of(paper)?;
-        let made = py.detach(|| {
-            document_pdf(&report::answer_document(&self.answer, self.verification()), paper)
-        });
-        Ok(bytes(py, &made))
+        Ok(bytes(py, &py.detach(|| document_pdf(&report::answer_document(&self.answer), paper))))
     }
 
     /// Writes parts of a rendering; for each part, returns its folder or file and the number of
@@ -244,23 +252,19 @@ impl Run {
         largest: u32,
         overwrite: bool,
     ) -> PyResult<Vec<(PathBuf, usize)>> {
-        let parts = chosen("part", &parts, Part::ALL, Part::name)?;
         let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
         let how = Rendering { formats, dpi, paper: paper_of(paper)?, rate, between, largest };
-        how.check(self.run()).map_err(PyValueError::new_err)?;
-        let written = py.detach(|| {
-            let folder = RenderFolder::prepare(&folder, &parts, overwrite)?;
-            folder.write(self.run(), &self.shown().summary, &how)
-        });
-        let written = written.map_err(errors::general)?;
-        Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
+        let (run, summary) = (self.run(), &self.shown().summary);
+        rendered(py, (&folder, &parts, overwrite), (&how, run.end_time), |folder| {
+            folder.write(run, summary, &how)
+        })
     }
 
     /// Writes the same files as the command.
     fn write(&self, py: Python<'_>, folder: PathBuf, overwrite: bool) -> PyResult<()> {
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            folder.write(&self.answer, self.verification())
+            folder.write(&self.answer)
         });
         written.map_err(errors::general)
     }

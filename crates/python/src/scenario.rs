@@ -9,7 +9,7 @@ use std::time::Instant;
 use barrelstack::ground::from_disk;
 use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
 use barrelstack::variants::{self, Advance, Answer, RunChoice, Shown};
-use barrelstack::verify::{Verification, verify};
+use barrelstack::verify::verify;
 use barrelstack::watch::Pace;
 use barrelstack::{RunFailure, Summary};
 use pyo3::exceptions::PyValueError;
@@ -97,11 +97,10 @@ impl Scenario {
     /// Checks every plane and returns the findings of each as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let found = py.detach(|| {
+            let spatial = self.inner.is_spatial();
+            let one = if spatial { barrelstack_space::check } else { barrelstack::check };
             let planes = variants::planes(&self.inner)?;
-            planes
-                .iter()
-                .map(|plane| barrelstack::check(&plane.scenario))
-                .collect::<Result<Vec<_>, _>>()
+            planes.iter().map(|plane| one(&plane.scenario)).collect::<Result<Vec<_>, _>>()
         });
         let found = found.map_err(|error: RunFailure| errors::run(&error, &self.inner))?;
         found.iter().map(|one| serde_json::to_string(one).map_err(errors::general)).collect()
@@ -128,19 +127,15 @@ impl Scenario {
                 })?;
                 answer.decides.summary.remedy = found;
             }
-            let mut repeated: Option<Verification> = None;
             if repeats && !state.stopped() {
                 let found = verify(&answer.decides.run, &mut |now| {
                     state.report(now.time, now.end_time, "s of repeats")
                 })?;
-                answer.decides.summary.verification = Some(found.clone());
-                repeated = Some(found);
+                answer.decides.summary.verification = Some(found);
             }
-            Ok((answer, repeated))
+            Ok(answer)
         })?;
-        let (answer, repeated) =
-            answer.map_err(|error: RunFailure| errors::run(&error, &scenario))?;
-        Ok(Run::of(answer, repeated))
+        answer.map(Run::of).map_err(|error: RunFailure| errors::run(&error, &scenario))
     }
 
     #[getter]
@@ -148,13 +143,14 @@ impl Scenario {
         self.inner.is_spatial()
     }
 
-    #[pyo3(signature = (variants, variant, remedy, progress))]
+    #[pyo3(signature = (variants, variant, remedy, repeats, progress))]
     fn run_in_space(
         &self,
         py: Python<'_>,
         variants: Option<u32>,
         variant: Option<u32>,
         remedy: bool,
+        repeats: bool,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<SpatialRun> {
         let (scenario, count) = with_variants(&self.inner, variants)?;
@@ -167,6 +163,12 @@ impl Scenario {
                 answer.summary.remedy = barrelstack_space::variants::remedy(&answer, &|done| {
                     state.report(done as f64, f64::NAN, "runs of changed stacks")
                 })?;
+            }
+            if repeats && !state.stopped() {
+                let found = verify(&answer.run, &mut |now| {
+                    state.report(now.time, now.end_time, "s of repeats")
+                })?;
+                answer.summary.verification = Some(found);
             }
             Ok(answer)
         })?;
@@ -224,7 +226,7 @@ impl Scenario {
         });
         match (raised, done) {
             (Some(error), _) => Err(error),
-            (None, Ok(answer)) => Ok(Run::of(answer, None)),
+            (None, Ok(answer)) => Ok(Run::of(answer)),
             (None, Err(error)) => Err(errors::run(&error, &self.inner)),
         }
     }

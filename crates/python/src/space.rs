@@ -4,14 +4,19 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use barrelstack::export::Folder;
-use barrelstack_report::html;
+use barrelstack::render::Rendering;
+use barrelstack_report::{Format, document_pdf, html};
 use barrelstack_space::report::document;
 use barrelstack_space::run::Frames;
 use barrelstack_space::{Answer, columns, export, words};
 use numpy::{PyArray1, PyArray3, PyArrayMethods as _};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::errors;
+use crate::page::paper_of;
+use crate::run::{chosen, rendered};
+use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{Numbers, view};
 
@@ -96,6 +101,34 @@ impl SpatialRun {
         py.detach(|| html(&document(&self.answer)))
     }
 
+    fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let paper = paper_of(paper)?;
+        Ok(bytes(py, &py.detach(|| document_pdf(&document(&self.answer), paper))))
+    }
+
+    /// Writes parts of a rendering; for each part, returns its folder or file and the number of
+    /// files.
+    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
+    fn render(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        parts: Vec<String>,
+        formats: Vec<String>,
+        dpi: f64,
+        paper: &str,
+        rate: f64,
+        between: Option<[f64; 2]>,
+        largest: u32,
+        overwrite: bool,
+    ) -> PyResult<Vec<(PathBuf, usize)>> {
+        let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
+        let how = Rendering { formats, dpi, paper: paper_of(paper)?, rate, between, largest };
+        rendered(py, (&folder, &parts, overwrite), (&how, self.answer.run.end_time), |folder| {
+            export::render(&self.answer, folder, &how)
+        })
+    }
+
     /// Writes the same files as the command, including the scenario as stated.
     fn write(
         &self,
@@ -106,8 +139,7 @@ impl SpatialRun {
     ) -> PyResult<()> {
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            let files = export::files(&self.answer, stated);
-            folder.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
+            folder.write_files(&export::files(&self.answer, stated))
         });
         written.map_err(errors::general)
     }

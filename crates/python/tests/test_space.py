@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from barrelstack import Scenario, ScenarioError, SpatialRun
+from barrelstack import Scenario, ScenarioError, SpatialRun, compare
 
 CHANGES = {
     "stack.view": "spatial",
@@ -90,3 +90,26 @@ def test_plane_and_space_name_each_other() -> None:
         Scenario.load("demo-napa").set(CHANGES).run_in_space(variant=9)
     with pytest.raises(ScenarioError, match="view"):
         Scenario.load("demo-napa").set("stack.view", "spacial")
+
+
+def test_repeats_report_and_pictures_are_those_of_the_command(command: str, tmp_path: Path) -> None:
+    short = {"stack.view": "spatial", "stack.levels": 2, "run.duration": "0.5 s"}
+    scenario = Scenario.load("demo-napa").set(short)
+    run = scenario.run_in_space(variants=0, verify=True)
+    sets = [word for path, value in short.items() for word in ("--set", f"{path}={value}")]
+    words = [command, "run", "demo-napa", *sets, "--variants", "0", "--verify", "--json", "--quiet"]
+    printed = json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+    assert run.summary["verification"] == printed["verification"]
+    assert len(printed["verification"]["repeats"]) == 5
+    run.report(tmp_path / "report.pdf")
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF-")
+    written = run.render(tmp_path / "pictures", "paraview", "animation", rate=5.0, size=64)
+    assert sorted(Path(place).name for place in written) == ["animation", "paraview"]
+    assert scenario.check()[0]["view"] == "spatial"
+
+
+def test_a_comparison_in_space_has_the_shares_of_the_runs(run: SpatialRun) -> None:
+    stack = Scenario.load("demo-napa").set(CHANGES)
+    both = compare({"as it is": stack, "lower": stack.set("stack.levels", 2)})
+    assert both.runs["as it is"]["ensemble"] == run.ensemble
+    assert both.document["paired"][0]["view"] == "spatial"

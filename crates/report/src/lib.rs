@@ -169,7 +169,7 @@ pub use ticks::{Ticks, linear_ticks, log_ticks};
 #[cfg(feature = "documents")]
 pub use trial::Trial;
 #[cfg(feature = "documents")]
-pub use vtk::{SolidBody, Solids, paraview, paraview_of_solids};
+pub use vtk::{SolidBody, SolidTie, Solids, paraview, paraview_of_solids};
 
 /// The example of the README, which is compiled and run with the tests of the documentation.
 #[cfg(doctest)]

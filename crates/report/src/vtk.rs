@@ -4,7 +4,7 @@ mod solids;
 
 use std::fmt::Write as _;
 
-pub use solids::{SolidBody, Solids, paraview_of_solids};
+pub use solids::{SolidBody, SolidTie, Solids, paraview_of_solids};
 
 use crate::{
     Attachment, Polyline, Role, Scene, escape,

@@ -2,7 +2,7 @@
 
 use std::io::Read as _;
 
-use barrelstack_report::{Role, SolidBody, Solids, paraview_of_solids};
+use barrelstack_report::{Role, SolidBody, SolidTie, Solids, paraview_of_solids};
 use base64::Engine as _;
 
 /// A tetrahedron of a level.
@@ -18,7 +18,9 @@ fn tetrahedron(name: &str, level: u32) -> SolidBody {
 
 /// Returns the bytes of an array: one block, whose sizes are in its header.
 fn bytes(tree: &roxmltree::Document<'_>, name: &str, kind: &str) -> Vec<u8> {
-    let node = tree.descendants().find(|node| node.attribute("Name") == Some(name)).unwrap();
+    let node = tree.descendants().filter(|node| node.attribute("Name") == Some(name));
+    // The cells of triangles come after those of lines.
+    let node = node.last().unwrap();
     assert_eq!(node.attribute("type"), Some(kind), "{name}");
     assert_eq!(node.attribute("format"), Some("binary"));
     // Sixteen bytes take 24 letters.
@@ -59,6 +61,7 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     let lost = [f64::NAN; 7];
     let solids = Solids {
         bodies: vec![tetrahedron("one, \"quoted\"", 1), tetrahedron("two", 2)],
+        ties: Vec::new(),
         times: vec![0.0, 0.01, 1.0],
         poses: vec![vec![rest, moved], vec![rest, rest], vec![moved, lost]],
         twists: vec![vec![[0.0; 6]; 2], vec![[0.0; 6]; 2], vec![[1.0, 0.0, 0.0, 0.0, 0.0, 2.0]; 2]],
@@ -101,4 +104,37 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     assert!(near(&vectors(&last, "displacement")[1], [1.0, 4.0, 4.0]));
     // Its center moves along x, and it rotates about it.
     assert!(near(&vectors(&last, "velocity")[1], [-1.0, 0.0, 0.0]));
+}
+
+#[test]
+fn paraview_sees_straps_until_they_tear() {
+    let rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    let above = [0.0, 0.0, 3.0, 1.0, 0.0, 0.0, 0.0];
+    let solids = Solids {
+        bodies: vec![tetrahedron("one", 1), tetrahedron("two", 2)],
+        ties: vec![SolidTie {
+            name: "two-one left".into(),
+            bodies: [1, 0],
+            points: [[1.0, 0.0, 0.0], [1.0, 0.0, 0.5]],
+            torn_at: Some(0.5),
+        }],
+        times: vec![0.0, 1.0],
+        poses: vec![vec![rest, above]; 2],
+        twists: vec![vec![[0.0; 6]; 2]; 2],
+    };
+    let mut files = Vec::new();
+    paraview_of_solids::<()>(&solids, 1.0, &mut |file| {
+        files.push(String::from_utf8(file.bytes).unwrap());
+        Ok(())
+    })
+    .unwrap();
+    assert!(files[2].ends_with("2,two-one left,device,0\n"), "{}", files[2]);
+    let tree = roxmltree::Document::parse(&files[0]).unwrap();
+    // The line comes before the triangles, and its points before theirs.
+    assert_eq!(whole(&tree, "body"), [2, 0, 0, 0, 0, 1, 1, 1, 1]);
+    assert_eq!(whole(&tree, "role")[0], Role::Device as i32);
+    assert_eq!(vectors(&tree, "points")[..2], [[1.0, 0.0, 3.0], [1.0, 0.0, 0.5]]);
+    assert_eq!(whole(&tree, "connectivity")[..3], [2, 4, 3]);
+    let torn = roxmltree::Document::parse(&files[1]).unwrap();
+    assert_eq!(whole(&torn, "body"), [0, 0, 0, 0, 1, 1, 1, 1]);
 }

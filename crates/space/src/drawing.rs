@@ -78,6 +78,9 @@ impl Sight {
     }
 }
 
+/// Half the assumed thickness (m) of those parts of devices that the plane drawings show as lines.
+pub(crate) const PLATE: f64 = 0.012;
+
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 

@@ -2,12 +2,15 @@
 
 use std::fmt::Write as _;
 
-use barrelstack::export::dictionary;
+use barrelstack::export::{ExportError, dictionary};
+use barrelstack::render::{RenderFolder, Rendered, Rendering};
 use barrelstack_report::column::column_name;
-use barrelstack_report::{csv_field, html, shortest};
+use barrelstack_report::{csv_field, html, paraview_of_solids, shortest};
 
 use crate::columns;
+use crate::drawing::{Sight, scene};
 use crate::fate::Heading;
+use crate::mesh::solids;
 use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
@@ -29,6 +32,24 @@ pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
         files.into_iter().map(|(name, text)| (name.to_owned(), text.into_bytes())).collect();
     files.push(dictionary(&files, &columns::meaning));
     files
+}
+
+/// Writes the parts of a rendering of the shown run. Animation and frames show the view in which the first body leaves
+/// its seat; if none does, the view across the barrels.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn render(
+    answer: &Answer,
+    folder: &RenderFolder,
+    how: &Rendering,
+) -> Result<Vec<Rendered>, ExportError> {
+    let along = answer.run.heading.is_some_and(|heading| !heading.is_across());
+    let scene = scene(&answer.run, if along { Sight::Along } else { Sight::Across });
+    folder.write_by(|| document(answer), &scene, how, &mut |_, put| {
+        let solids = solids(&answer.run, how.between.unwrap_or([0.0, f64::INFINITY]));
+        paraview_of_solids(&solids, how.rate, put)
+    })
 }
 
 /// Returns the table of all poses: time (s), and the position (m) and rotation (a quaternion) of every body.

@@ -14,9 +14,11 @@
 // (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod answered;
 mod builder;
 mod check;
 pub mod columns;
+mod compare;
 mod device;
 pub mod drawing;
 pub mod export;
@@ -36,8 +38,10 @@ pub mod stack;
 mod step;
 pub mod summary;
 pub mod variants;
+mod verify;
 pub mod words;
 
+pub use answered::AnyAnswer;
 pub use check::check;
 pub use fate::{Fate, Heading};
 pub use ground::Ground;

@@ -3,9 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use barrelstack::assemble::PartKind;
-use barrelstack_dynamics::{Body, Solid, Spatial, Vec3, math};
-use barrelstack_report::{Role, SolidBody, Solids};
+use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3, math};
+use barrelstack_report::{Role, SolidBody, SolidTie, Solids};
 
+use crate::drawing::PLATE;
 use crate::run::Run;
 
 /// Number of mesh steps per quarter circle: `FINE` for balls and barrels, `COARSE` for tubes. Racks have many tubes,
@@ -22,7 +23,7 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     let floor = floor(run);
     let parts = run.stack.parts.iter().zip(run.stack.model.bodies());
     let bodies = parts.map(|(part, body)| {
-        let (points, triangles) = surface(body, floor);
+        let (points, triangles) = surface(body, &part.lines, floor);
         SolidBody {
             name: part.name.clone(),
             role: match part.kind {
@@ -40,8 +41,18 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     let frames = &run.frames;
     let within = |at: &usize| (from..=to).contains(&frames.times[*at]);
     let kept: Vec<usize> = (0..frames.times.len()).filter(within).collect();
+    let ties = run.devices().filter_map(|((element, _), fate)| match element {
+        Element::Strap(strap) => Some(SolidTie {
+            name: strap.link.name.clone(),
+            bodies: strap.link.bodies,
+            points: strap.link.points.map(|point| [point.x, point.y, point.z]),
+            torn_at: fate.broken_at,
+        }),
+        Element::Rod(_) | Element::Guide(_) => None,
+    });
     Solids {
         bodies: bodies.collect(),
+        ties: ties.collect(),
         times: kept.iter().map(|at| frames.times[*at]).collect(),
         poses: kept.iter().map(|at| frames.poses[*at].clone()).collect(),
         twists: kept.iter().map(|at| frames.twists[*at].clone()).collect(),
@@ -58,8 +69,8 @@ fn floor(run: &Run) -> f64 {
 }
 
 /// Returns the mesh of a body in the body frame. Half-spaces are drawn as squares; `floor` is half the side (m) of a
-/// square.
-fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
+/// square. The `lines` of the parts of devices on the body are drawn as bars.
+fn surface(body: &Body<Spatial>, lines: &[Vec<Vec3>], floor: f64) -> Mesh {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for placed in &body.surfaces {
         let (own, faces) = match &placed.surface {
@@ -98,7 +109,27 @@ fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
         points.extend(own.into_iter().map(place));
         triangles.extend(faces.into_iter().map(|face| face.map(|corner| first + corner)));
     }
+    for ends in lines.iter().flat_map(|line| line.windows(2)) {
+        let (own, faces) = bar([ends[0], ends[1]]);
+        let first = points.len();
+        points.extend(own);
+        triangles.extend(faces.into_iter().map(|face| face.map(|corner| first + corner)));
+    }
     (points, triangles)
+}
+
+/// Returns the mesh of a bar between two points (m), with round ends.
+fn bar([from, to]: [Vec3; 2]) -> Mesh {
+    let along = to - from;
+    let [x, any] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+    let axis = along.unit_or(x);
+    // Perpendicular to the axis; the second direction is used for a bar that is upright.
+    let side = axis.cross(any).unit_or(axis.cross(x).unit_or(x));
+    let up = axis.cross(side);
+    let (own, faces) = revolved(&rounded(0.5 * along.length(), PLATE, COARSE), COARSE);
+    let middle = (from + to) * 0.5;
+    let place = |point: Vec3| middle + axis * point.x + side * point.y + up * point.z;
+    (own.into_iter().map(place).collect(), faces)
 }
 
 fn square(half: f64) -> Mesh {
@@ -196,6 +227,9 @@ mod tests {
             // measured 0.023 below, as inscribed polyhedra are
             (revolved(&rounded(0.0, 0.3, FINE), FINE), ball, 0.03),
             (revolved(&rounded(0.4, 0.3, FINE), FINE), ball + PI * 0.09 * 0.8, 0.03),
+            // A prism of twelve sides has 0.955 of the section, and the ends add 0.016.
+            (bar([Vec3::default(), Vec3::new(0.0, 0.0, 1.0)]), PI * PLATE * PLATE, 0.04),
+            (bar([Vec3::default(), Vec3::new(0.6, 0.0, 0.8)]), PI * PLATE * PLATE, 0.04),
         ] {
             assert!(is_closed(&mesh));
             assert!((volume(&mesh) / exact - 1.0).abs() < near, "{}", volume(&mesh) / exact);

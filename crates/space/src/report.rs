@@ -1,9 +1,12 @@
 //! Report of a run in space: verdict, synchronized views, collapse sequence, and tables.
 
 use barrelstack::outcome::Outcome;
-use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend, unknowns};
+use barrelstack::report::{
+    WORDS, command, demand_table, device_table, interface_table, legend, trust, unknowns,
+};
 use barrelstack::variants::words::dots_of;
 use barrelstack::variants::{Range, Remedy};
+use barrelstack::verify::Verification;
 use barrelstack_report::{
     Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
 };
@@ -58,6 +61,10 @@ pub fn document(answer: &Answer) -> Document {
             Strip::of_run(std::sync::Arc::clone(scene), 6),
         )));
     }
+    if let Some(found) = &summary.verification {
+        blocks.push(heading("How far to trust this run"));
+        blocks.extend(trust(found));
+    }
     blocks.push(heading("In numbers"));
     let caption = if free {
         "The run that is shown."
@@ -99,8 +106,11 @@ pub fn document(answer: &Answer) -> Document {
             headline: headline(run, summary),
             dots: summary.ensemble.iter().map(|spread| dots_of(None, spread)).collect(),
             advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
-            command: String::new(),
-            sentences: sentences(run, summary),
+            command: command(summary.remedy.as_ref()),
+            sentences: sentences(run, summary)
+                .into_iter()
+                .chain(summary.verification.iter().flat_map(Verification::sentences))
+                .collect(),
             fine: Vec::new(),
             tone: tone(run, summary),
         },
@@ -255,7 +265,7 @@ fn ends(summary: &Summary) -> Table {
     )
 }
 
-fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
+pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let made = &summary.provenance;
     let mut rows = vec![
         ("program".to_owned(), format!("{} {}", made.program, made.version)),

@@ -198,6 +198,16 @@ impl Run {
         elements.zip(self.stack.devices.iter().copied()).zip(&self.elements)
     }
 
+    /// Returns the displacement x, y, z (m) of a body from its position at rest, relative to the ground, in every frame.
+    pub(crate) fn path(&self, body: BodyId) -> Vec<[f64; 3]> {
+        let rest = self.fates[body].rest;
+        let moved = |poses: &Vec<[f64; 7]>| {
+            let (own, ground) = (poses[body], poses[Stack::GROUND]);
+            [own[0] - ground[0] - rest.x, own[1] - ground[1] - rest.y, own[2] - ground[2] - rest.z]
+        };
+        self.frames.poses.iter().map(moved).collect()
+    }
+
     /// Returns the barrels that fell, in the order of the parts.
     pub fn fallen(&self) -> impl Iterator<Item = BodyId> + '_ {
         let fell = |body: &BodyId| self.fates[*body].fell_at.is_some();

@@ -23,7 +23,7 @@ use crate::fate::Heading;
 use crate::ground::Ground;
 use crate::run::{Run, affordable, run_on};
 use crate::stack::Stack;
-use crate::summary::{Directions, Summary};
+use crate::summary::{self, Summary};
 
 /// Result of one variant in space.
 #[derive(Clone, Debug)]
@@ -194,31 +194,41 @@ fn run_some(
     numbers: &[u32],
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Vec<Case> {
+    run_each(numbers, &|number| (plane.trial(*number), ground.clone()), observer)
+}
+
+/// Runs cases, each of which `build` makes from an item, on all cores; the observer receives the number of finished
+/// cases, and may stop the work. Unfinished cases are returned as interrupted.
+pub fn run_each<T: Sync>(
+    items: &[T],
+    build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Vec<Case> {
     let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     let report = |done: usize| {
         if observer(done).is_break() {
             stopped.store(true, Ordering::Relaxed);
         }
     };
-    let work = |number: &u32| {
+    let work = |item: &T| {
         let going = |()| {
             report(done.load(Ordering::Relaxed));
             let over = stopped.load(Ordering::Relaxed);
             if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let variant = plane.trial(*number);
         let interrupted =
             || Case { result: CaseResult::interrupted(), first: None, debris: Vec::new() };
         if going(()).is_break() {
             return interrupted();
         }
+        let (scenario, ground) = build(item);
         let (mut share, mut stage) = (Share::default(), Stage::settling());
         let mut advance = |progress: Progress| {
             stage.shake(1);
             share.reached(progress.time / progress.end_time);
             going(())
         };
-        let case = match run_on(&variant, ground.clone(), &mut advance) {
+        let case = match run_on(&scenario, ground, &mut advance) {
             Ok(run) if run.ending == Ending::Interrupted => {
                 return interrupted();
             }
@@ -226,12 +236,12 @@ fn run_some(
                 share.end(run.end_time / run.simulation.end_time);
                 Case::of(&run)
             }
-            Err(failure) => Case::refused(&variant, &failure),
+            Err(failure) => Case::refused(&scenario, &failure),
         };
         report(done.fetch_add(1, Ordering::Relaxed) + 1);
         case
     };
-    pool::map(numbers, work, &|_| ())
+    pool::map(items, work, &|_| ())
 }
 
 /// A stack in space to which a change is applied as a possible remedy, and its variants.
@@ -292,6 +302,16 @@ pub fn answer(
     choice: RunChoice,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
+    answered(scenario, choice, None, observer)
+}
+
+/// Builds an [`answer`]; `known` has the cases of the scenario as stated and of all its variants, if they were run.
+pub(crate) fn answered(
+    scenario: &Scenario,
+    choice: RunChoice,
+    known: Option<Vec<Case>>,
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> Result<Answer, RunFailure> {
     let scenario = &scenario.with_event()?;
     let plane = plane(scenario)?;
     let observer = Mutex::new(observer);
@@ -301,10 +321,12 @@ pub fn answer(
         Err(_) => ControlFlow::Break(()),
     };
     let varied = !matches!(choice, RunChoice::Alone(_)) && plane.count() > 0;
-    let cases = if varied {
-        run_all(&plane.scenario, &|done, of| report(Advance::Variants { done, of }))?
-    } else {
-        Vec::new()
+    let cases = match known {
+        Some(cases) if varied => cases,
+        _ if varied => {
+            run_all(&plane.scenario, &|done, of| report(Advance::Variants { done, of }))?
+        }
+        _ => Vec::new(),
     };
     let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
     let done = results.iter().filter(|one| one.outcome != Ok(Outcome::Interrupted)).count();
@@ -324,11 +346,11 @@ pub fn answer(
     let ground = Ground::of(&plane.scenario)?;
     let mut run = run_on(&variant, ground, &mut |now| report(Advance::Run(now)))?;
     run.warnings.extend(unfinished.as_ref().map(Unfinished::warning));
-    let mut summary = Summary::of(&run, &plane.scenario);
+    let mut summary = summary::of(&run, &plane.scenario);
     summary.unfinished = unfinished;
     summary.variant = number;
     summary.directions =
-        spread.as_ref().map(|_| Directions::of(cases.get(1..).unwrap_or_default()));
+        spread.as_ref().map(|_| summary::directions(cases.get(1..).unwrap_or_default()));
     summary.ensemble = spread;
     Ok(Answer { scenario: plane.scenario, run, summary, cases })
 }

@@ -17,7 +17,7 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
     if let Some(spread) = &summary.ensemble {
         return headline_in_space(spread);
     }
-    let barrels = summary.outcome.barrels;
+    let barrels = summary.outcome.common.barrels;
     match &run.outcome {
         Outcome::Stable => match summary.demands.stave_utilization.filter(|load| *load > 1.0) {
             Some(load) => format!(
@@ -131,12 +131,13 @@ const SHOWN: [&str; 5] = [
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
-    row("outcome", summary.outcome.mode.unwrap_or(summary.outcome.kind).to_owned());
-    if let (Some(first), Some(time)) = (&summary.outcome.first, summary.outcome.time) {
+    let outcome = &summary.outcome.common;
+    row("outcome", outcome.mode.unwrap_or(outcome.kind).to_owned());
+    if let (Some(first), Some(time)) = (&outcome.first, outcome.time) {
         let direction = run.heading.map_or("", toward);
         row("first", format!("{first} at {time:.2} s, {direction}"));
     }
-    if let Some(fallen) = summary.outcome.barrels_fallen.filter(|fallen| *fallen > 0) {
+    if let Some(fallen) = outcome.barrels_fallen.filter(|fallen| *fallen > 0) {
         let side = |wanted: Heading| run.debris().filter(|heading| *heading == wanted).count();
         let counts = Heading::ALL.map(|heading| (side(heading), heading.name()));
         let listed: Vec<String> = counts
@@ -144,10 +145,7 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
             .filter(|(count, _)| *count > 0)
             .map(|(count, name)| format!("{count} {name}"))
             .collect();
-        row(
-            "barrels fallen",
-            format!("{fallen} of {}: {}", summary.outcome.barrels, listed.join(", ")),
-        );
+        row("barrels fallen", format!("{fallen} of {}: {}", outcome.barrels, listed.join(", ")));
     }
     for body in summary.bodies.iter().filter(|_| run.stack.is_free()).take(MOST_LISTED) {
         let [x, y, z] = body.moved;

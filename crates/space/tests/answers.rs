@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 use barrelstack::Scenario;
 use barrelstack::demand::Span;
 use barrelstack_dynamics::{Linear as _, Solid, Vec3};
-use barrelstack_space::Summary;
 use barrelstack_space::run::{Run, run, stand};
+use barrelstack_space::summary;
 use barrelstack_space::variants::demands;
 
 const GRAVITY: f64 = 9.80665;
@@ -383,7 +383,7 @@ fn seats_bear_weight_and_push_whatever_the_direction() {
     let aboard = RACK + 2.0 * BARREL;
     let still = run(&stack(&[], &pulse(1e-9, 0.01), 0.1, 0.0)).unwrap();
     let pushed = run(&stack(&[], &growing(0.2), 8.0, 37.0)).unwrap();
-    let summary = Summary::of(&pushed, &pushed.scenario);
+    let summary = summary::of(&pushed, &pushed.scenario);
     for seat in &summary.interfaces {
         let mass = if seat.name == "R1 on ground" { aboard } else { BARREL };
         // Measured 1.8e-10, 2.1e-6 and 1.5e-5 off.

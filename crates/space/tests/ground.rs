@@ -9,7 +9,7 @@ use barrelstack_dynamics::{Drive as _, Vec3};
 
 use barrelstack_space::drawing::ground_histories;
 use barrelstack_space::run::{Run, run};
-use barrelstack_space::{Ground, Summary};
+use barrelstack_space::{Ground, summary};
 
 use crate::common::soft_demo;
 
@@ -139,7 +139,7 @@ fn the_largest_slip_is_that_of_one_instant() {
         "run.duration=12 s",
     ];
     let run = run(&Scenario::builtin("demo-napa", &changes.map(str::to_owned)).unwrap()).unwrap();
-    let summary = Summary::of(&run, &run.scenario);
+    let summary = summary::of(&run, &run.scenario);
     let body = run.stack.parts.iter().position(|part| part.name == "R1").unwrap();
     let rest = run.fates[body].rest;
     let slips = run.frames.poses.iter().map(|poses| {
@@ -164,7 +164,7 @@ fn crushed_staves_are_in_the_verdict_of_a_stack_in_space() {
     let said = |capacity: &str| {
         let capacity = format!("stack.barrel.stave_capacity={capacity}");
         let run = one_level(&[capacity, "run.duration=0.5 s".to_owned()], None);
-        let summary = Summary::of(&run, &run.scenario);
+        let summary = summary::of(&run, &run.scenario);
         (
             barrelstack_space::words::headline(&run, &summary),
             summary.demands.stave_utilization.unwrap(),

@@ -7,6 +7,7 @@
 mod answers;
 mod bits;
 mod common;
+mod compare;
 mod devices;
 mod free;
 mod ground;

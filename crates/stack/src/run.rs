@@ -21,7 +21,7 @@ use crate::watch::{
 pub use crate::stand::UNBALANCED;
 use failure::MOST_KEPT;
 pub use failure::RunFailure;
-pub use verdict::{Ended, Verdict};
+pub use verdict::{Ended, Verdict, cut};
 
 /// Result of a run.
 ///
@@ -203,7 +203,7 @@ impl Run {
     /// Returns the duration (s) of the ground motion that remained when `run.duration` ended the run; `None` if nothing
     /// remained.
     pub fn cut(&self) -> Option<f64> {
-        verdict::cut(self.ending, self.ground.end(), self.end_time)
+        cut(self.ending, self.ground.end(), self.end_time)
     }
 }
 

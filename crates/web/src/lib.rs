@@ -209,7 +209,7 @@ pub fn answered(
         RequestKind::Verdict => json(&Verdict::of(&planes()?, request)?),
         RequestKind::Report => {
             let found = answer(scenario, RunChoice::Typical, &mut progress).map_err(placed)?;
-            let document = report::answer_document(&found, None);
+            let document = report::answer_document(&found);
             Ok(barrelstack_report::html(&document).into_bytes())
         }
         RequestKind::Files => {
@@ -219,7 +219,7 @@ pub fn answered(
                 let results = verdict::results(&planes()?, request, trails)?;
                 answer_of(scenario, results, &mut progress)
             };
-            let files = export::files(&found.map_err(placed)?, None).map_err(words_of)?;
+            let files = export::files(&found.map_err(placed)?).map_err(words_of)?;
             let head: Vec<_> = files.iter().map(|(name, bytes)| (name, bytes.len())).collect();
             let rest: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
             Ok(enveloped(&json(&head)?, &rest))

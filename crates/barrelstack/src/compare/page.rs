@@ -5,8 +5,7 @@ use barrelstack_report::{
     Verdict, capital, listed, significant,
 };
 
-use super::{Difference, OtherPlane, Paired, Side, differences, letter, tables};
-use crate::assemble::PartKind;
+use super::{Difference, OtherPlane, Paired, Side, Traced, differences, letter, tables};
 use crate::outcome::Outcome;
 use crate::report;
 use crate::scenario::{View, title};
@@ -14,7 +13,7 @@ use crate::variants::{Spread, words};
 
 /// Builds the comparison as a document that is independent of any output format.
 pub fn document(sides: &[Side]) -> Document {
-    let differing = differences(sides.iter().map(|side| &*side.run.stated));
+    let differing = differences(sides.iter().map(|side| &side.stated));
     let mut blocks = vec![Block::Players(players(sides))];
     let mut section = |title: &str, content: Vec<Block>| {
         if !content.is_empty() {
@@ -38,14 +37,14 @@ pub fn document(sides: &[Side]) -> Document {
             .iter()
             .enumerate()
             .flat_map(|(at, side)| {
-                side.summary.warnings.iter().map(move |text| format!("{}: {text}", letter(at)))
+                side.summary.warnings().iter().map(move |text| format!("{}: {text}", letter(at)))
             })
             .collect(),
     }
 }
 
 fn fate(side: &Side) -> String {
-    if let Some(spread) = &side.summary.ensemble {
+    if let Some(spread) = side.summary.ensemble() {
         return words::fate(spread);
     }
     let one = |outcome: &Outcome| match outcome {
@@ -55,21 +54,17 @@ fn fate(side: &Side) -> String {
         Outcome::Interrupted => "was stopped before its end and gives no result".into(),
         Outcome::Invalid { .. } => "failed and gives no result".into(),
     };
-    match (&side.other, side.run.assembly.view) {
-        (Some(OtherPlane { view, outcome, .. }), Some(shown)) => format!(
-            "{} {}, {} {}",
-            shown.words(),
-            one(&side.run.outcome),
-            view.words(),
-            one(outcome)
-        ),
-        _ => one(&side.run.outcome),
+    match (&side.other, side.view) {
+        (Some(OtherPlane { view, outcome, .. }), Some(shown)) => {
+            format!("{} {}, {} {}", shown.words(), one(&side.outcome), view.words(), one(outcome))
+        }
+        _ => one(&side.outcome),
     }
 }
 
 /// Returns the outcome of a single run in each plane that was analyzed, the shown plane first.
 fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
-    let shown = std::iter::once((side.run.assembly.view, &side.run.outcome));
+    let shown = std::iter::once((side.view, &side.outcome));
     shown.chain(side.other.iter().map(|other| (Some(other.view), &other.outcome)))
 }
 
@@ -87,8 +82,8 @@ fn falls_where(side: &Side) -> String {
 /// Returns the names of the runs, followed by the title if all runs have the same title.
 fn heading(sides: &[Side]) -> String {
     let names = format!("Comparison of {}", listed(sides.iter().map(|side| side.name.clone())));
-    let first = sides.first().map(|side| &side.run.stated.title);
-    match first.filter(|first| sides.iter().all(|side| side.run.stated.title == **first)) {
+    let first = sides.first().map(|side| &side.stated.title);
+    match first.filter(|first| sides.iter().all(|side| side.stated.title == **first)) {
         Some(title) => format!("{names}: {title}"),
         None => names,
     }
@@ -97,7 +92,7 @@ fn heading(sides: &[Side]) -> String {
 /// Returns the statistics of the variants in each plane, the shown plane first.
 fn spreads(side: &Side) -> impl Iterator<Item = &Spread> {
     let other = side.other.iter().filter_map(|other| other.spread.as_ref());
-    side.summary.ensemble.iter().chain(other)
+    side.summary.ensemble().into_iter().chain(other)
 }
 
 /// Returns the statistics of the plane with the larger share of collapses; `None` for a single run.
@@ -150,8 +145,8 @@ fn effect(sides: &[Side]) -> Option<String> {
             .collect();
         return Some(format!("Collapse{}.", clauses.join(";")));
     };
-    let straps = |side: &Side| side.run.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
-    let levels = |side: &Side| side.run.stated.stack().map(|stack| stack.levels);
+    let straps = |side: &Side| side.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
+    let levels = |side: &Side| side.stated.stack().map(|stack| stack.levels);
     let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
         (true, false, true) => "Straps".to_owned(),
         (true, true, false) => WITHOUT.to_owned(),
@@ -253,8 +248,8 @@ fn headline(sides: &[Side]) -> String {
         return format!("{}.", listed(parts));
     }
     let (up, down): (Vec<&Side>, Vec<&Side>) = sides.iter().partition(|side| stands(side));
-    let straps = |side: &Side| side.run.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
-    let levels = |side: &Side| side.run.stated.stack().map(|stack| stack.levels);
+    let straps = |side: &Side| side.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
+    let levels = |side: &Side| side.stated.stack().map(|stack| stack.levels);
     let one_height = sides.iter().all(|side| levels(side) == levels(&sides[0]));
     let all =
         if sides.len() == 2 { "both".to_owned() } else { format!("all {}", number(sides.len())) };
@@ -262,7 +257,7 @@ fn headline(sides: &[Side]) -> String {
         |some: &[&Side]| listed(some.iter().map(|side| side.name.clone() + &falls_where(side)));
     match (up.as_slice(), down.as_slice()) {
         ([up], [down]) if one_height && straps(up) && !straps(down) => {
-            let barrels = up.summary.outcome.barrels;
+            let barrels = up.summary.outcome().barrels;
             let fallen = share(up).map_or(0, |spread| spread.collapsed);
             match (up.other.is_some(), fallen) {
                 (false, 0) if barrels > 1 => {
@@ -285,7 +280,7 @@ fn headline(sides: &[Side]) -> String {
 fn cut_short(sides: &[Side]) -> String {
     let cut = |side: &Side| match share(side) {
         Some(spread) => spread.standing_until.is_some(),
-        None => side.run.outcome == Outcome::Stable && side.run.cut().is_some(),
+        None => side.outcome == Outcome::Stable && side.cut.is_some(),
     };
     if !sides.iter().any(cut) {
         return String::new();
@@ -313,9 +308,8 @@ fn by_themselves(sides: &[Side]) -> String {
 fn describe(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
     let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
-    let shown = side.summary.ensemble.as_ref() == Some(spread);
-    let view =
-        if shown { side.run.assembly.view } else { side.other.as_ref().map(|other| other.view) };
+    let shown = side.summary.ensemble() == Some(spread);
+    let view = if shown { side.view } else { side.other.as_ref().map(|other| other.view) };
     let shaken = view.filter(|_| side.other.is_some());
     let shaken = shaken.map_or_else(String::new, |view| format!("shaken {}, it ", view.words()));
     let [low, high] = spread.interval.map(words::percent);
@@ -323,7 +317,7 @@ fn describe(at: usize, side: &Side) -> String {
     let result = format!(
         "{name}: {shaken}falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
     );
-    let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
+    let drift = side.summary.demands().top_drift_ratio.filter(|_| stands(side));
     match drift {
         Some(drift) => format!(
             "{result}; in the run that is shown, the top of the stack sways by up to {} % of its height.",
@@ -354,22 +348,26 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
         ),
         many => format!("The runs differ in {} inputs, listed below.", many.len()),
     });
-    let view = sides[0].run.assembly.view;
+    let view = sides[0].view;
     if let Some(view) = view.filter(|_| sides.iter().any(|side| side.other.is_some())) {
         sentences.push(format!(
             "The runs are shown {}; the table of outcomes covers both planes.",
             view.words()
         ));
     }
-    fine.push(if sides.iter().all(|side| side.summary.ensemble.is_some()) {
+    fine.push(if sides.iter().all(|side| side.summary.ensemble().is_some()) {
         {
-            let shown = sides[0].summary.variant;
-            let one = sides.iter().all(|side| side.summary.variant == shown);
+            let shown = sides[0].summary.variant();
+            let one = sides.iter().all(|side| side.summary.variant() == shown);
             match shown {
                 0 if one => "Each run is shown as stated.".to_owned(),
                 _ if one => format!(
                     "Each run is shown in variant {shown}, the most typical variant of all runs taken together{}.",
-                    if one_motion(sides) { ", under the same component of the motion" } else { "" }
+                    match (one_motion(sides), sides.iter().any(Side::is_spatial)) {
+                        (true, true) => ", under the same motion",
+                        (true, false) => ", under the same component of the motion",
+                        (false, _) => "",
+                    }
                 ),
                 _ => "Each run is shown in its own most typical variant.".to_owned(),
             }
@@ -388,29 +386,31 @@ fn players(sides: &[Side]) -> Players {
         .map(|(at, side)| Pane {
             mark: letter(at).into(),
             name: side.name.clone(),
-            verdict: report::headline(&side.run, &side.summary),
-            tone: report::tone(&side.run, &side.summary),
-            scene: report::scene(&side.run),
-            traces: report::traces(&side.run),
+            ..side.pane.clone()
         })
         .collect();
+    // Drawings of bodies in space change with their rotation, so they have no single outline.
+    let overlay = (!sides.iter().any(Side::is_spatial)).then(|| "A in the others".to_owned());
+    let dashed = overlay.as_ref().map_or_else(String::new, |label| {
+        format!(" With “{label}” switched on, dashed outlines show A at the same time.")
+    });
     Players {
         id: "players".into(),
         caption: format!(
             "The computed motion of the runs, on one clock and to one scale. A run that has ended holds its last \
-             frame. With “A in the others” switched on, dashed outlines show A at the same time.{}",
+             frame.{dashed}{}",
             panes.iter().map(|pane| report::legend(&pane.scene)).max().unwrap_or_default()
         ),
         panes,
         ground: lanes(sides),
-        overlay: Some("A in the others".into()),
+        overlay,
     }
 }
 
 /// `true` if all runs have the same motion; the length scales must also be equal, because time is
 /// scaled with them.
 fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
-    let motion = |side: &'a Side| (&side.run.scenario.motion, side.run.scenario.run.similitude);
+    let motion = |side: &'a Side| (&side.scenario.motion, side.scenario.run.similitude);
     let mut motions = sides.into_iter().map(motion);
     let first = motions.next();
     motions.all(|motion| Some(motion) == first)
@@ -420,14 +420,14 @@ fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
 /// motion of the longest run is drawn; otherwise the motion of each run is drawn.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
-        let longest = sides.iter().max_by(|a, b| a.run.end_time.total_cmp(&b.run.end_time));
-        return longest.map(|side| report::ground_histories(&side.run)).unwrap_or_default();
+        let longest = sides.iter().max_by(|a, b| a.end_time.total_cmp(&b.end_time));
+        return longest.map(|side| side.ground.clone()).unwrap_or_default();
     }
-    let own = |(at, side)| {
-        let first: History = report::ground_histories(side).into_iter().next()?;
+    let own = |(at, side): (usize, &Side)| {
+        let first = side.ground.first()?.clone();
         Some(History { label: format!("{}: {}", letter(at), first.label), ..first })
     };
-    sides.iter().map(|side| &side.run).enumerate().filter_map(own).collect()
+    sides.iter().enumerate().filter_map(own).collect()
 }
 
 /// Plots histories of all runs superimposed, with a color and a dash pattern per run.
@@ -450,32 +450,53 @@ fn histories(sides: &[Side]) -> Vec<Block> {
                 blocks.push(history(sides, id, caption, y, lines));
             }
         };
-    add(
-        "top-displacements",
-        "Horizontal displacement of the top left barrel relative to the ground.",
-        Axis::new("displacement", "cm"),
-        &|side| {
-            Some(recorded(side, displacement(side, PartKind::Barrel, side.run.assembly.levels)?))
-        },
-    );
-    add(
-        "base-displacements",
-        "Slip of the bottom rack on the ground.",
-        Axis::new("slip", "cm"),
-        &|side| Some(recorded(side, displacement(side, PartKind::Rack, 1)?)),
-    );
-    add(
-        "base-forces",
-        "Vertical force between the bottom rack and the ground.",
-        Axis::new("force", "kN"),
-        &|side| {
-            let base = side.run.recording.joints.first()?;
-            Some(recorded(side, base.vertical.iter().map(|v| 1e-3 * v).collect()))
-        },
-    );
+    let (moved, slip) = (Axis::new("displacement", "cm"), Axis::new("slip", "cm"));
+    for (what, id, caption, axis) in [
+        (
+            Traced::Top,
+            "top-displacements",
+            "Horizontal displacement of the top left barrel relative to the ground.",
+            &moved,
+        ),
+        (
+            Traced::TopAcross,
+            "top-displacements-across",
+            "Displacement of the top left barrel in the nearest row relative to the ground, across the barrels.",
+            &moved,
+        ),
+        (
+            Traced::TopAlong,
+            "top-displacements-along",
+            "Displacement of the top left barrel in the nearest row relative to the ground, along the barrels.",
+            &moved,
+        ),
+        (Traced::Base, "base-displacements", "Slip of the bottom rack on the ground.", &slip),
+        (
+            Traced::BaseAcross,
+            "base-displacements-across",
+            "Slip of the bottom rack on the ground, across the barrels.",
+            &slip,
+        ),
+        (
+            Traced::BaseAlong,
+            "base-displacements-along",
+            "Slip of the bottom rack on the ground, along the barrels.",
+            &slip,
+        ),
+        (
+            Traced::BaseForce,
+            "base-forces",
+            "Vertical force between the bottom rack and the ground.",
+            &Axis::new("force", "kN"),
+        ),
+    ] {
+        add(id, caption, axis.clone(), &|side| {
+            side.traced.iter().find(|(one, _)| *one == what).map(|(_, history)| history.clone())
+        });
+    }
     let acceleration = |side: &Side| {
-        let first = report::ground_histories(&side.run).into_iter().next()?;
-        Some([first.times, first.values])
+        let first = side.ground.first()?;
+        Some([first.times.clone(), first.values.clone()])
     };
     if !one_motion(sides) {
         add(
@@ -488,19 +509,6 @@ fn histories(sides: &[Side]) -> Vec<Block> {
     blocks
 }
 
-/// Returns the recording times of a run together with the values of a recorded quantity.
-fn recorded(side: &Side, values: Vec<f64>) -> [Vec<f64>; 2] {
-    [side.run.recording.times.clone(), values]
-}
-
-/// Returns the displacement (cm) along x of the first body of a kind on a level.
-fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
-    let assembly = &side.run.assembly;
-    let body = assembly.of_kind(kind).find(|b| assembly.parts[*b].level == Some(level))?;
-    let channel = side.run.recording.displacement(&assembly.parts[body].name)?;
-    Some(channel.values.iter().map(|v| 100.0 * v).collect())
-}
-
 /// Plots histories over time, each of which is given together with its run.
 fn history(
     sides: &[Side],
@@ -510,15 +518,14 @@ fn history(
     lines: Vec<(&Side, Series)>,
 ) -> Block {
     let marks = sides.iter().enumerate().filter_map(|(at, side)| {
-        let at_time = side.run.fates.collapse_time()?;
+        let at_time = side.collapse_time?;
         Some(Mark { at: at_time, label: format!("{} gives way", letter(at)) })
     });
     // Falling bodies leave the plot, so that the standing ones stay legible; forces and
-    // accelerations are plotted in full.195 Describes the paired differences that support the
-    // headline, with their intervals.
+    // accelerations are plotted in full.
     let ranges: Vec<Option<[f64; 2]>> = lines
         .iter()
-        .map(|(side, one)| report::standing_range(&side.run, std::slice::from_ref(one)))
+        .map(|(side, one)| report::standing_until(side.collapse_time?, std::slice::from_ref(one)))
         .collect();
     if y.unit == "cm" && ranges.iter().any(Option::is_some) {
         let own = |one: &Series| {
@@ -536,8 +543,7 @@ fn history(
 /// Returns the provenance of the results; entries that all runs share appear once, all others once
 /// per run.
 fn provenance(sides: &[Side]) -> Vec<(String, String)> {
-    let all: Vec<_> =
-        sides.iter().map(|side| report::provenance(&side.run, &side.summary)).collect();
+    let all: Vec<_> = sides.iter().map(|side| &side.provenance).collect();
     let shared = |pair: &(String, String)| all.iter().all(|pairs| pairs.contains(pair));
     let mut pairs = Vec::new();
     for (at, own) in all.iter().enumerate() {
@@ -545,6 +551,7 @@ fn provenance(sides: &[Side]) -> Vec<(String, String)> {
             pairs.push((format!("{}: {}", letter(at), pair.0), pair.1.clone()));
         }
     }
-    pairs.extend(all.first().into_iter().flatten().filter(|pair| shared(pair)).cloned());
+    let common = all.first().into_iter().flat_map(|own| own.iter());
+    pairs.extend(common.filter(|pair| shared(pair)).cloned());
     pairs
 }

@@ -4,15 +4,14 @@ use barrelstack_fragility::wilson;
 use barrelstack_report::described;
 
 use super::Side;
-use crate::scenario::View;
 use crate::variants::LEVEL;
 
 described! {
-    /// Paired comparison of two runs in one plane: the same variants under the same motions.
+    /// Paired comparison of two runs in one plane, or in space: the same variants under the same motions.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Paired {
-        /// The plane of the model; null for a free scene.
-        pub view: Option<&'static str> ["transverse", "longitudinal"],
+        /// The plane of the model, or space; null for a free scene.
+        pub view: Option<&'static str> ["transverse", "longitudinal", "spatial"],
         /// Name of the first run.
         pub first: String,
         /// Name of the second run.
@@ -35,9 +34,9 @@ described! {
 }
 
 impl Paired {
-    /// Compares two runs in every plane that both have.
+    /// Compares two runs in every plane that both have, or in space.
     pub(super) fn of(first: &Side, second: &Side) -> Vec<Self> {
-        let pair = |(view, own): &(Option<View>, Vec<Option<bool>>)| {
+        let pair = |(view, own): &(Option<&'static str>, Vec<Option<bool>>)| {
             let (_, other) = second.collapsed.iter().find(|(known, _)| known == view)?;
             Self::counted((first, second), *view, (own, other))
         };
@@ -46,7 +45,7 @@ impl Paired {
 
     fn counted(
         (first, second): (&Side, &Side),
-        view: Option<View>,
+        view: Option<&'static str>,
         (own, other): (&[Option<bool>], &[Option<bool>]),
     ) -> Option<Self> {
         let mut counts = [0_u32; 5];
@@ -62,7 +61,7 @@ impl Paired {
         let [both, only_first, only_second, neither, without_verdict] = counts;
         let (reduction, interval) = newcombe([both, only_first, only_second, neither])?;
         Some(Self {
-            view: view.map(View::name),
+            view,
             first: first.name.clone(),
             second: second.name.clone(),
             both,

@@ -37,8 +37,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
 
 /// Tabulates the inputs that are equal in all runs.
 pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
-    let mut settings: Vec<_> =
-        sides.iter().take(1).flat_map(|one| one.run.stated.settings()).collect();
+    let mut settings: Vec<_> = sides.iter().take(1).flat_map(|one| one.stated.settings()).collect();
     settings.retain(|setting| differing.iter().all(|one| one.path != setting.path));
     report::settings_table("Inputs that all runs share.", &settings)
 }
@@ -59,15 +58,15 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
             format!("{collapsed} of {variants} ({low} to {high})")
         }))
     };
-    if sides.iter().any(|side| side.summary.ensemble.is_some()) {
+    if sides.iter().any(|side| side.summary.ensemble().is_some()) {
         row("variants that collapse, with the 95 % interval of their share", &|side| {
-            collapse(side.summary.ensemble.as_ref())
+            collapse(side.summary.ensemble())
         });
         row("first loss of a seat, and barrels fallen, in the variants that collapse", &|side| {
-            let spread = side.summary.ensemble.as_ref().filter(|spread| spread.collapsed > 0);
+            let spread = side.summary.ensemble().filter(|spread| spread.collapsed > 0);
             Cell::maybe(spread.map(course))
         });
-        row("shown", &|side| match side.summary.variant {
+        row("shown", &|side| match side.summary.variant() {
             0 => Cell::text("as stated"),
             number => Cell::text(format!("variant {number}")),
         });
@@ -77,22 +76,22 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
             });
         }
     }
-    row("outcome", &|side| Cell::text(side.summary.outcome.kind));
+    row("outcome", &|side| Cell::text(side.summary.outcome().kind));
     if sides.iter().any(|side| side.other.is_some()) {
         row("outcome in the other plane", &|side| {
             Cell::maybe(side.other.as_ref().map(|other| other.outcome.kind()))
         });
     }
-    row("mode", &|side| Cell::maybe(side.summary.outcome.mode));
-    row("gives way", &|side| seconds(side.summary.outcome.time));
-    row("first body", &|side| Cell::maybe(side.summary.outcome.first.as_ref()));
-    row("first fall", &|side| seconds(side.summary.outcome.first_fall));
+    row("mode", &|side| Cell::maybe(side.summary.outcome().mode));
+    row("gives way", &|side| seconds(side.summary.outcome().time));
+    row("first body", &|side| Cell::maybe(side.summary.outcome().first.as_ref()));
+    row("first fall", &|side| seconds(side.summary.outcome().first_fall));
     row("barrels fallen", &|side| {
-        let outcome = &side.summary.outcome;
+        let outcome = side.summary.outcome();
         let fallen = outcome.barrels_fallen;
         Cell::maybe(fallen.map(|fallen| format!("{fallen} of {}", outcome.barrels)))
     });
-    row("end of the run", &|side| seconds(Some(side.run.end_time)));
+    row("end of the run", &|side| seconds(Some(side.end_time)));
     table
 }
 
@@ -105,7 +104,7 @@ pub(super) fn demands(sides: &[Side]) -> Table {
         &[],
     );
     for demand in DEMANDS {
-        let shown = |side: &Side| demand.shown(&side.summary.demands);
+        let shown = |side: &Side| demand.shown(side.summary.demands());
         let values: Vec<Option<f64>> = sides.iter().map(shown).collect();
         if values.iter().all(Option::is_none) {
             continue;

@@ -2,6 +2,7 @@
 
 mod terminal;
 
+use std::cell::LazyCell;
 use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -90,11 +91,12 @@ impl Default for Rendering {
 }
 
 impl Rendering {
-    /// Checks that a run can be rendered with these options; the error is a sentence for the user.
+    /// Checks that a run that ends at a time (s) can be rendered with these options; the error is a
+    /// sentence for the user.
     ///
     /// # Errors
     /// When a number is out of range, or when the run ends before the interval begins.
-    pub fn check(&self, run: &Run) -> Result<(), String> {
+    pub fn check(&self, end_time: f64) -> Result<(), String> {
         let expected =
             |what: &str, found: &dyn Display| Err(format!("expected {what}, found {found}"));
         if !(20.0..=1200.0).contains(&self.dpi) {
@@ -110,9 +112,8 @@ impl Rendering {
             Some([from, to]) if !(from >= 0.0 && to > from) => Err(format!(
                 "expected two times (s), the first not negative and the second later, found {from} and {to}"
             )),
-            Some([from, _]) if from > run.end_time => Err(format!(
-                "the run ends at {:.2} s, so there is nothing to render after {from} s",
-                run.end_time
+            Some([from, _]) if from > end_time => Err(format!(
+                "the run ends at {end_time:.2} s, so there is nothing to render after {from} s"
             )),
             _ => Ok(()),
         }
@@ -125,6 +126,9 @@ const KINDS: [&str; 7] = ["svg", "png", "pdf", "gif", "csv", "vtp", "pvd"];
 
 /// Maximum frame rate (1/s) that viewers of animations support.
 const FASTEST: f64 = 50.0;
+
+/// Function that writes one file of a series.
+pub type Put<'a> = &'a mut dyn FnMut(Attachment) -> Result<(), ExportError>;
 
 /// A folder that has been checked for rendered parts.
 #[derive(Clone, Debug)]
@@ -191,11 +195,28 @@ impl RenderFolder {
         summary: &Summary,
         how: &Rendering,
     ) -> Result<Vec<Rendered>, ExportError> {
-        let scene = report::scene(run);
+        let document = || report::document(run, summary);
+        self.write_by(document, &report::scene(run), how, &mut |filmed, put| {
+            paraview(filmed, how.rate).into_iter().try_for_each(put)
+        })
+    }
+
+    /// Writes all parts like [`RenderFolder::write`], from a document, a scene, and a function that produces the
+    /// ParaView series file by file, so that a long series need not fit into memory.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn write_by(
+        &self,
+        document: impl FnOnce() -> Document,
+        scene: &Arc<Scene>,
+        how: &Rendering,
+        series: &mut dyn FnMut(&Scene, Put<'_>) -> Result<(), ExportError>,
+    ) -> Result<Vec<Rendered>, ExportError> {
         let filmed = how
             .between
-            .map_or_else(|| Arc::clone(&scene), |[from, to]| Arc::new(scene.between(from, to)));
-        let document = report::document(run, summary);
+            .map_or_else(|| Arc::clone(scene), |[from, to]| Arc::new(scene.between(from, to)));
+        let document = LazyCell::new(document);
         let mut written = Vec::new();
         for &part in &self.parts {
             written.push(self.whole(part, |place| match part {
@@ -208,32 +229,17 @@ impl RenderFolder {
                 Part::Report => put(place, &document_pdf(&document, how.paper)),
                 Part::Animation => animation(place, &filmed, how),
                 Part::Frames => frames(place, &Film::of_run(Arc::clone(&filmed), how.rate), how),
-                Part::Paraview => write_all(place, &paraview(&filmed, how.rate)),
+                Part::Paraview => {
+                    let mut files = 0;
+                    series(&filmed, &mut |file| {
+                        files += put(&place.join(&file.name), &file.bytes)?;
+                        Ok(())
+                    })?;
+                    Ok(files)
+                }
             })?);
         }
         Ok(written)
-    }
-
-    /// Writes the ParaView series that `make` produces file by file.
-    ///
-    /// A long series thus need not fit into memory as a whole.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
-    pub fn write_paraview(
-        &self,
-        make: impl FnOnce(
-            &mut dyn FnMut(Attachment) -> Result<(), ExportError>,
-        ) -> Result<(), ExportError>,
-    ) -> Result<Rendered, ExportError> {
-        self.whole(Part::Paraview, |place| {
-            let mut files = 0;
-            make(&mut |file| {
-                files += put(&place.join(&file.name), &file.bytes)?;
-                Ok(())
-            })?;
-            Ok(files)
-        })
     }
 
     /// Writes a part by calling `write`, which returns the number of files; if writing fails,

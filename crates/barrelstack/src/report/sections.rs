@@ -8,15 +8,15 @@ use barrelstack_report::{
 };
 
 use super::tables::{demand_table, device_table, interface_table};
+use super::trust::trust;
 use super::unknowns::unknowns;
-use super::{drawing, inputs, planes, spectrum, trust};
+use super::{drawing, inputs, planes, spectrum};
 use crate::assemble::PartKind;
 use crate::ensemble::RATE;
 use crate::run::Run;
 use crate::scenario::View;
 use crate::summary::Summary;
 use crate::variants::{Range, Shown, Spread, Variants};
-use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
 /// Builds all sections.
@@ -24,7 +24,6 @@ pub(super) fn all(
     run: &Run,
     summary: &Summary,
     (variants, other): (Option<&Variants>, Option<&Shown>),
-    verification: Option<&Verification>,
     scene: &Arc<Scene>,
 ) -> Vec<Block> {
     let mut blocks = vec![stage(run, summary, other, scene)];
@@ -36,7 +35,7 @@ pub(super) fn all(
     section(&mut blocks, 2, "What decides", unknowns(&placed));
     section(&mut blocks, 2, "Results of all variants", planes::variants(summary));
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
-    let trusted = verification.map(trust::trust).unwrap_or_default();
+    let trusted = summary.verification.as_ref().map(trust).unwrap_or_default();
     section(&mut blocks, 2, "How far to trust this run", trusted);
     section(&mut blocks, 2, "For the engineer", for_engineers((run, summary, variants), other));
     blocks
@@ -174,7 +173,12 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 /// Falling bodies leave the plot, as in the histories of the paper. Returns `None` if there is no
 /// collapse; all values are then shown.
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
-    let until = run.fates.collapse_time()? + 0.5;
+    standing_until(run.fates.collapse_time()?, series)
+}
+
+/// Works like [`standing_range`], for a stack that collapses at a time (s).
+pub(crate) fn standing_until(collapse: f64, series: &[Series]) -> Option<[f64; 2]> {
+    let until = collapse + 0.5;
     let mut range = [0.0_f64; 2];
     for one in series {
         for (_, value) in one.x.iter().zip(&one.y).filter(|(time, _)| **time <= until) {

@@ -5,7 +5,7 @@ use barrelstack_report::{Block, Cell, Table};
 use crate::verify::{Repeat, Verification};
 
 /// Builds the report section of a verification.
-pub(super) fn trust(found: &Verification) -> Vec<Block> {
+pub fn trust(found: &Verification) -> Vec<Block> {
     let mut blocks: Vec<Block> = found.sentences().into_iter().map(Block::Paragraph).collect();
     let table = Table::of(
         "Repeats of this run, each with one change. Falls are compared until the first repeat departs \

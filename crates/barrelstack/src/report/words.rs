@@ -9,7 +9,7 @@ use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
 use crate::scenario::View;
 use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
-use crate::variants;
+use crate::variants::{self, Remedy};
 use crate::verify::Verification;
 
 /// Returns the verdict: that of all variants if they were run, otherwise that of the single run,
@@ -201,8 +201,8 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
 
 /// Returns the command that compares the remedy with the stack; absolute paths are shortened to
 /// file names.
-pub(super) fn command(summary: &Summary) -> String {
-    let command = summary.remedy.as_ref().and_then(|found| found.comparison.as_deref());
+pub fn command(remedy: Option<&Remedy>) -> String {
+    let command = remedy.and_then(|found| found.comparison.as_deref());
     let word = |word: &str| {
         let path = word.trim_start_matches('\'');
         let quote = &word[..word.len() - path.len()];

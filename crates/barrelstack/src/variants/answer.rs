@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use super::typical::typical;
 use super::{Plane, Spread, Variants, planes, run_as_far, together, words};
 use crate::check::check;
+use crate::compare::Comparable;
 use crate::ensemble::CaseResult;
 use crate::ground::{GroundError, from_disk};
 use crate::outcome::Outcome;
@@ -73,7 +74,7 @@ impl Answer {
 
 impl Answer {
     /// Returns the results of all planes, the governing plane first.
-    fn shown(&self) -> impl Iterator<Item = &Shown> {
+    pub(crate) fn shown(&self) -> impl Iterator<Item = &Shown> {
         std::iter::once(&self.decides).chain(&self.other)
     }
 
@@ -82,7 +83,7 @@ impl Answer {
     ///
     /// # Errors
     /// When that variant cannot be run.
-    pub(crate) fn with_variant(
+    pub(crate) fn showing(
         &self,
         number: u32,
         observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
@@ -100,14 +101,13 @@ impl Answer {
 /// answer has no variants.
 ///
 /// Only variants that have the same component of the motion in all answers are eligible.
-pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundError> {
-    let results = |shown: &'_ Shown| Some(shown.variants.as_ref()?.results.clone());
+pub(crate) fn common_number<A: Comparable>(answers: &[&A]) -> Result<Option<u32>, GroundError> {
     let all: Option<Vec<Vec<CaseResult>>> =
-        answers.iter().flat_map(|answer| answer.shown()).map(results).collect();
+        answers.iter().flat_map(|answer| answer.results()).collect();
     let Some(all) = all else { return Ok(None) };
     let mut found: Vec<Vec<Plane>> = Vec::new();
     for answer in answers {
-        found.push(planes(&answer.scenario)?);
+        found.push(planes(answer.scenario())?);
     }
     // Components of the motion for a variant number and a plane, over the scenarios that have the
     // plane.
@@ -301,23 +301,28 @@ fn run_selected(
         tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
     // The scenario as given, with both planes.
     let stated = |_, run| Run { stated: Box::new(scenario.clone()), ..run };
-    run_together(&scenarios, 0.0, &mut |now| report(Advance::Run(now)), &stated)
+    let run = |scenario: &Scenario, observer: Watching<'_>| scenario.run_watched(observer);
+    run_together(&scenarios, 0.0, &mut |now| report(Advance::Run(now)), &run, &stated)
 }
 
-/// Runs scenarios on all cores and maps each result by `finish`, which receives its index.
+/// Observer of a run: receives the progress and may cancel.
+type Watching<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
+
+/// Runs scenarios by `run` on all cores and maps each result by `finish`, which receives its index.
 ///
 /// The observer receives the combined progress; a run that has not begun is expected to end at
 /// `end_time` (s).
-pub(crate) fn run_together<T: Send>(
+pub(crate) fn run_together<R, T: Send>(
     scenarios: &[Scenario],
     end_time: f64,
     observer: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
-    finish: &(dyn Fn(usize, Run) -> T + Sync),
+    run: &(dyn Fn(&Scenario, Watching<'_>) -> Result<R, RunFailure> + Sync),
+    finish: &(dyn Fn(usize, R) -> T + Sync),
 ) -> Result<Vec<T>, RunFailure> {
     let reached = Mutex::new((vec![Progress { time: 0.0, end_time }; scenarios.len()], observer));
     let tasks: Vec<(usize, &Scenario)> = scenarios.iter().enumerate().collect();
-    let run = |(at, scenario): &(usize, &Scenario)| {
-        let run = scenario.run_watched(&mut |now| {
+    let work = |(at, scenario): &(usize, &Scenario)| {
+        let done = run(scenario, &mut |now| {
             // Another run has panicked: cancel.
             let Ok(mut reached) = reached.lock() else { return ControlFlow::Break(()) };
             let (all, observer) = &mut *reached;
@@ -325,9 +330,9 @@ pub(crate) fn run_together<T: Send>(
             let sum = |of: fn(&Progress) -> f64| all.iter().map(of).sum();
             observer(Progress { time: sum(|one| one.time), end_time: sum(|one| one.end_time) })
         })?;
-        Ok(finish(*at, run))
+        Ok(finish(*at, done))
     };
-    pool::map(&tasks, run, &|_| ()).into_iter().collect()
+    pool::map(&tasks, work, &|_| ()).into_iter().collect()
 }
 
 /// Returns the severity of a plane as two numbers to compare in order: the share of variants that

@@ -1,12 +1,15 @@
 //! Simulated collapses, reduced to the quantities that an observer of a test records.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack::ensemble::{CaseResult, Ensemble, Prepared, Width};
+use barrelstack::ground::{Ground, GroundError};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::{BodyOverride, Scenario, Scene, StackBody};
 use barrelstack_motion::Random;
+use barrelstack_space::variants::run_each;
 
 use super::observed::{Mode, Time};
 
@@ -55,19 +58,65 @@ impl Course {
     }
 }
 
+/// Ground motion of a test.
+#[derive(Clone)]
+pub(super) enum Shaking {
+    /// Motion in a plane.
+    Planar(Arc<Ground>),
+    /// Motion in space.
+    Spatial(Arc<barrelstack_space::Ground>),
+}
+
+impl Shaking {
+    /// Returns the motion of a scenario.
+    pub(super) fn of(scenario: &Scenario) -> Result<Self, GroundError> {
+        Ok(if scenario.is_spatial() {
+            Self::Spatial(Arc::new(barrelstack_space::Ground::of(scenario)?))
+        } else {
+            Self::Planar(Arc::new(scenario.ground()?))
+        })
+    }
+}
+
+/// A stack that is ready to be shaken.
+pub(super) struct Built {
+    pub(super) scenario: Arc<Scenario>,
+    pub(super) ground: Shaking,
+}
+
 /// Simulates all cases on all cores and returns their courses in order; `None` for a case that cannot be simulated.
 ///
 /// `done` is called repeatedly with the number of completed cases and may cancel the remaining ones; the
 /// function then returns `None`.
 pub(super) fn simulate(
-    cases: Vec<Prepared>,
+    cases: Vec<Built>,
     lanes: Option<Width>,
     done: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Option<Vec<Option<Course>>> {
+    let (mut planar, mut spatial) = (Vec::new(), Vec::new());
+    let mut in_space = Vec::new();
+    for Built { scenario, ground } in cases {
+        in_space.push(matches!(ground, Shaking::Spatial(_)));
+        match ground {
+            Shaking::Planar(ground) => planar.push(Prepared { scenario, ground }),
+            Shaking::Spatial(ground) => spatial.push((scenario, ground)),
+        }
+    }
     let finished = AtomicUsize::new(0);
     let observer = |_: &CaseResult| done(finished.fetch_add(1, Ordering::Relaxed) + 1);
     let stop = || done(finished.load(Ordering::Relaxed)).is_break();
-    let results = Ensemble { cases, lanes }.run_until(&observer, &stop)?;
+    let mut planar = Ensemble { cases: planar, lanes }.run_until(&observer, &stop)?.into_iter();
+    let before = finished.into_inner();
+    let shaken = |(scenario, ground): &(Arc<Scenario>, Arc<barrelstack_space::Ground>)| {
+        ((**scenario).clone(), (**ground).clone())
+    };
+    let mut spatial = run_each(&spatial, &shaken, &|now| done(before + now)).into_iter();
+    // Back into the order of the cases.
+    let results: Option<Vec<CaseResult>> = in_space
+        .into_iter()
+        .map(|space| if space { spatial.next().map(|case| case.result) } else { planar.next() })
+        .collect();
+    let results = results.filter(|all| !all.iter().any(CaseResult::is_interrupted))?;
     Some(results.iter().map(Course::of).collect())
 }
 
@@ -79,19 +128,30 @@ pub(super) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> 
     let mut changed = scenario.clone();
     let Scene::Stack { stack, .. } = &mut changed.scene else { return changed };
     let (levels, columns, racks) = (stack.levels, stack.columns, stack.racks_per_level());
-    for (body, columns) in [(StackBody::Rack, racks), (StackBody::Barrel, columns)] {
-        for level in 1..=levels {
-            for column in 1..=columns {
-                stack.overrides.push(BodyOverride {
-                    body,
-                    level,
-                    column: Some(column),
-                    row: None,
-                    mass: None,
-                    fill: None,
-                    offset_x: scatter * random.normal(),
-                    offset_y: 0.0,
-                });
+    let rows = |along: u32| match stack.space {
+        Some(_) => (1..=along).map(Some).collect(),
+        None => vec![None],
+    };
+    let along = stack.space.map_or(1, |space| space.columns_along);
+    let bodies = [
+        (StackBody::Rack, racks, rows(stack.racks_along())),
+        (StackBody::Barrel, columns, rows(along)),
+    ];
+    for (body, columns, rows) in bodies {
+        for row in rows {
+            for level in 1..=levels {
+                for column in 1..=columns {
+                    stack.overrides.push(BodyOverride {
+                        body,
+                        level,
+                        column: Some(column),
+                        row,
+                        mass: None,
+                        fill: None,
+                        offset_x: scatter * random.normal(),
+                        offset_y: row.map_or(0.0, |_| scatter * random.normal()),
+                    });
+                }
             }
         }
     }

@@ -4,15 +4,14 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use barrelstack::ground::Ground;
 use barrelstack::scenario::Scenario;
 use barrelstack_motion::Random;
 
-use super::ensemble::{Course, placed, simulate};
+use super::ensemble::{Built, Course, Shaking, placed, simulate};
 use super::likelihood::Errors;
 use super::observed::{Mode, Observed, Time};
 use super::sampler::{Draw, Posterior};
-use super::{Parameter, Prepared, Tunable};
+use super::{Parameter, Tunable};
 
 const ALL: [Parameter; 3] =
     [Parameter::Stiffness, Parameter::Damping, Parameter::FrictionBarrelRack];
@@ -54,8 +53,8 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             scenario
         })
         .collect();
-    let grounds: Vec<Arc<Ground>> =
-        scenarios.iter().map(|scenario| Arc::new(scenario.ground().unwrap())).collect();
+    let grounds: Vec<Shaking> =
+        scenarios.iter().map(|scenario| Shaking::of(scenario).unwrap()).collect();
     let tunable = Tunable::new(&scenarios[0], &ALL).unwrap();
     let mut random = Random::new(2008);
     let draws: Vec<Draw> = (0..TABLE + 100)
@@ -64,14 +63,14 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             seed: random.bits(),
         })
         .collect();
-    let batch: Vec<Prepared> = draws
+    let batch: Vec<Built> = draws
         .iter()
         .flat_map(|draw| {
             let mut random = Random::new(draw.seed);
             let point: Vec<f64> = draw.point.iter().map(|x| reach * x).collect();
-            let built = |(scenario, ground): (&Scenario, &Arc<Ground>)| Prepared {
+            let built = |(scenario, ground): (&Scenario, &Shaking)| Built {
                 scenario: Arc::new(placed(&tunable.at(scenario, &point), 1e-3, &mut random)),
-                ground: Arc::clone(ground),
+                ground: ground.clone(),
             };
             scenarios.iter().zip(&grounds).map(built).collect::<Vec<_>>()
         })

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
-use barrelstack::assemble::AssembleError;
 use barrelstack::compare::{self, Comparison, Difference, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
-use barrelstack::variants::{Answer, RunChoice};
+use barrelstack::variants::RunChoice;
 use barrelstack_report::listed;
+use barrelstack_space::AnyAnswer;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{Interrupt, Stopped};
@@ -76,12 +76,6 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         scenarios.push((name.clone(), scenario));
     }
     compare::check(&scenarios)?;
-    for ((_, scenario), (_, one)) in scenarios.iter().zip(&requested) {
-        // Fail early if a run cannot be shown.
-        if scenario.is_spatial() {
-            return Err(super::placed(AssembleError::Space.into(), scenario, one));
-        }
-    }
     if args.label.len() > scenarios.len() {
         bail!("--label: there are {} names for {} runs", args.label.len(), scenarios.len());
     }
@@ -123,7 +117,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     crate::interrupt::writes_to(folder.path());
     // The verdict is printed even if the files cannot be written.
     let written = folder.write_page(&document);
-    let differing = differences(sides.iter().map(|side| &*side.run.stated));
+    let differing = differences(sides.iter().map(|side| &side.stated));
     if args.json {
         printer::document(&Comparison::of(&sides, unfinished))?;
     } else {
@@ -133,12 +127,12 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         printer::lines(lines)?;
     }
     for side in &sides {
-        for text in &side.summary.warnings {
+        for text in side.summary.warnings() {
             printer::warning(&format!("{}: {text}", side.name));
         }
     }
     written?;
-    let broken = sides.iter().any(|side| matches!(side.run.outcome, Outcome::Invalid { .. }));
+    let broken = sides.iter().any(|side| matches!(side.outcome, Outcome::Invalid { .. }));
     Ok(super::status(broken))
 }
 
@@ -147,12 +141,12 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
 fn alone(
     args: &CompareArgs,
     folder: &Folder,
-    answers: Vec<(String, Answer)>,
+    answers: Vec<(String, AnyAnswer)>,
     unfinished: Vec<String>,
 ) -> anyhow::Result<ExitCode> {
     let Some((name, answer)) = answers.first() else { return Err(Stopped.into()) };
     crate::interrupt::writes_to(folder.path());
-    let written = folder.write(answer, None);
+    let written = answer.files().and_then(|files| folder.write_files(&files));
     printer::note(&format!(
         "stopped before the end of {}: nothing is compared",
         listed(unfinished.iter().map(|name| format!("\"{name}\"")))

@@ -4,7 +4,6 @@ use std::process::ExitCode;
 
 use barrelstack::Scenario;
 use barrelstack::export::Folder;
-use barrelstack::variants::Shown;
 
 use crate::args::{DemoArgs, ScenarioArgs};
 use crate::comparison::Command;
@@ -28,10 +27,9 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     }
     crate::interrupt::finished();
     // The verdict is printed even if the files cannot be written.
-    let written = folder.write(&answer, None);
-    let Shown { run, summary, .. } = &answer.decides;
-    printer::lines(barrelstack::report::sentences(run, summary))?;
-    printer::lines(printer::side_by_side(summary))?;
+    let written = answer.files().and_then(|files| folder.write_files(&files));
+    printer::lines(answer.sentences())?;
+    printer::lines(printer::side_by_side(&answer.summary()))?;
     printer::warnings(&answer);
     written?;
     let report = folder.report();

@@ -15,7 +15,6 @@ mod scenarios;
 pub(crate) mod schema;
 pub(crate) mod score;
 pub(crate) mod shell;
-mod space;
 pub(crate) mod study;
 
 use std::io::Read as _;

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack::render::{Part, RenderFolder, Rendering};
-use barrelstack::variants::Shown;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::figures::{FigureArgs, PaperName};
@@ -17,14 +16,14 @@ use crate::typed::typed;
 #[derive(Debug, clap::Args)]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
-    pub(super) scenario: ScenarioArgs,
+    scenario: ScenarioArgs,
     #[command(flatten)]
     variants: VariantArgs,
     /// Folder to write to: figures/ with report.md beside it, report.pdf, animation/, frames/,
     /// paraview/.
     #[arg(long, value_name = "DIR")]
-    pub(super) out: PathBuf,
-    /// Part to write; may be repeated. For runs in space, only `paraview` is available.
+    out: PathBuf,
+    /// Part to write; may be repeated.
     #[arg(long, value_enum, value_name = "PART")]
     only: Vec<PartName>,
     #[command(flatten)]
@@ -34,7 +33,7 @@ pub(crate) struct RenderArgs {
     paper: PaperName,
     /// Pictures and ParaView time steps per second of the run; animations show at most 50.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
-    pub(super) rate: f64,
+    rate: f64,
     /// Start (s) of the interval to render.
     #[arg(long, value_name = "SECONDS")]
     from: Option<f64>,
@@ -46,10 +45,10 @@ pub(crate) struct RenderArgs {
     size: u32,
     /// Replace the files that an earlier rendering wrote for these parts.
     #[arg(long)]
-    pub(super) overwrite: bool,
+    overwrite: bool,
     /// Show no progress.
     #[arg(long, short)]
-    pub(super) quiet: bool,
+    quiet: bool,
 }
 
 typed! {
@@ -85,13 +84,7 @@ impl RenderArgs {
         Part::ALL.into_iter().filter(requested).collect()
     }
 
-    /// Returns the first requested part that runs in space do not have.
-    pub(super) fn lacking_in_space(&self) -> Option<Part> {
-        let requested = self.only.iter().map(|name| Part::from(*name));
-        requested.into_iter().find(|part| *part != Part::Paraview)
-    }
-
-    pub(super) fn between(&self) -> anyhow::Result<Option<[f64; 2]>> {
+    fn between(&self) -> anyhow::Result<Option<[f64; 2]>> {
         let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY));
         if !(from >= 0.0 && to > from) {
             bail!(
@@ -106,9 +99,6 @@ impl RenderArgs {
 pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
     let selection = super::run::selected(&mut scenario, args.variants)?;
-    if scenario.is_spatial() {
-        return super::space::render(args, &scenario, selection);
-    }
     let how = Rendering {
         formats: args.figures.formats(),
         dpi: args.figures.dpi,
@@ -125,10 +115,9 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     crate::interrupt::writes_to(&args.out);
     let answer = super::run::answered(&scenario, selection, !args.quiet)
         .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
-    let Shown { run, summary, .. } = &answer.decides;
-    how.check(run).map_err(anyhow::Error::msg)?;
+    how.check(answer.end_time()).map_err(anyhow::Error::msg)?;
     keeps(format!("the finished parts are in {}", args.out.display()));
-    let written = folder.write(run, summary, &how)?;
+    let written = answer.render(&folder, &how)?;
     printer::lines(written.iter().map(|part| match part.files {
         1 => part.place.display().to_string(),
         files => format!("{}: {files} files", part.place.display()),

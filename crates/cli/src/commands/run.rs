@@ -5,14 +5,14 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{anyhow, bail};
+use barrelstack::compare::Comparable as _;
 use barrelstack::export::{ExportError, Folder};
-use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
-use barrelstack::variants::{self, Answer, RunChoice, Shown};
-use barrelstack::verify::{Verification, verify};
-use barrelstack::{Run, RunFailure, Scenario, Summary};
+use barrelstack::variants::RunChoice;
+use barrelstack::{RunFailure, Scenario};
 use barrelstack_input::system;
 use barrelstack_report::Characters;
+use barrelstack_space::AnyAnswer;
 
 use crate::args::{RunArgs, VariantArgs};
 use crate::comparison::Command;
@@ -28,8 +28,11 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let selection = selected(&mut scenario, args.variants)?;
     // The folder is checked before the computation starts.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
-    if scenario.is_spatial() {
-        return super::space::run(args, &scenario, selection, folder.as_ref());
+    if scenario.is_spatial() && args.with_engine.is_some() {
+        bail!(
+            "--with-engine: the page that contains the program runs stacks in planes, but not in space: leave it out{}",
+            if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
+        );
     }
     let engine = args.with_engine.as_deref().map(engine).transpose()?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);
@@ -38,28 +41,29 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         let command = Command::of(&args.scenario, args.variants);
         remedied(&mut answer, &command, !args.quiet).map_err(placed)?;
     }
-    let Shown { run, summary, .. } = &answer.decides;
-    let verification =
-        args.verify.then(|| repeated(run, !args.quiet)).transpose().map_err(placed)?;
+    if args.verify {
+        let progress = Progress::new(!args.quiet);
+        answer.verify(&mut |reached| progress.at(reached)).map_err(placed)?;
+    }
     crate::interrupt::finished();
     // The verdict is printed even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        folder.write(&answer, verification.as_ref())?;
+        folder.write_files(&answer.files()?)?;
         if let Some(engine) = &engine {
-            folder.write_with_engine(&answer, verification.as_ref(), engine)?;
+            folder.write_with_engine(&answer.document(), answer.scenario(), engine)?;
         }
         if args.pdf {
-            folder.write_pdf(&answer, verification.as_ref(), args.paper.into())?;
+            folder.write_pdf(&answer.document(), args.paper.into())?;
         }
         Ok(())
     });
     if args.json {
-        printer::document(&Summary { verification, ..summary.clone() })?;
+        printer::document(&answer.summary())?;
     } else {
         let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
         printer::answer(&answer, &args.scenario.set, characters)?;
-        if let Some(verification) = &verification {
+        if let Some(verification) = answer.verification() {
             printer::verification(verification)?;
         }
         if let (Some(folder), Ok(())) = (&folder, &written) {
@@ -119,39 +123,31 @@ pub(super) fn answered(
     scenario: &Scenario,
     selection: RunChoice,
     show: bool,
-) -> Result<Answer, RunFailure> {
+) -> Result<AnyAnswer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let mut answer =
-        variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
-    answer.decides.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
+    let mut answer = AnyAnswer::of(scenario, selection, &mut |reached| progress.advance(reached))?;
+    answer.set_wall_seconds(start.elapsed().as_secs_f64());
     Ok(answer)
 }
 
 /// Searches for a remedy with a progress bar; Ctrl-C stops the search.
 pub(super) fn remedied(
-    answer: &mut Answer,
+    answer: &mut AnyAnswer,
     command: &Command<'_>,
     show: bool,
 ) -> Result<(), RunFailure> {
     let progress = Progress::new(show);
     let mut found =
-        variants::remedy(answer, &|done| progress.searched(done as u64, "runs of changed stacks"))?;
+        answer.remedy(&|done| progress.searched(done as u64, "runs of changed stacks"))?;
     if let Some(found) = &mut found {
         found.comparison = command.against(found);
     }
-    answer.decides.summary.remedy = found;
+    answer.set_remedy(found);
     Ok(())
 }
 
-/// Repeats a run with a progress bar; Ctrl-C stops the repeats.
-fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
-    let progress = Progress::new(show);
-    verify(run, &mut |reached| progress.at(reached))
-}
-
 /// Returns the exit status of a run, as listed in the help.
-pub(super) fn status(answer: &Answer) -> ExitCode {
-    let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
-    super::status(runs.any(|run| matches!(run.outcome, Outcome::Invalid { .. })))
+pub(super) fn status(answer: &AnyAnswer) -> ExitCode {
+    super::status(answer.is_invalid())
 }

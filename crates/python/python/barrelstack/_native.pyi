@@ -86,7 +86,12 @@ class Scenario:
     @property
     def is_spatial(self) -> bool: ...
     def run_in_space(
-        self, variants: int | None, variant: int | None, remedy: bool, progress: _Report | None
+        self,
+        variants: int | None,
+        variant: int | None,
+        remedy: bool,
+        repeats: bool,
+        progress: _Report | None,
     ) -> SpatialRun: ...
     def run_before(self, every: int, look: Callable[[Glance], object]) -> Run: ...
 
@@ -268,6 +273,19 @@ class SpatialRun:
     def twists(self) -> _Array: ...
     def variants(self) -> Table | None: ...
     def html(self) -> str: ...
+    def pdf(self, paper: str) -> bytes: ...
+    def render(
+        self,
+        folder: str | os.PathLike[str],
+        parts: list[str],
+        formats: list[str],
+        dpi: float,
+        paper: str,
+        rate: float,
+        between: list[float] | None,
+        largest: int,
+        overwrite: bool,
+    ) -> list[tuple[os.PathLike[str], int]]: ...
     def write(self, folder: str | os.PathLike[str], stated: str, overwrite: bool) -> None: ...
 
 @final

@@ -6,7 +6,7 @@ import difflib
 import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +17,7 @@ from . import _native
 from ._errors import BarrelstackWarning, outside
 from ._kept import Kept
 from ._page import frame
+from ._pictured import Pictured
 from ._store import store
 from ._table import Column, Columns, Table
 
@@ -242,7 +243,7 @@ class Frames(NamedTuple):
     stresses: NDArray[np.float64]
 
 
-class Run:
+class Run(Pictured):
     """Results of a scenario in one plane, with all recordings of the shown run.
 
     Made by :meth:`Scenario.run`.
@@ -366,28 +367,6 @@ class Run:
         other = self._native.other()
         return None if other is None else Run(other)
 
-    def html(self) -> str:
-        """Returns the report as one page that needs no network.
-
-        Returns
-        -------
-        str
-        """
-        return self._native.html()
-
-    def report(self, path: str | os.PathLike[str], *, paper: str = "a4") -> None:
-        """Writes the report.
-
-        Parameters
-        ----------
-        path
-            A file that ends with ``.html`` or ``.pdf``.
-        paper
-            ``"a4"`` or ``"letter"``.
-        """
-        pdf = os.fspath(path).lower().endswith(".pdf")
-        store(path, self._native.pdf(paper) if pdf else self.html().encode())
-
     def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Writes the files of ``barrelstack run --out``: report, summary, histories, forces, envelopes, frames.
 
@@ -399,60 +378,6 @@ class Run:
             Whether to write into a folder that is not empty.
         """
         self._native.write(os.fspath(folder), overwrite)
-
-    def render(
-        self,
-        folder: str | os.PathLike[str],
-        *parts: str,
-        formats: Iterable[str] = (),
-        dpi: float = 200.0,
-        paper: str = "a4",
-        rate: float = 20.0,
-        between: tuple[float, float] | None = None,
-        size: int = 480,
-        overwrite: bool = False,
-    ) -> dict[str, int]:
-        """Writes figures, animations and series of the shown run, like ``barrelstack render``.
-
-        Parameters
-        ----------
-        folder
-            The output folder.
-        *parts
-            Among ``"figures"`` (SVG and the formats, each with its numbers), ``"report"`` (PDF), ``"animation"`` (GIF
-            and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them by default.
-        formats
-            Formats of figures besides SVG: ``"png"``, ``"pdf"``; both by default.
-        dpi
-            Resolution (dots per inch) of figures in PNG, 20 to 1200.
-        paper
-            ``"a4"`` or ``"letter"``.
-        rate
-            Pictures per second of the run (1/s); animations show at most 50.
-        between
-            Time interval of the film (s); all of the run by default.
-        size
-            Longer side of animations (pixels), 64 to 4096.
-        overwrite
-            Whether to remove the files of an earlier rendering of these parts.
-
-        Returns
-        -------
-        dict
-            The folder or file of each part, and its number of files.
-
-        Raises
-        ------
-        ValueError
-            When there is no such part or format, or a number is out of range.
-        Error
-            When the folder contains an earlier rendering, or cannot be written.
-        """
-        window = None if between is None else [float(time) for time in between]
-        written = self._native.render(
-            os.fspath(folder), list(parts), list(formats), dpi, paper, rate, window, size, overwrite
-        )
-        return {os.fspath(place): files for place, files in written}
 
     def plot(self, *names: str, ax: Axes | None = None) -> Axes:
         """Plots histories over time.

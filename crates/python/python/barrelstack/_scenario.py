@@ -421,6 +421,7 @@ class Scenario:
         *,
         variant: int | None = None,
         remedy: bool = False,
+        verify: bool = False,
     ) -> SpatialRun:
         """Runs a scenario in space (``stack.view = "spatial"``) under all three components, with its variants.
 
@@ -436,6 +437,8 @@ class Scenario:
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
             Whether to search for a remedy, as the command does.
+        verify
+            Whether to repeat the run with half the step and with a perturbation of a nanometer.
 
         Returns
         -------
@@ -469,10 +472,10 @@ class Scenario:
         if record is not None:
             record = record if isinstance(record, Record) else Record.read(record)
             return self.with_record(record).run_in_space(
-                None, variants, progress, variant=variant, remedy=remedy
+                None, variants, progress, variant=variant, remedy=remedy, verify=verify
             )
         with reporting(progress, f"run of {self.title!r} in space") as report:
-            run = SpatialRun(self._shaken.run_in_space(variants, variant, remedy, report), self.to_toml())
+            run = SpatialRun(self._shaken.run_in_space(variants, variant, remedy, verify, report), self.to_toml())
         warn(run.warnings)
         return run
 

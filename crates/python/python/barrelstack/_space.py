@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._kept import Kept
 from ._page import frame
+from ._pictured import Pictured
 from ._table import Table
 
 __all__ = ["OutcomeInSpace", "Poses", "SpatialRun"]
@@ -67,7 +68,7 @@ class Poses(NamedTuple):
     twists: NDArray[np.float64]
 
 
-class SpatialRun:
+class SpatialRun(Pictured):
     """Results of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
 
     Made by :meth:`Scenario.run_in_space`.
@@ -132,15 +133,6 @@ class SpatialRun:
     def scenario(self) -> str:
         """The scenario of the shown run, including all defaults (TOML)."""
         return self._native.toml
-
-    def html(self) -> str:
-        """Returns the report as one page that needs no network, with three views of the motion.
-
-        Returns
-        -------
-        str
-        """
-        return self._native.html()
 
     def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Writes the files of ``barrelstack run --out``: report, summary, frames, variants.

@@ -25,11 +25,26 @@ pub struct SolidBody {
     pub triangles: Vec<[usize; 3]>,
 }
 
+/// A strap or tie between two bodies, drawn as a straight line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidTie {
+    /// Name.
+    pub name: String,
+    /// Indices of the bodies.
+    pub bodies: [usize; 2],
+    /// Ends (m), each in the frame of its body.
+    pub points: [[f64; 3]; 2],
+    /// Time (s) from which the tie is broken and not drawn.
+    pub torn_at: Option<f64>,
+}
+
 /// Bodies in space and their motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solids {
     /// The bodies.
     pub bodies: Vec<SolidBody>,
+    /// The straps and ties, numbered after the bodies.
+    pub ties: Vec<SolidTie>,
     /// Times of the frames (s).
     pub times: Vec<f64>,
     /// For each time and body, position (m) and unit quaternion `w`, `x`, `y`, `z`.
@@ -45,9 +60,9 @@ pub struct Solids {
 /// the names of the bodies by number.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m.
-/// Surfaces are triangles. Cells carry `body` (the index of the body), `role` (as in
-/// [`paraview`](super::paraview)) and `level`; points carry `displacement` (m) from the first frame
-/// and `velocity` (m/s).
+/// Surfaces are triangles, straps and ties are lines. Cells carry `body` (the index of the body or
+/// tie), `role` (as in [`paraview`](super::paraview)) and `level` (0 for a tie); points carry
+/// `displacement` (m) from the first frame and `velocity` (m/s).
 ///
 /// # Errors
 /// The first error of `put`.
@@ -70,43 +85,64 @@ pub fn paraview_of_solids<E>(
         // Writing to a String cannot fail, here and below.
         let _ = writeln!(names, "{at},{name},{},{}", body.role.class(), body.level);
     }
+    for (at, tie) in solids.ties.iter().enumerate() {
+        let (at, name) = (solids.bodies.len() + at, escape::csv(&tie.name));
+        let _ = writeln!(names, "{at},{name},{},0", Role::Device.class());
+    }
     put(Attachment { name: "bodies.csv".into(), bytes: names.into_bytes() })?;
     put(Attachment { name: "stack.pvd".into(), bytes: closed_index(index).into_bytes() })
 }
 
 /// Writes the bodies at a frame.
 fn file(solids: &Solids, frame: usize) -> String {
-    let Solids { bodies, poses, twists, .. } = solids;
+    let Solids { bodies, ties, poses, twists, .. } = solids;
     let (mut points, mut displacements, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut corners, mut of_body) = (Vec::new(), Vec::new());
-    for (at, body) in bodies.iter().enumerate() {
+    let (mut ends, mut corners, mut of_body) = (Vec::new(), Vec::new(), Vec::new());
+    // A body whose numbers are not finite is left out, with its ties.
+    let lost = |at: usize| {
+        poses[frame][at].iter().chain(&twists[frame][at]).any(|value| !value.is_finite())
+    };
+    let mut add = |at: usize, point: [f64; 3]| {
         let (now, start, twist) = (poses[frame][at], poses[0][at], twists[frame][at]);
-        // A body whose numbers are not finite is left out.
-        if now.iter().chain(&twist).any(|value| !value.is_finite()) {
-            continue;
-        }
-        let first = points.len();
-        for point in &body.points {
-            let (here, there) = (placed(now, *point), placed(start, *point));
-            points.push(here);
-            displacements.push([here[0] - there[0], here[1] - there[1], here[2] - there[2]]);
-            velocities.push(velocity(now, twist, here));
-        }
-        corners.extend(body.triangles.iter().flatten().map(|corner| first + corner));
+        let (here, there) = (placed(now, point), placed(start, point));
+        points.push(here);
+        displacements.push([here[0] - there[0], here[1] - there[1], here[2] - there[2]]);
+        velocities.push(velocity(now, twist, here));
+        points.len() - 1
+    };
+    // In VTK the cells of lines precede those of polygons.
+    let whole_tie = |tie: &SolidTie| {
+        tie.torn_at.is_none_or(|torn| solids.times[frame] < torn)
+            && !tie.bodies.iter().any(|at| lost(*at))
+    };
+    for (at, tie) in ties.iter().enumerate().filter(|(_, tie)| whole_tie(tie)) {
+        ends.extend([0, 1].map(|end| add(tie.bodies[end], tie.points[end])));
+        of_body.push(bodies.len() + at);
+    }
+    let lines = of_body.len();
+    for (at, body) in bodies.iter().enumerate().filter(|(at, _)| !lost(*at)) {
+        let placed: Vec<usize> = body.points.iter().map(|point| add(at, *point)).collect();
+        corners.extend(body.triangles.iter().flatten().map(|corner| placed[*corner]));
         of_body.extend(body.triangles.iter().map(|_| at));
     }
-    let mut piece = piece(points.len(), [0, 0, of_body.len()], "displacement");
+    let role = |at: usize| bodies.get(at).map_or(Role::Device, |body| body.role) as usize;
+    let level = |at: usize| bodies.get(at).map_or(0, |body| body.level) as usize;
+    let triangles = of_body.len() - lines;
+    let mut piece = piece(points.len(), [0, lines, triangles], "displacement");
     vectors(&mut piece, "displacement", &displacements);
     vectors(&mut piece, "velocity", &velocities);
     piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
     whole(&mut piece, "body", of_body.iter().copied());
-    whole(&mut piece, "role", of_body.iter().map(|at| bodies[*at].role as usize));
-    whole(&mut piece, "level", of_body.iter().map(|at| bodies[*at].level as usize));
+    whole(&mut piece, "role", of_body.iter().map(|at| role(*at)));
+    whole(&mut piece, "level", of_body.iter().map(|at| level(*at)));
     piece.push_str("</CellData>\n<Points>\n");
     vectors(&mut piece, "points", &points);
-    piece.push_str("</Points>\n<Polys>\n");
+    piece.push_str("</Points>\n<Lines>\n");
+    whole(&mut piece, "connectivity", ends.iter().copied());
+    whole(&mut piece, "offsets", (1..=lines).map(|count| 2 * count));
+    piece.push_str("</Lines>\n<Polys>\n");
     whole(&mut piece, "connectivity", corners.iter().copied());
-    whole(&mut piece, "offsets", (1..=of_body.len()).map(|count| 3 * count));
+    whole(&mut piece, "offsets", (1..=triangles).map(|count| 3 * count));
     piece.push_str("</Polys>\n");
     poly_data(" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"", &piece)
 }

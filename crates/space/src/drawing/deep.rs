@@ -4,12 +4,9 @@ use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
 use barrelstack_report::{Depth, DepthBody, DepthPoses, DepthTie, Point3, Role, Volume};
 
-use super::{Sight, events, moment};
+use super::{PLATE, Sight, events, moment};
 use crate::part::Part;
 use crate::run::Run;
-
-/// Half the assumed thickness (m) of those parts of devices that the plane drawings show as lines.
-const PLATE: f64 = 0.012;
 
 /// Number of steps into which the profile of a barrel is divided.
 const PARTS: u32 = 12;

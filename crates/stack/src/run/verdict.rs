@@ -103,7 +103,7 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
 
 /// Returns the duration (s) of the ground motion that remained when the stated duration ended a run; `None` if nothing
 /// remained.
-pub(super) fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
+pub fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     let left = motion_end - time;
     (ending == Ending::Duration && left > CUT).then_some(left)
 }
