@@ -256,7 +256,7 @@ pub fn heights(
         .flat_map(|view| request.heights().map(move |levels| (levels, view)))
         .collect();
     let margins = margin::margins(request, &stacks, &|| report(all, all))?;
-    let mut found = gather(request, &found)?;
+    let mut found = gather(request, &found, &|| report(all, all))?;
     for height in &mut found.heights {
         let at = stacks.iter().position(|of| *of == (height.levels, height.view));
         height.static_margin = at.and_then(|at| margins[at]);
@@ -266,7 +266,13 @@ pub fn heights(
 }
 
 /// Evaluates the tables of the studies.
-fn gather(request: &Request, found: &[(View, &Study, Collected)]) -> Result<Heights, HeightsError> {
+///
+/// `stop` may cancel.
+fn gather(
+    request: &Request,
+    found: &[(View, &Study, Collected)],
+    stop: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<Heights, HeightsError> {
     let (mut heights, mut recorded, mut samples) = (Vec::new(), Vec::new(), Vec::new());
     let (mut runs, mut left_out, mut fallen_at_rest, mut motions) = (0, 0, 0, 0);
     let mut ends = Vec::new();
@@ -295,11 +301,13 @@ fn gather(request: &Request, found: &[(View, &Study, Collected)]) -> Result<Heig
         }
     }
     let work: Vec<(&Height, Sample)> = heights.iter().zip(samples).collect();
-    let effects =
-        |(height, sample): &(&Height, Sample)| sample.at_levels(&height.by_velocity.stripes, known);
+    let effects = |(height, sample): &(&Height, Sample)| {
+        let going = stop().is_continue();
+        going.then(|| sample.at_levels(&height.by_velocity.stripes, known))
+    };
     let effects = pool::map(&work, effects, &|_| ());
     for (height, effects) in heights.iter_mut().zip(effects) {
-        height.effects = effects;
+        height.effects = effects.ok_or(StudyError::Stopped)?;
     }
     let mut all = Heights {
         request: request.clone(),

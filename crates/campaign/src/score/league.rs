@@ -90,6 +90,10 @@ pub fn league(
     let scenario = &changed(scenario, &protocol.stacked()).map_err(refused)?;
     let (mut ready, mut not_scored) = (Vec::<(Contender, Prepared)>::new(), Vec::new());
     for contender in contenders(scenario) {
+        // Many stacks are settled before the first run.
+        if report(0, 1).is_break() {
+            return Err(StudyError::Stopped.into());
+        }
         let made = changed(scenario, &contender.changes)
             .map_err(|source| ScoreError::State { state: contender.name.clone(), source })
             .and_then(|scenario| prepared(&scenario, protocol));
