@@ -241,9 +241,12 @@ pub(crate) fn root() -> PathBuf {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
     use std::fs;
+    use std::path::PathBuf;
 
     use super::root;
+    use crate::lines::{entries, sources};
 
     /// A file beside `tests/main.rs` that is not declared there as a module would not be run.
     #[test]
@@ -265,5 +268,65 @@ mod tests {
             }
         }
         assert!(programs >= 8, "{programs}");
+    }
+
+    /// Returns the folder of each package of the workspace.
+    #[allow(clippy::unwrap_used, reason = "a test fails by panic")]
+    fn packages() -> BTreeMap<String, PathBuf> {
+        let mut found = BTreeMap::new();
+        for folder in entries(&root().join("crates")).unwrap() {
+            let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            let name = manifest.split('"').nth(1).unwrap();
+            found.insert(name.to_owned(), folder);
+        }
+        found
+    }
+
+    /// A command of a document that names a package, or a test or an example of it, which does not exist, fails for its
+    /// reader.
+    #[test]
+    #[allow(clippy::unwrap_used, reason = "a test fails by panic")]
+    fn commands_of_documents_name_packages_and_targets_that_exist() {
+        let packages = packages();
+        let mut files = Vec::new();
+        for folder in ["", "docs", "validation"] {
+            files.extend(entries(&root().join(folder)).unwrap());
+        }
+        files.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
+        for folder in packages.values() {
+            files.extend(
+                entries(folder).unwrap().into_iter().filter(|path| path.ends_with("README.md")),
+            );
+            for kind in ["src", "tests", "examples", "benches"] {
+                files.extend(sources(&folder.join(kind)).unwrap());
+            }
+        }
+        let mut count = 0;
+        for file in files {
+            let text = fs::read_to_string(&file).unwrap();
+            for line in text.lines().filter(|line| line.contains("cargo ")) {
+                let words: Vec<&str> = line
+                    .split(|c: char| !(c.is_alphanumeric() || matches!(c, '-' | '_')))
+                    .collect();
+                let after = |names: &[&str]| {
+                    words.windows(2).find(|pair| names.contains(&pair[0])).map(|pair| pair[1])
+                };
+                let Some(name) = after(&["-p", "--package"]) else { continue };
+                let folder = packages.get(name);
+                let folder =
+                    folder.unwrap_or_else(|| panic!("{}: no package {name}", file.display()));
+                let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+                for (option, kind) in [("--test", "tests"), ("--example", "examples")] {
+                    let Some(target) = after(&[option]).filter(|target| !target.is_empty()) else {
+                        continue;
+                    };
+                    let stated = manifest.contains(&format!("]]\nname = \"{target}\"\n"));
+                    let there = folder.join(kind).join(format!("{target}.rs")).is_file();
+                    assert!(stated || there, "{}: {name} has no {kind} {target}", file.display());
+                }
+                count += 1;
+            }
+        }
+        assert!(count >= 30, "{count}");
     }
 }
