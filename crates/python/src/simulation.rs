@@ -493,7 +493,7 @@ impl Simulation {
             let mut summary = Summary::of(&run, None);
             summary.variant = self.number;
             let decides = Shown { run, summary, variants: None, stopped: None };
-            Some(Run::of(Answer { scenario: self.scenario.clone(), decides, other: None }, None))
+            Some(Run::of(Answer { scenario: self.scenario.clone(), decides, other: None }))
         })
     }
 
@@ -502,7 +502,7 @@ impl Simulation {
         let Running::Space(one) = lock(&self.running).clone() else { return None };
         py.detach(|| {
             let (run, scenario) = (one.finish(), self.scenario.clone());
-            let mut summary = barrelstack_space::Summary::of(&run, &scenario);
+            let mut summary = barrelstack_space::summary::of(&run, &scenario);
             summary.variant = self.number;
             let answer = barrelstack_space::Answer { scenario, run, summary, cases: Vec::new() };
             Some(SpatialRun::of(answer))

@@ -176,7 +176,13 @@ class MissingFileError(FileError, FileNotFoundError):
 
 
 class MissingPackageError(Error, ImportError):
-    """An optional package that a function needs is not installed."""
+    """An optional package that a function needs is not installed.
+
+    Examples
+    --------
+    >>> issubclass(MissingPackageError, ImportError)
+    True
+    """
 
 
 class NoItemError(Error, KeyError, IndexError):

@@ -20,7 +20,14 @@ __all__ = ["Contacts", "ElementForce", "Energy", "Simulation", "Simulations", "S
 
 
 class State(NamedTuple):
-    """Positions and velocities of all bodies at one time."""
+    """Positions and velocities of all bodies at one time.
+
+    Examples
+    --------
+    >>> state = Scenario.load("sliding-block").simulation().state
+    >>> state.bodies, state.pose("block").shape
+    (['ground', 'block'], (3,))
+    """
 
     #: Time (s); for many simulations the time of each, shape (simulations,).
     time: Any
@@ -70,7 +77,14 @@ class State(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts of the current state, one row each."""
+    """Contacts of the current state, one row each.
+
+    Examples
+    --------
+    >>> contacts = Scenario.load("sliding-block").simulation().contacts
+    >>> contacts.forces.shape == contacts.points.shape == (len(contacts.bodies), 2)
+    True
+    """
 
     #: Names of the two bodies of each contact.
     bodies: list[tuple[str, str]]
@@ -83,7 +97,15 @@ class Contacts(NamedTuple):
 
 
 class ElementForce(NamedTuple):
-    """Force of a force element, such as a strap."""
+    """Force of a force element, such as a strap.
+
+    Examples
+    --------
+    >>> strap = {"levels": 4, "ties": "levels-together", "pretension": "3 kN"}
+    >>> simulation = Scenario.load("candia-8-barrels").set("stack.strap", strap).simulation()
+    >>> any(element.force > 0 for element in simulation.elements.values())
+    True
+    """
 
     #: Force (N), positive in tension.
     force: float
@@ -92,7 +114,15 @@ class ElementForce(NamedTuple):
 
 
 class Energy(NamedTuple):
-    """Energies (J) at the current time, and works (J) from the start to this time."""
+    """Energies (J) at the current time, and works (J) from the start to this time.
+
+    Examples
+    --------
+    >>> simulation = Scenario.load("sliding-block").simulation()
+    >>> steps = simulation.step(1000)
+    >>> simulation.energy.friction > 0
+    True
+    """
 
     kinetic: float
     #: Gravitational potential energy, relative to the start.
@@ -372,6 +402,12 @@ class Simulations:
     """Variants of a scenario that advance together, on all cores.
 
     Made by :meth:`Scenario.simulations`. Each has the same bits as when it advances alone.
+
+    Examples
+    --------
+    >>> simulations = Scenario.load("candia-8-barrels").simulations(4)
+    >>> simulations.step(10).tolist()
+    [10, 10, 10, 10]
     """
 
     def __init__(self, native: _native.Simulations) -> None:
