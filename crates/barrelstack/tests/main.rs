@@ -26,6 +26,7 @@ mod scenario_cases;
 mod scenario_hostile;
 mod scenario_quantity;
 mod scenario_schema;
+mod scenario_unknowns;
 mod scenario_variants;
 mod seats;
 mod settling;

@@ -61,34 +61,3 @@ impl Unknowns {
         self.friction_barrel_rack.unwrap_or(self.friction)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::UNKNOWNS;
-    use crate::Scenario;
-    use crate::scenario::field::Kind;
-
-    #[test]
-    fn every_dispersion_has_its_limits() {
-        let numbers = UNKNOWNS.fields.iter().filter(|field| matches!(field.kind, Kind::Number(_)));
-        let mut checked = 0;
-        for field in numbers {
-            let with = |value: &str| {
-                Scenario::builtin("demo-napa", &[format!("unknowns.{}={value}", field.name)])
-            };
-            assert!(with("0").is_ok() && with("1").is_ok(), "{}", field.name);
-            for beyond in ["-0.1", "1.1", "nan"] {
-                let sentence = with(beyond).unwrap_err().sentence();
-                let name = format!("`unknowns.{}`", field.name);
-                assert!(sentence.contains(&name) && sentence.contains('1'), "{sentence}");
-            }
-            checked += 1;
-        }
-        let rails =
-            |value: &str| Scenario::builtin("demo-napa", &[format!("unknowns.rails={value}")]);
-        assert!(rails("5 mm").is_ok());
-        let sentence = rails("3 cm").unwrap_err().sentence();
-        assert!(sentence.contains("`unknowns.rails`"), "{sentence}");
-        assert_eq!(checked, UNKNOWNS.fields.len() - 2);
-    }
-}
