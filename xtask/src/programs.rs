@@ -12,7 +12,7 @@ use crate::steps::cargo;
 
 /// Folders of the crates whose READMEs contain a program, with the largest CPU time (s) of its build.
 ///
-/// Measured with two cores: see docs/install.md.
+/// docs/install.md states what was measured.
 const PROGRAMS: [(&str, f64); 3] = [("dynamics", 60.0), ("motion", 60.0), ("stack", 60.0)];
 
 /// Builds the program of each README from nothing in the dev profile, as a new user does, prints the CPU time and runs it.
