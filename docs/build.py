@@ -68,8 +68,7 @@ def signature(thing: Any) -> str:
 def members(thing: Any) -> list[str]:
     """Returns the documentation of the methods and properties of a class, in their order."""
     found = []
-    inherited = [base for base in thing.__bases__ if base.__name__ not in barrelstack.__all__]
-    for name, value in [item for owner in (thing, *inherited) for item in vars(owner).items()]:
+    for name, value in vars(thing).items():
         if name.startswith("_"):
             continue
         raw = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
