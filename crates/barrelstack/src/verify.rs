@@ -194,10 +194,9 @@ pub fn verify<R: Repeatable>(
     }
     let mut repeats = Vec::new();
     // A canceled repeat becomes `None`.
-    let own = (base.outcome(), base.paths());
-    let repeat = |at: usize, run: R| {
-        (!run.is_interrupted()).then(|| Repeat::of((base, &own), &run, &changes[at]))
-    };
+    let own = Base { run: base, outcome: base.outcome(), paths: base.paths() };
+    let repeat =
+        |at: usize, run: R| (!run.is_interrupted()).then(|| Repeat::of(&own, &run, &changes[at]));
     let done = run_together(&scenarios, base.simulation().end_time, progress, &R::again, &repeat)?;
     for (repeat, change) in done.into_iter().zip(&changes) {
         if let Some(repeat) = repeat {
@@ -326,21 +325,24 @@ fn noise(state: &mut u64) -> f64 {
     (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
+/// The run with which repeats are compared, its outcome, and the paths of its bodies (m).
+struct Base<'a, R> {
+    run: &'a R,
+    outcome: OutcomeSummary,
+    paths: Vec<Vec<[f64; 3]>>,
+}
+
 impl Repeat {
-    /// Compares a repeat with the base run, which is given with its outcome and its paths.
-    fn of<R: Repeatable>(
-        (base, (own, paths)): (&R, &(OutcomeSummary, Vec<Vec<[f64; 3]>>)),
-        other: &R,
-        change: &str,
-    ) -> Self {
-        let outcome = other.outcome();
+    /// Compares a repeat with the base run.
+    fn of<R: Repeatable>(base: &Base<'_, R>, other: &R, change: &str) -> Self {
+        let (outcome, own) = (other.outcome(), &base.outcome);
         Self {
             change: change.to_owned(),
             // Kind, mode and first body.
             same_outcome: (outcome.kind, outcome.mode, &outcome.first)
                 == (own.kind, own.mode, &own.first),
             outcome,
-            apart_at: apart_at((base, paths), other),
+            apart_at: apart_at((base.run, &base.paths), other),
             fall_difference: None,
             falls: other.falls(),
         }
