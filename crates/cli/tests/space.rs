@@ -233,20 +233,3 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
         assert_eq!(output.status.code(), Some(0), "{command:?}: {}", stderr(&output));
     }
 }
-
-#[test]
-fn what_works_in_planes_alone_refuses_space_at_its_field_before_any_work() {
-    let folder = tempfile::tempdir().unwrap();
-    let (file, out) = (folder.path().join("mine.toml"), folder.path().join("out"));
-    fs::write(&file, "schema = 1\nextends = \"demo-napa\"\n[stack]\nview = \"spatial\"\n").unwrap();
-    let (file, out) = (file.display().to_string(), out.display().to_string());
-    for words in [&["protect", &file][..], &["score", &file]] {
-        let output = barrelstack([words, &["-q", "--out", &out]].concat());
-        assert_eq!(output.status.code(), Some(2), "{words:?}: {}", stderr(&output));
-        let message = stderr(&output);
-        assert!(
-            message.contains("mine.toml:4:8: this analysis works in a plane"),
-            "{words:?}: {message}"
-        );
-    }
-}

@@ -80,14 +80,12 @@ mod tests {
         let classes: Vec<&str> = drawing
             .items
             .iter()
-            .map(|item| match item {
-                Item::Circle { class, center, radius } => {
-                    assert!((0..2).all(|axis| center[axis] - radius >= 0.0));
-                    assert!(center[0] + radius <= drawing.width);
-                    assert!(center[1] + radius <= drawing.height);
-                    class.as_str()
-                }
-                other => panic!("{other:?}"),
+            .map(|item| {
+                let Item::Circle { class, center, radius } = item else { panic!("{item:?}") };
+                assert!((0..2).all(|axis| center[axis] - radius >= 0.0));
+                assert!(center[0] + radius <= drawing.width);
+                assert!(center[1] + radius <= drawing.height);
+                class.as_str()
             })
             .collect();
         assert_eq!(classes.len(), 130);

@@ -29,7 +29,7 @@
 //! assert!(html(&document).contains("<td class=\"number\">2.0</td>"));
 //! ```
 //!
-//! Without the default feature `documents` the crate contains only [`column`], [`described`] and the texts of numbers.
+//! Without the default feature `documents` the crate contains only [`column!`], [`described!`] and the texts of numbers.
 //!
 //! # Conventions
 //!

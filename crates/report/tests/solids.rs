@@ -18,9 +18,9 @@ fn tetrahedron(name: &str, level: u32) -> SolidBody {
 
 /// Returns the bytes of an array: one block, whose sizes are in its header.
 fn bytes(tree: &roxmltree::Document<'_>, name: &str, kind: &str) -> Vec<u8> {
-    let node = tree.descendants().filter(|node| node.attribute("Name") == Some(name));
+    let mut nodes = tree.descendants().filter(|node| node.attribute("Name") == Some(name));
     // The cells of triangles come after those of lines.
-    let node = node.last().unwrap();
+    let node = nodes.next_back().unwrap();
     assert_eq!(node.attribute("type"), Some(kind), "{name}");
     assert_eq!(node.attribute("format"), Some("binary"));
     // Sixteen bytes take 24 letters.

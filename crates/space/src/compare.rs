@@ -62,7 +62,10 @@ impl Comparable for Answer {
             cut: cut(run.ending, run.ground.end(), run.end_time),
             collapse_time: match run.outcome {
                 Outcome::Collapse { time, .. } => Some(time),
-                _ => None,
+                Outcome::Stable
+                | Outcome::NotJudged
+                | Outcome::Interrupted
+                | Outcome::Invalid { .. } => None,
             },
             pane: Pane {
                 mark: String::new(),
