@@ -127,21 +127,23 @@ impl Drive<Planar> for Swinging {
     }
 }
 
+/// What is done before each step.
+type Touch<'a> = &'a dyn Fn(&mut Stepper<Planar>, &mut State<Planar>, &mut Scratch<Planar>);
+
 #[test]
 fn a_force_that_is_taken_back_or_set_again_leaves_the_bits() {
     let model = on_a_spring(3e3);
     for method in every_method(1e-9) {
         let run = Simulation { method, time_step: STEP, end_time: 0.5 };
-        let ran =
-            |touch: &dyn Fn(&mut Stepper<Planar>, &mut State<Planar>, &mut Scratch<Planar>)| {
-                let (mut state, mut scratch) = (State::initial(&model), Scratch::new(&model));
-                let mut stepper = Stepper::start(&model, &Swinging, &mut state, &mut scratch, &run);
-                while !stepper.is_at_end(&state) {
-                    touch(&mut stepper, &mut state, &mut scratch);
-                    stepper.step(&model, &Swinging, &mut state, &mut scratch).unwrap();
-                }
-                bits(&state)
-            };
+        let ran = |touch: Touch<'_>| {
+            let (mut state, mut scratch) = (State::initial(&model), Scratch::new(&model));
+            let mut stepper = Stepper::start(&model, &Swinging, &mut state, &mut scratch, &run);
+            while !stepper.is_at_end(&state) {
+                touch(&mut stepper, &mut state, &mut scratch);
+                stepper.step(&model, &Swinging, &mut state, &mut scratch).unwrap();
+            }
+            bits(&state)
+        };
         let force = push(Vec2::new(30.0, 0.0), Vec2::new(0.0, 0.1), 0.0);
         let nothing = Applied { force: Vec2::default(), ..force };
         let untouched = ran(&|_, _, _| {});
