@@ -216,6 +216,8 @@ CTRL_C = """
 import os, signal, threading, time
 import barrelstack
 
+# Programs that are started in the background ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 simulation = barrelstack.Scenario.load("candia-8-barrels").set("run.step", "1 us").{start}
 threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 begun = time.process_time()

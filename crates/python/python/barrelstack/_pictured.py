@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from typing import Generic, TypeVar
 
 from . import _native
 from ._store import store
@@ -11,10 +12,13 @@ from ._store import store
 __all__ = ["Pictured"]
 
 
-class Pictured:
+Native = TypeVar("Native", _native.Run, _native.SpatialRun)
+
+
+class Pictured(Generic[Native]):
     """A run with a report and pictures."""
 
-    _native: _native.Run | _native.SpatialRun
+    _native: Native
 
     def html(self) -> str:
         """Returns the report as one page that needs no network.

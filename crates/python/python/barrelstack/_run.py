@@ -243,7 +243,7 @@ class Frames(NamedTuple):
     stresses: NDArray[np.float64]
 
 
-class Run(Pictured):
+class Run(Pictured[_native.Run]):
     """Results of a scenario in one plane, with all recordings of the shown run.
 
     Made by :meth:`Scenario.run`.

@@ -68,7 +68,7 @@ class Poses(NamedTuple):
     twists: NDArray[np.float64]
 
 
-class SpatialRun(Pictured):
+class SpatialRun(Pictured[_native.SpatialRun]):
     """Results of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
 
     Made by :meth:`Scenario.run_in_space`.
