@@ -20,7 +20,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
   const folder = mkdtempSync(join(tmpdir(), "barrelstack-page-"));
   await suite.check("the page is small enough to mail", () => {
     const megabytes = statSync(file).size / 1e6;
-    demand(megabytes < 1.95, `${megabytes.toFixed(3)} MB, less than 1.95 are due`);
+    demand(megabytes < 2, `${megabytes.toFixed(3)} MB, less than 2 are due`);
     return `${megabytes.toFixed(3)} MB`;
   });
   const { page, faults, context } = await opened(browser, file);

@@ -237,7 +237,7 @@ fn headline(league: &League) -> String {
         )
     });
     format!(
-        "Of {} racks and devices the highest RockScore, {}{range}, is that of this one: {}.{next}",
+        "The highest RockScore of {} racks and devices is {}{range}: {}.{next}",
         league.rows.len(),
         sheet.score(),
         first.name
