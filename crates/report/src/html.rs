@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Figure, FigureKind, Strip, Table, Tone,
+    Block, Document, Dots, Figure, FigureKind, Strip, Table, Tone,
     document::FINE,
     drawing::Room,
     escape,
@@ -44,6 +44,7 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     let split = first_player.map_or(0, |at| at + 1);
     let sections = sections(&document.blocks);
     writer.blocks(&document.blocks[..split]);
+    writer.dots(&document.verdict.dots);
     writer.warnings(&document.warnings);
     writer.contents(&sections, !document.provenance.is_empty());
     writer.blocks(&document.blocks[split..]);
@@ -154,12 +155,6 @@ impl<'a> Writer<'a> {
         if !rest.is_empty() {
             self.explained("<p class=\"rest\">", rest, "</p>");
         }
-        for dots in &verdict.dots {
-            if let Some(drawing) = dots.draw() {
-                self.element("<p class=\"dots\">", &dots.words(), "</p>");
-                self.put(&format!("<div class=\"dots\">{}</div>\n", drawing.inline()));
-            }
-        }
         if !verdict.advice.is_empty() {
             self.element("<p class=\"advice\">", &verdict.advice, "</p>");
         }
@@ -186,6 +181,16 @@ impl<'a> Writer<'a> {
             ));
         }
         self.put("</header>\n");
+    }
+
+    /// Writes one dot for each variant.
+    fn dots(&mut self, all: &[Dots]) {
+        for dots in all {
+            if let Some(drawing) = dots.draw() {
+                self.element("<p class=\"dots\">", &dots.words(), "</p>");
+                self.put(&format!("<div class=\"dots\">{}</div>\n", drawing.inline()));
+            }
+        }
     }
 
     fn warnings(&mut self, warnings: &[String]) {
