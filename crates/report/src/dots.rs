@@ -2,7 +2,7 @@
 
 use crate::drawing::{Drawing, Item};
 
-/// Outcomes of the variants in one plane or in space, drawn below the first picture as one dot for each
+/// Outcomes of the variants in one plane or in space, drawn on paper below the headline as one dot for each
 /// variant.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dots {

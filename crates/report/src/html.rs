@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Dots, Figure, FigureKind, Strip, Table, Tone,
+    Block, Document, Figure, FigureKind, Strip, Table, Tone,
     document::FINE,
     drawing::Room,
     escape,
@@ -44,7 +44,6 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     let split = first_player.map_or(0, |at| at + 1);
     let sections = sections(&document.blocks);
     writer.blocks(&document.blocks[..split]);
-    writer.dots(&document.verdict.dots);
     writer.warnings(&document.warnings);
     writer.contents(&sections, !document.provenance.is_empty());
     writer.blocks(&document.blocks[split..]);
@@ -181,16 +180,6 @@ impl<'a> Writer<'a> {
             ));
         }
         self.put("</header>\n");
-    }
-
-    /// Writes one dot for each variant.
-    fn dots(&mut self, all: &[Dots]) {
-        for dots in all {
-            if let Some(drawing) = dots.draw() {
-                self.element("<p class=\"dots\">", &dots.words(), "</p>");
-                self.put(&format!("<div class=\"dots\">{}</div>\n", drawing.inline()));
-            }
-        }
     }
 
     fn warnings(&mut self, warnings: &[String]) {

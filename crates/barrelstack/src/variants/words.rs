@@ -155,7 +155,7 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     )))
 }
 
-/// Returns the outcomes of the variants in each plane, for one dot each on the page; the plane with
+/// Returns the outcomes of the variants in each plane, for one dot each on paper; the plane with
 /// the largest share of collapses comes first, as in the headline.
 pub fn dots(planes: &[(View, &Spread)]) -> Vec<Dots> {
     let placed: Vec<Placed<'_>> =
