@@ -186,7 +186,7 @@ fn in_empty_root(root: &Path) -> anyhow::Result<()> {
     if empty.exists() {
         fs::remove_dir_all(&empty)?;
     }
-    fs::create_dir_all(empty.join("work"))?;
+    fs::create_dir_all(empty.join("out"))?;
     fs::copy(static_binary(root)?, empty.join("barrelstack"))?;
     let root_here = Command::new("id").arg("-u").output()?.stdout.starts_with(b"0");
     let mut run = Command::new(if root_here { "chroot" } else { "sudo" });
@@ -200,10 +200,10 @@ fn in_empty_root(root: &Path) -> anyhow::Result<()> {
         "8",
         "--no-remedy",
         "--out",
-        "/work/demo",
+        "/out/demo",
     ]);
     checked(&mut run, "the demo in an empty root")?;
-    state(&empty.join("work/demo/report.html"))
+    state(&empty.join("out/demo/report.html"))
 }
 
 /// Returns the Python interpreter of an environment with some tools.

@@ -100,17 +100,17 @@ fn a_brake_stops_a_block_earlier_by_the_force_over_its_mass() {
 fn forces_between_bodies_are_those_of_the_histories_by_the_same_names() {
     let scenario = scenario("candia-8-barrels", &["stack.levels=2", "run.duration='4 s'"]);
     let mut simulation = started(&scenario);
-    let mut seen = Vec::new();
+    let mut observed = Vec::new();
     while simulation.ending().is_none() {
         simulation.step(1);
         let parts = &simulation.assembly().parts;
         let forces = simulation.forces();
         let named = forces.iter().map(|one| (one.named(|body| &parts[body].name), one.force));
-        seen.push((simulation.time(), named.collect::<Vec<_>>()));
+        observed.push((simulation.time(), named.collect::<Vec<_>>()));
     }
     let run = simulation.finish();
     let mut compared = 0;
-    for (time, forces) in &seen {
+    for (time, forces) in &observed {
         let Some(at) = run.recording.times.iter().position(|sample| sample == time) else {
             continue;
         };

@@ -38,37 +38,37 @@ class BrakedIsolator(gym.Env[Array, Array]):
         self.observation_space = gym.spaces.Box(-np.inf, np.inf, (4,), np.float64)
         self.action_space = gym.spaces.Box(0.0, 1.0, (1,), np.float64)
 
-    def look(self) -> Array:
+    def observe(self) -> Array:
         state = self.simulation.state
-        seen = [state.pose(self.platform)[0], state.twist(self.platform)[0], state.pose("B3.1")[0], state.twist("B3.1")[0]]
+        moved = [state.pose(self.platform)[0], state.twist(self.platform)[0], state.pose("B3.1")[0], state.twist("B3.1")[0]]
         ground = [state.pose("ground")[0], state.twist("ground")[0]]
-        return np.asarray(np.array(seen) - np.array(2 * ground) - self.rest)
+        return np.asarray(np.array(moved) - np.array(2 * ground) - self.rest)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
         super().reset(seed=seed)
         self.simulation = self.starts[int(self.np_random.integers(len(self.starts)))].copy()
         self.rest = np.zeros(4)
-        self.rest = self.look()
-        return self.look(), {}
+        self.rest = self.observe()
+        return self.observe(), {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
-        before = self.look()
+        before = self.observe()
         self.simulation.apply_force(self.platform, (-float(action[0]) * self.MOST * np.tanh(before[1] / 0.02), 0.0))
         self.simulation.step_until(self.simulation.time + self.EVERY)
-        seen = self.look()
-        sway = seen[2] - seen[0]
+        observed = self.observe()
+        sway = observed[2] - observed[0]
         lost = self.simulation.collapse is not None
-        reward = -(seen[0] ** 2) - 25.0 * sway**2 - 100.0 * lost
-        return seen, float(reward), lost, self.simulation.ending is not None, {}
+        reward = -(observed[0] ** 2) - 25.0 * sway**2 - 100.0 * lost
+        return observed, float(reward), lost, self.simulation.ending is not None, {}
 
 
 def total(env: BrakedIsolator, weights: Array, seed: int) -> float:
     """Returns the sum of the rewards of an episode under the policy 1 / (1 + exp(-weights · (1, |observation|)))."""
-    seen, _ = env.reset(seed=seed)
+    observed, _ = env.reset(seed=seed)
     rewards, over = 0.0, False
     while not over:
-        action = 1.0 / (1.0 + np.exp(-weights @ np.concatenate([[1.0], np.abs(seen)])))
-        seen, reward, lost, ended, _ = env.step(np.array([action]))
+        action = 1.0 / (1.0 + np.exp(-weights @ np.concatenate([[1.0], np.abs(observed)])))
+        observed, reward, lost, ended, _ = env.step(np.array([action]))
         rewards, over = rewards + reward, lost or ended
     return rewards
 

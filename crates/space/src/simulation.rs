@@ -107,7 +107,7 @@ impl Simulation {
             ending: None,
         };
         let stepper = Stepper::start(&stack.model, &ground, &mut state, &mut scratch, &settings);
-        watch.see(&state, &scratch);
+        watch.observe(&state, &scratch);
         watch.end(&state);
         let scenario = scenario.clone();
         let fixed = Arc::new(Fixed { scenario, ground, stack, settled, settings, before });
@@ -167,7 +167,7 @@ impl Simulation {
         let Self { fixed, state, scratch, stepper, watch, failure } = self;
         match stepper.step(&fixed.stack.model, &fixed.ground, state, scratch) {
             Ok(()) => {
-                watch.see(state, scratch);
+                watch.observe(state, scratch);
                 true
             }
             Err(error) => {
@@ -314,7 +314,7 @@ impl Simulation {
 
 impl Watch {
     /// Observes the initial state or an accepted step.
-    fn see(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
+    fn observe(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
         // The state in which the first loss of seat is found still counts as standing.
         let standing = self.fates.collapse().is_none();
         self.fates.observe(state, scratch);
@@ -335,7 +335,7 @@ impl Watch {
         }
     }
 
-    /// Ends the run if one of its criteria is met in the state that was seen last.
+    /// Ends the run if one of its criteria is met in the state that was observed last.
     fn end(&mut self, state: &State<Spatial>) {
         if self.ending.is_some() {
             return;

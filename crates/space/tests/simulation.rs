@@ -15,8 +15,8 @@ fn started(scenario: &Scenario) -> Simulation {
 
 /// Returns everything that a run recorded; the text of a number identifies its bits.
 fn recorded(run: &Run) -> String {
-    let seen = (&run.frames, &run.last, &run.fates, &run.elements, &run.seats, &run.energy);
-    format!("{seen:?} {:?}", (&run.outcome, run.work, run.end_time, run.ending, &run.warnings))
+    let parts = (&run.frames, &run.last, &run.fates, &run.elements, &run.seats, &run.energy);
+    format!("{parts:?} {:?}", (&run.outcome, run.work, run.end_time, run.ending, &run.warnings))
 }
 
 #[test]

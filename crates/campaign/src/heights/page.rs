@@ -181,11 +181,11 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     let Some((height, _, [from, to])) = widest(all, highest.unwrap_or(LOWEST), velocity) else {
         return String::new();
     };
-    let uncertain = "the friction, stiffness and damping of the seats, which are uncertain,";
+    let uncertain = "Allowing for the uncertain friction, stiffness and damping of the seats,";
     let shares = format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * to);
     if let Some(levels) = highest {
         return format!(
-            " Over {uncertain} up to {levels} levels do: the probability is {shares} (95 % range)."
+            " {uncertain} up to {levels} levels do: the probability is {shares} (95 % range)."
         );
     }
     let decides = height
@@ -199,7 +199,7 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
         format!("; in {} up to {levels} levels do", named(velocity))
     });
     format!(
-        " Over {uncertain} not even two levels do: the probability is {shares} (95 % range), {}{decides}{weaker}.",
+        " {uncertain} not even two levels do: the probability is {shares} (95 % range), {}{decides}{weaker}.",
         height.view.words()
     )
 }

@@ -108,8 +108,8 @@ fn over_constants(sheet: &Sheet) -> Option<String> {
         format!("; the {} decides{ends}", one.name)
     });
     Some(format!(
-        "Over the friction, stiffness and damping of the seats, which are uncertain, the score is between {low} and {high} \
-         with a probability of 95 %{}.",
+        "Allowing for the uncertain friction, stiffness and damping of the seats, the score is between {low} and {high} with \
+         a probability of 95 %{}.",
         decides.unwrap_or_else(|| "; none of these decides alone".to_owned())
     ))
 }
