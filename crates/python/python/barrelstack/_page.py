@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from . import _native
-from ._store import store
+from ._pictured import Reported
 from ._table import Table
 
 __all__ = ["Page", "frame", "table_of"]
@@ -51,7 +51,7 @@ def table_of(rows: Iterable[Mapping[str, Any]], names: Mapping[str, str]) -> Tab
     return Table(_native.Table.from_columns([(head, [row[key] for row in rows]) for key, head in names.items()]))
 
 
-class Page:
+class Page(Reported[_native.Page]):
     """A result with its numbers and its page.
 
     Examples
@@ -78,28 +78,6 @@ class Page:
     def warnings(self) -> list[str]:
         """Caveats for the reader, one sentence each."""
         return self._native.warnings
-
-    def html(self) -> str:
-        """Returns the page as one file that needs no network.
-
-        Returns
-        -------
-        str
-        """
-        return self._native.html()
-
-    def report(self, path: str | os.PathLike[str], *, paper: str = "a4") -> None:
-        """Writes the page.
-
-        Parameters
-        ----------
-        path
-            A file that ends with ``.html`` or ``.pdf``.
-        paper
-            ``"a4"`` or ``"letter"``.
-        """
-        pdf = os.fspath(path).lower().endswith(".pdf")
-        store(path, self._native.pdf(paper) if pdf else self.html().encode())
 
     def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Writes the page as HTML and as Markdown with its figures and their numbers.

@@ -1,4 +1,4 @@
-"""Report and pictures of a run, in a plane or in space."""
+"""What results have in common: a report, and for runs pictures."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from typing import Generic, TypeVar
 from . import _native
 from ._store import store
 
-__all__ = ["Pictured"]
+__all__ = ["Pictured", "Reported"]
 
 
-Native = TypeVar("Native", _native.Run, _native.SpatialRun)
+Native = TypeVar("Native", _native.Page, _native.Run, _native.SpatialRun)
+NativeRun = TypeVar("NativeRun", _native.Run, _native.SpatialRun)
 
 
-class Pictured(Generic[Native]):
-    """A run with a report and pictures."""
+class Reported(Generic[Native]):
+    """A result with a report."""
 
     _native: Native
 
@@ -41,6 +42,10 @@ class Pictured(Generic[Native]):
         """
         pdf = os.fspath(path).lower().endswith(".pdf")
         store(path, self._native.pdf(paper) if pdf else self.html().encode())
+
+
+class Pictured(Reported[NativeRun]):
+    """A run with a report and pictures."""
 
     def render(
         self,

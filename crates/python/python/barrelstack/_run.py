@@ -18,7 +18,6 @@ from ._errors import BarrelstackWarning, outside
 from ._kept import Kept
 from ._page import frame
 from ._pictured import Pictured
-from ._store import store
 from ._table import Column, Columns, Table
 
 if TYPE_CHECKING:
