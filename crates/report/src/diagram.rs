@@ -3,9 +3,9 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Point, Scene,
+    Point, Scene, csv_field,
     drawing::{Anchor, Drawing, Item, Room},
-    escape, number,
+    number,
     strip::{View, define_bodies, picture},
 };
 
@@ -64,7 +64,7 @@ impl Diagram {
             let [a, b, c, d] =
                 [arrow.from[0], arrow.from[1], arrow.to[0], arrow.to[1]].map(number::csv_number);
             // Writing to a String cannot fail.
-            let _ = writeln!(out, "{a},{b},{c},{d},{}", escape::csv(&arrow.meaning));
+            let _ = writeln!(out, "{a},{b},{c},{d},{}", csv_field(&arrow.meaning));
         }
         out
     }

@@ -2,11 +2,12 @@
 //! during the run.
 
 use crate::{
-    Polyline,
+    Polyline, csv_field,
     drawing::{Anchor, Drawing, Room, Runs, text_width},
-    escape, number,
+    number,
     scene::Extent,
     ticks::round_length,
+    with_unit,
 };
 
 /// Stress along a boundary, drawn outward along the normals.
@@ -197,7 +198,7 @@ impl Envelope {
     }
 
     pub(crate) fn to_csv(&self) -> String {
-        let unit = |name: &str, unit: &str| escape::csv(&escape::with_unit(name, unit));
+        let unit = |name: &str, unit: &str| csv_field(&with_unit(name, unit));
         let name = if self.coordinate.0.is_empty() { "coordinate" } else { &self.coordinate.0 };
         let mut out = format!(
             "{},x (m),z (m),nx,nz,{},{}\n",

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{escape, number, style::DASHES};
+use crate::{csv_field, number, style::DASHES, with_unit};
 
 /// A plot of series on a pair of axes.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -71,7 +71,7 @@ impl Axis {
     /// Formats an ordinate for CSV; on an axis with names, returns the nearest name.
     fn csv_ordinate(&self, value: f64) -> String {
         let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
-        match rows.map(|place| escape::csv(&self.names[place])).next() {
+        match rows.map(|place| csv_field(&self.names[place])).next() {
             Some(name) => name,
             None => number::csv_number(value),
         }
@@ -82,7 +82,7 @@ impl Axis {
         if self.label.is_empty() {
             return self.unit.clone();
         }
-        escape::with_unit(&self.label, &self.unit)
+        with_unit(&self.label, &self.unit)
     }
 
     /// `true` if the axis can show `value`.
@@ -212,7 +212,7 @@ impl Plot {
                 None => groups.push((x, vec![series])),
             }
         }
-        let with_unit = |label: &str, unit: &str| escape::csv(&escape::with_unit(label, unit));
+        let with_unit = |label: &str, unit: &str| csv_field(&with_unit(label, unit));
         let mut header = Vec::new();
         for (_, members) in &groups {
             header.push(with_unit(&self.x.label, &self.x.unit));

@@ -3,9 +3,9 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Point, Polyline, Role, Scene, SceneBody,
+    Point, Polyline, Role, Scene, SceneBody, csv_field,
     drawing::{Anchor, Body, Drawing, Item, Placed, text_width},
-    escape, number,
+    number,
     scene::{Extent, hatch, window},
 };
 
@@ -189,7 +189,7 @@ impl Strip {
             for (at, body) in self.scene.bodies.iter().enumerate() {
                 let Some(pose) = self.scene.frames.pose(frame, at) else { continue };
                 let time = self.scene.frames.times.get(frame).copied().unwrap_or(f64::NAN);
-                let name = escape::csv(&body.name);
+                let name = csv_field(&body.name);
                 let [x, z, angle] = pose.map(number::csv_number);
                 // Writing to a String cannot fail.
                 let _ = writeln!(out, "{},{name},{x},{z},{angle}", number::csv_number(time));

@@ -1,6 +1,6 @@
 //! A table: named columns with units, and rows of cells.
 
-use crate::{escape, number};
+use crate::{csv_field, number, with_unit};
 
 /// A table with a caption.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl Column {
     }
 
     pub(crate) fn heading(&self) -> String {
-        escape::with_unit(&self.name, &self.unit)
+        with_unit(&self.name, &self.unit)
     }
 }
 
@@ -129,13 +129,13 @@ impl Table {
     /// Writes the table as CSV: a heading line with units, then every row at full precision.
     pub fn to_csv(&self) -> String {
         let mut out = String::new();
-        let header: Vec<_> = self.columns.iter().map(|c| escape::csv(&c.heading())).collect();
+        let header: Vec<_> = self.columns.iter().map(|c| csv_field(&c.heading())).collect();
         out.push_str(&header.join(","));
         out.push('\n');
         for row in &self.rows {
             let cells: Vec<_> = (0..self.columns.len())
                 .map(|at| match row.get(at) {
-                    Some(Cell::Text(text) | Cell::Rated(_, text)) => escape::csv(text),
+                    Some(Cell::Text(text) | Cell::Rated(_, text)) => csv_field(text),
                     Some(Cell::Number(value, _) | Cell::Measured(value, _)) => {
                         number::csv_number(*value)
                     }

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 pub use solids::{SolidBody, SolidTie, Solids, paraview_of_solids};
 
 use crate::{
-    Attachment, Polyline, Role, Scene, escape,
+    Attachment, Polyline, Role, Scene, csv_field,
     film::sampled,
     number,
     scene::{Point, Pose2, place, window},
@@ -45,7 +45,7 @@ pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     }
     let mut names = String::from("body,name,role\n");
     for (at, body) in scene.bodies.iter().enumerate() {
-        let _ = writeln!(names, "{at},{},{}", escape::csv(&body.name), body.role.class());
+        let _ = writeln!(names, "{at},{},{}", csv_field(&body.name), body.role.class());
     }
     files.push(Attachment { name: "bodies.csv".into(), bytes: names.into_bytes() });
     files.push(Attachment { name: "stack.pvd".into(), bytes: closed_index(index).into_bytes() });

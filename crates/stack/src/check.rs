@@ -1,8 +1,8 @@
 //! Check of a scenario without shaking: whether the scenario is sound, and whether its stack stands.
 
+use barrelstack_columns::described;
 use barrelstack_dynamics::Settled;
 use barrelstack_dynamics::settle::Locked;
-use barrelstack_report::described;
 
 use crate::assemble::PartKind;
 use crate::ground::{MotionSummary, from_disk};

@@ -1,6 +1,6 @@
 //! Demands on a stack, such as drift and slip, each declared once with its name, units, and source.
 
-use barrelstack_report::described::{self, Described, Field, Objects};
+use barrelstack_columns::described::{self, Described, Field, Objects};
 use serde::Serialize;
 
 use crate::assemble::{Assembly, PartKind};

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use barrelstack_columns::described;
 use barrelstack_motion::{GroundMotion, MotionError, Record};
-use barrelstack_report::described;
 
 use crate::scenario::{FileRef, MotionSource, RecordMotion, RecordSource, Scenario};
 

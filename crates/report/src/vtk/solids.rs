@@ -8,7 +8,7 @@ use flate2::write::ZlibEncoder;
 
 use super::{closed_index, index_entry, opened_index, piece, poly_data};
 use crate::film::sampled_times;
-use crate::{Attachment, Role, base64, escape};
+use crate::{Attachment, Role, base64, csv_field};
 
 /// The surface of a body in space, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,12 +81,12 @@ pub fn paraview_of_solids<E>(
     }
     let mut names = String::from("body,name,role,level\n");
     for (at, body) in solids.bodies.iter().enumerate() {
-        let name = escape::csv(&body.name);
+        let name = csv_field(&body.name);
         // Writing to a String cannot fail, here and below.
         let _ = writeln!(names, "{at},{name},{},{}", body.role.class(), body.level);
     }
     for (at, tie) in solids.ties.iter().enumerate() {
-        let (at, name) = (solids.bodies.len() + at, escape::csv(&tie.name));
+        let (at, name) = (solids.bodies.len() + at, csv_field(&tie.name));
         let _ = writeln!(names, "{at},{name},{},0", Role::Device.class());
     }
     put(Attachment { name: "bodies.csv".into(), bytes: names.into_bytes() })?;

@@ -1,6 +1,6 @@
 //! Columns of tables of cases, declared in one list for all such tables.
 
-use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
+use barrelstack_columns::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 
 use super::CaseResult;
 use crate::outcome::Outcome;
@@ -74,7 +74,7 @@ impl CaseColumn {
 /// ```
 /// use barrelstack_stack::ensemble::{Ensemble, Prepared, table};
 /// use barrelstack_stack::Scenario;
-/// use barrelstack_report::column::to_csv;
+/// use barrelstack_columns::column::to_csv;
 ///
 /// let cases = vec![Prepared::new(Scenario::builtin("sliding-block", &[])?)?];
 /// let table = table(&Ensemble { cases, ..Ensemble::default() }.run());

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use barrelstack_report::column::Column;
+use barrelstack_columns::column::Column;
 
 use super::{Audience, CASE_COLUMNS, CaseResult, Prepared, Width, simulate_in, table};
 use crate::ground::{Ground, GroundError, of_spec, scaled};

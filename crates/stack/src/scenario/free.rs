@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use barrelstack_columns::column::column_name;
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::{self, Declared as _};
 use barrelstack_input::{section, table};
-use barrelstack_report::column::column_name;
 
 use super::dimension::Dimension;
 use super::element::{self, FreeElement};

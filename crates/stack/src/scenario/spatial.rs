@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use barrelstack_bodies::{Solid, SpatialBody};
+use barrelstack_columns::column::column_name;
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::reader::Reader;
 use barrelstack_input::section;
 use barrelstack_input::writer::Writer;
-use barrelstack_report::column::column_name;
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;

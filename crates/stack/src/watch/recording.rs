@@ -3,7 +3,7 @@
 use barrelstack_dynamics::forces::{contact_force, tributary_length};
 use barrelstack_dynamics::{EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
 
-use barrelstack_report::column::column_name;
+use barrelstack_columns::column::column_name;
 
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::escape::one_line;
+use crate::one_line;
 
 /// The schemas of the objects of a document, by name; an object may contain objects of its own
 /// type.
@@ -236,7 +236,7 @@ impl<'a> Walk<'a> {
 /// built `of` one or more arguments, the expression of the value comes last.
 ///
 /// ```
-/// barrelstack_report::described! {
+/// barrelstack_columns::described! {
 ///     /// A fall.
 ///     #[derive(Clone, Debug)]
 ///     pub struct Fall of drop: &f64 {
@@ -246,7 +246,7 @@ impl<'a> Walk<'a> {
 ///         pub kind: &'static str ["soft", "hard"] = if *drop < 1.0 { "soft" } else { "hard" },
 ///     }
 /// }
-/// use barrelstack_report::described::document;
+/// use barrelstack_columns::described::document;
 /// assert_eq!(Fall::of(&2.0).kind, "hard");
 /// let schema = document::<Fall>("fall");
 /// assert_eq!(schema["$defs"]["Fall"]["properties"]["height"]["unit"], "m");

@@ -1,7 +1,7 @@
 //! Numbers as text: significant digits for readers, full precision for programs.
 
 /// Text that is shown in place of a number that is missing, NaN or infinite.
-pub(crate) const MISSING: &str = "–";
+pub const MISSING: &str = "–";
 
 /// Formats `value` with `digits` significant digits (at least one, at most 15).
 ///
@@ -9,7 +9,7 @@ pub(crate) const MISSING: &str = "–";
 /// of ten. The minus sign is U+2212. A number that is not finite gives "–".
 ///
 /// ```
-/// use barrelstack_report::significant;
+/// use barrelstack_columns::significant;
 /// assert_eq!(significant(0.353_91, 3), "0.354");
 /// assert_eq!(significant(-1234.6, 3), "−1230");
 /// assert_eq!(significant(2.5e-7, 2), "2.5×10⁻⁷");
@@ -46,7 +46,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// A value that rounds to zero is shown as less than one unit of the last place.
 ///
 /// ```
-/// use barrelstack_report::measured;
+/// use barrelstack_columns::measured;
 /// assert_eq!(measured(20.34, 1), "20.3");
 /// assert_eq!(measured(642.3, 1), "642");
 /// assert_eq!(measured(0.003_62, 1), "< 0.1");
@@ -69,7 +69,7 @@ pub fn measured(value: f64, decimals: usize) -> String {
 
 /// Formats `value` with a fixed number of decimals and a true minus sign; returns "–" if `value` is
 /// not finite.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.into();
     }
@@ -83,7 +83,7 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 
 /// Formats a number for a CSV cell, as the shortest text that reads back to the same bits; empty if
 /// the number is not finite.
-pub(crate) fn csv_number(value: f64) -> String {
+pub fn csv_number(value: f64) -> String {
     if value.is_finite() { shortest(value) } else { String::new() }
 }
 
@@ -106,7 +106,7 @@ const UNITS: [&str; 30] = [
 
 /// Returns `text` with no-break spaces between numbers and their units, so that no line break
 /// separates them.
-pub(crate) fn tied(text: &str) -> String {
+pub fn tied(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 8);
     let mut before = ' ';
     for (at, c) in text.char_indices() {
@@ -127,7 +127,8 @@ fn begins_with_unit(text: &str) -> bool {
     }
 }
 
-pub(crate) fn superscript(exponent: i64) -> String {
+/// Writes an integer in superscript digits, such as ⁻⁷.
+pub fn superscript(exponent: i64) -> String {
     let raised = |c: char| {
         let digit = c.to_digit(10).and_then(|digit| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit as usize));
         digit.unwrap_or('⁻')

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 
 use crate::described::{Described, Objects};
-use crate::{csv_field, described, escape::with_unit, shortest};
+use crate::{csv_field, described, shortest, with_unit};
 
 /// The role of a column in a table of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
