@@ -2,7 +2,7 @@
 
 use crate::body::BodyId;
 use crate::lanewise;
-use crate::real::Real;
+use crate::real::{Real, both};
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
@@ -110,7 +110,8 @@ impl<S: Space> Line<S> {
         force: S::Real,
         damped: S::Real,
     ) -> [(Wrench<S>, Wrench<S>); 2] {
-        [(self.arms[0], along), (self.arms[1], -along)].map(
+        both(
+            [(self.arms[0], along), (self.arms[1], -along)],
             #[inline(always)]
             |(arm, toward)| {
                 let lever = S::moment(arm, toward);

@@ -173,7 +173,7 @@ fn touch_by<S: Space>(
 /// Returns the lanes in which the contactor of a pair [leads](Press::leads).
 #[inline(always)]
 fn leads<S: Space>(model: &Model<S>, pair: &ContactPair) -> <S::Real as Real>::Mask {
-    let [own, other] = [pair.contactor, pair.target].map(|id| model.inert[id].mass);
+    let (own, other) = (model.inert[pair.contactor].mass, model.inert[pair.target].mass);
     if pair.contactor < pair.target { other.le(own) } else { other.lt(own) }
 }
 

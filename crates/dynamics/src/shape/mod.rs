@@ -12,7 +12,7 @@ mod profile;
 mod whole;
 
 use crate::body::Round;
-use crate::real::{Mask, Real};
+use crate::real::{Mask, Real, both};
 use crate::space::{Linear, Planar, Space, Vec2};
 
 use polygon::FLUSH;
@@ -83,7 +83,8 @@ impl<S: Space> Facing<S> {
     #[inline(always)]
     pub(crate) fn includes(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
         let most = S::Real::splat(self.most);
-        let [a, b] = self.limits.map(
+        let [a, b] = both(
+            self.limits,
             #[inline(always)]
             |limit| -normal.dot(limit),
         );

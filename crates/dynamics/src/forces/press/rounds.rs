@@ -2,7 +2,7 @@
 
 use super::{Group, Laws, Press, midway};
 use crate::body::Round;
-use crate::real::{Mask, Real};
+use crate::real::{Mask, Real, both};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
 
@@ -101,7 +101,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         if !nearest.core.lt(S::Real::splat(NEARLY_INSIDE)).any() {
             return nearest;
         }
-        let limits = round.limits.map(
+        let limits = both(
+            round.limits,
             #[inline(always)]
             |limit| self.frame.direction_to_surface(limit),
         );
