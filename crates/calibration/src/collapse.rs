@@ -106,7 +106,7 @@ impl Observations {
 }
 
 /// A test that is ready to be simulated.
-struct Trial<'a> {
+struct PreparedTest<'a> {
     observed: &'a Observed,
     tunable: Tunable,
     /// Scenario of the test; its run lasts as long as the observation.
@@ -155,7 +155,7 @@ pub fn collapse(
             .flat_map(|draw| {
                 // One generator for all tests of a sample, so that every stack has its own placement.
                 let mut random = Random::new(draw.seed);
-                let built = |trial: &Trial<'_>| {
+                let built = |trial: &PreparedTest<'_>| {
                     let scenario = trial.tunable.at(&trial.scenario, &point(draw));
                     let scenario = Arc::new(placed(&scenario, trial.scatter, &mut random));
                     Built { scenario, ground: trial.ground.clone() }
@@ -172,7 +172,7 @@ pub fn collapse(
         let logs = simulated
             .chunks_exact(trials.len())
             .map(|tests| {
-                let log = |(trial, course): (&Trial<'_>, &Option<Course>)| {
+                let log = |(trial, course): (&PreparedTest<'_>, &Option<Course>)| {
                     course.as_ref().map_or(f64::NEG_INFINITY, |course| {
                         settings.errors.log_likelihood(trial.observed, course)
                     })
@@ -245,7 +245,7 @@ fn trials<'a>(
     scenarios: &[Scenario],
     parameters: &[Parameter],
     settings: &Settings,
-) -> Result<Vec<Trial<'a>>, CalibrateError> {
+) -> Result<Vec<PreparedTest<'a>>, CalibrateError> {
     if scenarios.len() != observations.tests.len() {
         return Err(CalibrateError::Scenario(format!(
             "there are {} scenarios for {} tests: give one scenario per test, in the same order",
@@ -253,7 +253,7 @@ fn trials<'a>(
             observations.tests.len()
         )));
     }
-    let mut trials: Vec<Trial<'_>> = Vec::new();
+    let mut trials: Vec<PreparedTest<'_>> = Vec::new();
     for (at, (observed, scenario)) in observations.tests.iter().zip(scenarios).enumerate() {
         let tunable = Tunable::new(scenario, parameters)?;
         let scale = scenario.run.similitude;
@@ -274,7 +274,7 @@ fn trials<'a>(
         check(at, observed, &scenario)?;
         let ground = Shaking::of(&scenario).map_err(RunFailure::from)?;
         let scatter = settings.placement / scale;
-        trials.push(Trial { observed, tunable, scenario, ground, scatter });
+        trials.push(PreparedTest { observed, tunable, scenario, ground, scatter });
     }
     Ok(trials)
 }
@@ -367,7 +367,7 @@ fn identifiability(
 /// Returns the name of the observed mode of a test, and the weight of the simulations with this mode; `None`
 /// if no mode was observed.
 fn alike<'a>(
-    trial: &Trial<'_>,
+    trial: &PreparedTest<'_>,
     courses: impl Iterator<Item = &'a Option<Course>>,
     posterior: &Posterior,
 ) -> (String, Option<f64>) {

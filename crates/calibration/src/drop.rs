@@ -104,7 +104,7 @@ pub fn drop(
 }
 
 /// Result of a drop test, whether from heights or from times.
-struct Found {
+struct DropResult {
     restitution: Estimate,
     /// ln ζ, where ζ is the damping ratio, and half the width of its 95 % interval.
     log_ratio: Option<(f64, f64)>,
@@ -127,7 +127,7 @@ impl Striker {
     }
 }
 
-fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, CalibrateError> {
+fn from_heights(table: &Table, striker: Option<Striker>) -> Result<DropResult, CalibrateError> {
     let from = table.positive("drop height", Dimension::LENGTH)?;
     let to = table.positive("rebound height", Dimension::LENGTH)?;
     if let Some(row) = from.iter().zip(&to).position(|(from, to)| to >= from) {
@@ -148,7 +148,7 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
     let impacts = from.len();
     let Some(striker) = striker else {
         let figure = heights(&from, &to, &|height| e * e * height);
-        return Ok(Found { restitution, log_ratio: None, impacts, figure, warnings });
+        return Ok(DropResult { restitution, log_ratio: None, impacts, figure, warnings });
     };
     let start = start_ratio(e);
     let residuals = |point: &Vec<f64>| -> Option<Vec<f64>> {
@@ -169,7 +169,7 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
         0.5 * after * after / striker.gravity
     };
     let figure = heights(&from, &to, &rebound);
-    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
+    Ok(DropResult { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
 /// Draws the rebound height (m) against the drop height (m), measured and fitted.
@@ -202,7 +202,7 @@ fn bounces(times: &[f64], residuals: &[f64], unit: f64) -> Figure {
     figure("bounces", caption, axes, series)
 }
 
-fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, CalibrateError> {
+fn from_times(table: &Table, striker: Option<Striker>) -> Result<DropResult, CalibrateError> {
     let times = table.required("time", Dimension::TIME)?;
     let flights: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if let Some(row) = flights.iter().position(|flight| *flight <= 0.0) {
@@ -247,7 +247,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
         |fit: Option<Fit>| bounces(&times, &fit.map(|fit| fit.residuals).unwrap_or_default(), unit);
     let Some(striker) = striker else {
         let (figure, impacts) = (picture(plain), times.len());
-        return Ok(Found { restitution, log_ratio: None, impacts, figure, warnings });
+        return Ok(DropResult { restitution, log_ratio: None, impacts, figure, warnings });
     };
     // The first flight gives the speed after the first impact; dividing by the restitution gives that before it.
     let first_speed = 0.5 * striker.gravity * unit / restitution.value;
@@ -269,7 +269,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     let last = 0.5 * striker.gravity * flights[flights.len() - 1];
     warnings.extend(gravity_warning(&striker, log_ratio.0, last));
     let (figure, impacts) = (picture(found), times.len());
-    Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
+    Ok(DropResult { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
 /// Returns ln ζ that gives a restitution without gravity. The fit with gravity starts from this value.

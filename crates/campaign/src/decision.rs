@@ -41,7 +41,7 @@ pub(crate) use json::bounds;
 pub(crate) use page::{heading, text};
 pub(crate) use words::{fallen_at_rest, left_out, percent, range, refusal};
 
-pub use cases::{Case, Cases, Measure};
+pub use cases::{Cases, JudgedCase, Measure};
 pub use curve::{BandKind, LimitCurve};
 pub use export::{ExportError, Exported, export};
 pub use hazard::{Lost, Site, SiteHazard};

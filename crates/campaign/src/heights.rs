@@ -19,7 +19,7 @@ use barrelstack::variants::{Fitted, Unknown};
 use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
-use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
+use crate::decision::{Cases, DecisionError, JudgedCase, LimitCurve, LimitState};
 use crate::pool;
 use crate::run::RunFailure;
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
@@ -350,11 +350,11 @@ fn levels_of(collected: &Collected, row: u32) -> Option<u32> {
 }
 
 fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsRecorded> {
-    let intensity = |name: &str, case: &Case| {
+    let intensity = |name: &str, case: &JudgedCase| {
         let at = cases.measures.iter().position(|measure| measure.name == name)?;
         case.intensity(at)
     };
-    let run = |case: &Case| {
+    let run = |case: &JudgedCase| {
         Some(AsRecorded {
             levels: levels_of(collected, case.row)?,
             view,

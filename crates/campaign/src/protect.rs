@@ -36,7 +36,7 @@ pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
 use rank::{FALLEN, Runs, weights};
-use search::{Search, Trial};
+use search::{Candidate, Search};
 
 /// Default levels of peak ground velocity (m/s).
 pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
@@ -308,7 +308,7 @@ pub fn protect(
         Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
     let mut singles = singles(&base);
     // The stack as it is must stand; otherwise nothing else is tried.
-    let mut trials = vec![Trial::new(&base, singles.remove(0))?];
+    let mut trials = vec![Candidate::new(&base, singles.remove(0))?];
     trials.extend(search.trials(singles));
     let mut open: Vec<usize> = (0..trials.len()).collect();
     for round in 0..request.rounds {
@@ -329,7 +329,7 @@ pub fn protect(
     let mut all: Vec<Ranked> =
         trials.iter().map(|trial| ranked(trial, &trials[0], &weights, tries)).collect();
     mark_front(&mut all);
-    let most = trials.iter().map(Trial::barrels).fold(0.0, f64::max);
+    let most = trials.iter().map(Candidate::barrels).fold(0.0, f64::max);
     over_constants(&mut all, &trials, levels, &weights, most);
     search.worn(&trials, &mut all, &weights)?;
     // Trials that were dropped early ran under fewer motions, so that their means cannot be compared with the others.
@@ -347,22 +347,26 @@ pub fn protect(
 }
 
 /// Returns the indices of the trials that continue in the next round, among the trials `open`.
-fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
+fn contenders(trials: &[Candidate], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
         let trial = &trials[*at];
         (&trial.runs[trial.worse(weights)], middle(&trial.protection))
     };
     let judged: Vec<(&Runs, f64)> = open.iter().map(judged).collect();
-    let most = trials.first().map_or(0.0, Trial::barrels);
+    let most = trials.first().map_or(0.0, Candidate::barrels);
     let kept = rank::contenders(&judged, weights, most);
     kept.into_iter().map(|at| open[at]).collect()
 }
 
 /// Returns, for each kind of protection, the two with which the fewest barrels fall.
-fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Vec<&'a Protection> {
+fn best_of_kinds<'a>(
+    trials: &'a [Candidate],
+    open: &[usize],
+    weights: &[f64],
+) -> Vec<&'a Protection> {
     let fallen =
-        |trial: &Trial| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
-    let mut sorted: Vec<&Trial> = open.iter().map(|at| &trials[*at]).collect();
+        |trial: &Candidate| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
+    let mut sorted: Vec<&Candidate> = open.iter().map(|at| &trials[*at]).collect();
     sorted.sort_by(|a, b| fallen(a).total_cmp(&fallen(b)));
     let mut best: Vec<&Protection> = Vec::new();
     for protection in sorted.into_iter().map(|trial| &trial.protection) {
@@ -386,7 +390,7 @@ fn middle(protection: &Protection) -> f64 {
     0.5 * (protection.cost[0] + protection.cost[1])
 }
 
-fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked {
+fn ranked(trial: &Candidate, base: &Candidate, weights: &[f64], tries: usize) -> Ranked {
     let worse = trial.worse(weights);
     let view = &trial.stacks[worse].0;
     let runs = &trial.runs[worse];
@@ -422,7 +426,7 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked 
 /// Adds the effect of the uncertain constants to the protections that were run in all rounds.
 fn over_constants(
     all: &mut [Ranked],
-    trials: &[Trial],
+    trials: &[Candidate],
     levels: &[f64],
     weights: &[f64],
     most: f64,

@@ -32,7 +32,7 @@ pub(crate) struct Args {
     pub(crate) command: Command,
     /// Stop at a point of the work, WORK:THINGS:DONE, as Ctrl-C does; for tests.
     #[arg(long, global = true, hide = true, value_name = "PLACE")]
-    pub(crate) stop_at: Option<crate::interrupt::Place>,
+    pub(crate) stop_at: Option<crate::interrupt::StopPoint>,
 }
 
 /// Command to run.

@@ -46,18 +46,18 @@ pub(crate) struct Interrupt;
 static WORKS: AtomicUsize = AtomicUsize::new(0);
 
 /// Point of the work at which a test stops the program.
-static PLACE: OnceLock<Option<Place>> = OnceLock::new();
+static PLACE: OnceLock<Option<StopPoint>> = OnceLock::new();
 
 /// A point in the work of the program, independent of the machine load: `2:variants:3` is reached
 /// when three variants are finished in the second piece of work.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct StopPoint {
     work: usize,
     things: String,
     done: f64,
 }
 
-impl std::str::FromStr for Place {
+impl std::str::FromStr for StopPoint {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -74,7 +74,7 @@ impl std::str::FromStr for Place {
 }
 
 /// Makes the program stop when its work reaches `place`, as if by a signal.
-pub(crate) fn stop_at(place: Option<Place>) {
+pub(crate) fn stop_at(place: Option<StopPoint>) {
     // Only the first call has an effect, and there is only one.
     let _ = PLACE.set(place);
 }

@@ -3,7 +3,7 @@
 use crate::Stripe;
 use crate::curve::Lognormal;
 use crate::evidence::{Capacity, Evidence, check};
-use crate::likelihood::{Known, Likelihood, Score, Top, covariance};
+use crate::likelihood::{Likelihood, Observation, Score, Top, covariance};
 use crate::math::{exp, ln, ln_choose, normal_quantile};
 use crate::proportion::Interval;
 
@@ -227,10 +227,10 @@ pub(crate) fn likelihood<const N: usize>(
     score: impl Fn(f64) -> Score<N>,
 ) -> Likelihood<N> {
     let known = |capacity: Capacity| match capacity {
-        Capacity::At(x) => Known::At(score(ln(x)), ln(x) - ln_slope),
-        Capacity::Below(x) => Known::Below(score(ln(x))),
-        Capacity::Above(x) => Known::Above(score(ln(x))),
-        Capacity::Between(low, high) => Known::Between(score(ln(low)), score(ln(high))),
+        Capacity::At(x) => Observation::At(score(ln(x)), ln(x) - ln_slope),
+        Capacity::Below(x) => Observation::Below(score(ln(x))),
+        Capacity::Above(x) => Observation::Above(score(ln(x))),
+        Capacity::Between(low, high) => Observation::Between(score(ln(low)), score(ln(high))),
     };
     let terms = evidence.iter().map(|item| (known(item.capacity), item.weight)).collect();
     Likelihood { terms, slope }

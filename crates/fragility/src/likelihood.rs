@@ -21,7 +21,7 @@ impl<const N: usize> Score<N> {
 
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Known<const N: usize> {
+pub(crate) enum Observation<const N: usize> {
     /// `Z = z`. The second value is the contribution of `ln ∂z/∂x` to the log-density; it omits the slope if
     /// the slope is a parameter.
     At(Score<N>, f64),
@@ -36,7 +36,7 @@ pub(crate) enum Known<const N: usize> {
 /// Weighted sum of log-likelihoods.
 #[derive(Clone, Debug)]
 pub(crate) struct Likelihood<const N: usize> {
-    pub terms: Vec<(Known<N>, f64)>,
+    pub terms: Vec<(Observation<N>, f64)>,
     /// Index of the parameter that is the slope `1/β`; `None` if the slope is not a parameter.
     pub slope: Option<usize>,
 }
@@ -79,10 +79,10 @@ const STEPS: usize = 200;
 
 impl<const N: usize> Likelihood<N> {
     /// Returns the log-likelihood of one observation with its derivatives.
-    pub(crate) fn term(&self, known: &Known<N>, weight: f64, p: &[f64; N]) -> Shape<N> {
+    pub(crate) fn term(&self, known: &Observation<N>, weight: f64, p: &[f64; N]) -> Shape<N> {
         let mut shape = Shape::ZERO;
         match known {
-            Known::At(score, ln_x) => {
+            Observation::At(score, ln_x) => {
                 let z = score.at(p);
                 shape.value = -weight * (0.5 * z * z + LN_ROOT_TAU + ln_x);
                 shape.push(score, -weight * z, -weight);
@@ -96,19 +96,19 @@ impl<const N: usize> Likelihood<N> {
                     }
                 }
             }
-            Known::Below(score) => {
+            Observation::Below(score) => {
                 let z = score.at(p);
                 let h = mills(z);
                 shape.value = weight * ln_normal(z);
                 shape.push(score, weight * h, -weight * h * (z + h));
             }
-            Known::Above(score) => {
+            Observation::Above(score) => {
                 let z = score.at(p);
                 let h = mills(-z);
                 shape.value = weight * ln_normal(-z);
                 shape.push(score, -weight * h, -weight * h * (h - z));
             }
-            Known::Between(low, high) => {
+            Observation::Between(low, high) => {
                 let (a, b) = (low.at(p), high.at(p));
                 let between = normal_between(a, b);
                 if between <= 0.0 {
@@ -248,11 +248,11 @@ mod tests {
         let score = |u: f64| Score { offset: 0.0, row: [1.0, u] };
         Likelihood {
             terms: vec![
-                (Known::At(score(0.3), 0.3), 1.0),
-                (Known::Below(score(0.7)), 2.0),
-                (Known::Above(score(-0.2)), 3.0),
-                (Known::Between(score(-0.5), score(0.4)), 1.5),
-                (Known::Between(score(2.5), score(2.9)), 0.5),
+                (Observation::At(score(0.3), 0.3), 1.0),
+                (Observation::Below(score(0.7)), 2.0),
+                (Observation::Above(score(-0.2)), 3.0),
+                (Observation::Between(score(-0.5), score(0.4)), 1.5),
+                (Observation::Between(score(2.5), score(2.9)), 0.5),
             ],
             slope: Some(1),
         }

@@ -2,7 +2,7 @@
 
 use crate::Evidence;
 use crate::fit::{Dispersion, Fit, FitError, fit};
-use crate::likelihood::{Known, Likelihood, Score, solve};
+use crate::likelihood::{Likelihood, Observation, Score, solve};
 use crate::math::{chi_square_above, ln, student_beyond};
 
 /// Fit of failures to one intensity measure, with its efficiency and sufficiency.
@@ -53,7 +53,7 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
         .zip(first.iter().zip(&rest))
         .map(|((_, failed), (u, v))| {
             let score = Score { offset: 0.0, row: [1.0, *u, *v] };
-            (if *failed { Known::Below(score) } else { Known::Above(score) }, 1.0)
+            (if *failed { Observation::Below(score) } else { Observation::Above(score) }, 1.0)
         })
         .collect();
     let b = 1.0 / alone.curve.dispersion;

@@ -1,6 +1,6 @@
 //! Competing failure modes: a failure in one mode precludes the others.
 
-use crate::likelihood::{Known, Likelihood, Score};
+use crate::likelihood::{Likelihood, Observation, Score};
 use crate::math::{ln, normal};
 
 /// Share of each mode among failures, as a function of intensity.
@@ -37,10 +37,17 @@ impl Shares {
             if high <= others_low || others_high <= low {
                 return None;
             }
-            let terms: Vec<(Known<2>, f64)> = left()
+            let terms: Vec<(Observation<2>, f64)> = left()
                 .map(|(x, of)| {
                     let score = Score { offset: 0.0, row: [1.0, ln(*x)] };
-                    (if *of == mode { Known::Below(score) } else { Known::Above(score) }, 1.0)
+                    (
+                        if *of == mode {
+                            Observation::Below(score)
+                        } else {
+                            Observation::Above(score)
+                        },
+                        1.0,
+                    )
                 })
                 .collect();
             splits.push(Likelihood { terms, slope: None }.top([0.0, 0.0])?.parameters);

@@ -46,7 +46,7 @@ const PRIOR_MIDDLE: f64 = 2.5;
 
 /// One trial: a run with randomly drawn constants.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub struct DrawnRun {
     /// Values of the unknown constants, as standard normal deviates.
     pub deviates: Vec<f64>,
     /// `true` if the trial belongs to the second half of the trials. The halves may differ on purpose, for
@@ -91,7 +91,7 @@ pub struct Influence {
 /// [`FEWEST_TRIALS`] trials, if there are no constants, or if trials differ in the number of their constants.
 ///
 /// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
-pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
+pub fn conditional(trials: &[DrawnRun], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
     // Logarithms of it are finite.
     let mut uniform = || 1.0 - uniform();
     let unknowns = trials.first()?.deviates.len();
@@ -102,7 +102,7 @@ pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option
         return None;
     }
     let halves = trials.iter().any(|trial| trial.second_half != trials[0].second_half);
-    let side = |trial: &Trial| match (halves, trial.second_half) {
+    let side = |trial: &DrawnRun| match (halves, trial.second_half) {
         (false, _) => 0.0,
         (true, false) => -1.0,
         (true, true) => 1.0,

@@ -6,7 +6,7 @@
 #![expect(clippy::print_stdout, reason = "the measured shares, shown with --nocapture")]
 
 use barrelstack_fragility::{
-    Influence, Shaken, Shape, Trial, conditional, interval_of, normal, normal_quantile, shaken,
+    DrawnRun, Influence, Shaken, Shape, conditional, interval_of, normal, normal_quantile, shaken,
     share_less, sobol,
 };
 use barrelstack_motion::Random;
@@ -61,13 +61,13 @@ fn trials(
     count: u32,
     seed: u64,
     random: &mut Random,
-) -> Vec<Trial> {
+) -> Vec<DrawnRun> {
     let trial = |number: u32| {
         let at = |axis| normal_quantile(sobol::padded(axis, number, seed));
         let deviates: Vec<f64> = (0..unknowns).map(at).collect();
         let second_half = number >= count / 2;
         let failed = random.uniform() < truth(&deviates, second_half);
-        Trial { deviates, second_half, failed }
+        DrawnRun { deviates, second_half, failed }
     };
     (0..count).map(trial).collect()
 }
@@ -155,11 +155,11 @@ fn a_share_with_its_minimum_in_the_middle_keeps_it() {
 /// Too little to fit gives nothing.
 #[test]
 fn few_trials_have_no_range() {
-    let trial = Trial { deviates: vec![0.1], second_half: false, failed: true };
+    let trial = DrawnRun { deviates: vec![0.1], second_half: false, failed: true };
     let mut random = Random::new(1);
     assert!(conditional(&vec![trial.clone(); 15], || random.uniform()).is_none());
     assert!(conditional(&vec![trial; 16], || random.uniform()).is_some());
-    let none = Trial { deviates: Vec::new(), second_half: false, failed: true };
+    let none = DrawnRun { deviates: Vec::new(), second_half: false, failed: true };
     assert!(conditional(&vec![none; 64], || random.uniform()).is_none());
 }
 

@@ -14,7 +14,7 @@ pub struct Dimension {
 }
 
 /// A dimension that has a name, an SI unit and an example.
-struct Known {
+struct NamedDimension {
     dimension: Dimension,
     name: &'static str,
     unit: &'static str,
@@ -30,8 +30,8 @@ macro_rules! dimensions {
                     Self { length: $length, mass: $mass, time: $time, angle: $angle };
             )*
         }
-        const KNOWN: &[Known] = &[
-            $(Known { dimension: Dimension::$constant, name: $name, unit: $unit, example: $example }),*
+        const KNOWN: &[NamedDimension] = &[
+            $(NamedDimension { dimension: Dimension::$constant, name: $name, unit: $unit, example: $example }),*
         ];
     };
 }
@@ -101,7 +101,7 @@ impl Dimension {
         })
     }
 
-    fn known(self) -> Option<&'static Known> {
+    fn known(self) -> Option<&'static NamedDimension> {
         KNOWN.iter().find(|known| known.dimension == self)
     }
 }

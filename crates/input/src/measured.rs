@@ -75,7 +75,7 @@ fn in_column(column: Option<&str>) -> String {
 
 /// Content of a cell in a column that may have empty cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Entry {
+pub enum CellContent {
     /// An empty cell.
     Empty,
     /// The word that replaces a number.
@@ -220,13 +220,13 @@ impl Table {
         name: &str,
         dimension: Dimension,
         word: &str,
-    ) -> Result<Vec<Entry>, TableError> {
+    ) -> Result<Vec<CellContent>, TableError> {
         let (at, unit) = self.place(name, dimension)?;
         let column = &self.columns[at].name;
         let entry = |(line, row): &(usize, Vec<String>)| match row[at].as_str() {
-            "" => Ok(Entry::Empty),
-            cell if cell == word => Ok(Entry::Word),
-            cell => self.value(*line, column, cell, (unit, dimension)).map(Entry::Number),
+            "" => Ok(CellContent::Empty),
+            cell if cell == word => Ok(CellContent::Word),
+            cell => self.value(*line, column, cell, (unit, dimension)).map(CellContent::Number),
         };
         self.rows.iter().map(entry).collect()
     }

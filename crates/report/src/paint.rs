@@ -39,12 +39,12 @@ pub(crate) struct Word<'a> {
 /// Paints the items of a drawing, scaled by `scale`, with the upper left corner at the origin.
 pub(crate) fn paint(items: &[Item], scale: f64, painter: &mut dyn Painter) {
     let mut walk = Walk { painter, bodies: HashMap::new(), styles: HashMap::new() };
-    walk.items(items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
+    walk.items(items, &Transform { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
 }
 
 /// Transform from the coordinates of an item to the coordinates of the picture.
 #[derive(Clone, Copy)]
-struct Place {
+struct Transform {
     origin: [f64; 2],
     scale: f64,
     /// Cosine and sine of the rotation angle, which is clockwise on the page.
@@ -53,7 +53,7 @@ struct Place {
     up: bool,
 }
 
-impl Place {
+impl Transform {
     fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let y = if self.up { -y } else { y };
         let [cos, sin] = self.turn;
@@ -88,13 +88,13 @@ impl<'d> Walk<'d, '_> {
         style
     }
 
-    fn items(&mut self, items: &'d [Item], place: &Place) {
+    fn items(&mut self, items: &'d [Item], place: &Transform) {
         for item in items {
             self.item(item, place);
         }
     }
 
-    fn item(&mut self, item: &'d Item, place: &Place) {
+    fn item(&mut self, item: &'d Item, place: &Transform) {
         match item {
             Item::Line { class, from, to } => {
                 let style = self.style(Tag::Shape, class, place.scale);
@@ -131,7 +131,7 @@ impl<'d> Walk<'d, '_> {
             }
             Item::Nested { at, scale, drawing } => {
                 let scale = place.scale * scale;
-                let inner = Place { origin: place.at(*at), scale, ..*place };
+                let inner = Transform { origin: place.at(*at), scale, ..*place };
                 let size = [drawing.width, drawing.height].map(|side| side * scale);
                 self.painter.clip(inner.origin, size);
                 self.items(&drawing.items, &inner);
@@ -142,7 +142,7 @@ impl<'d> Walk<'d, '_> {
             }
             Item::Scene { scale, origin, bodies } => {
                 let world =
-                    Place { origin: place.at(*origin), scale: place.scale * scale, ..*place };
+                    Transform { origin: place.at(*origin), scale: place.scale * scale, ..*place };
                 for placed in bodies {
                     self.placed(placed, &world);
                 }
@@ -150,13 +150,13 @@ impl<'d> Walk<'d, '_> {
         }
     }
 
-    fn placed(&mut self, placed: &Placed, world: &Place) {
+    fn placed(&mut self, placed: &Placed, world: &Transform) {
         let Some(body) = self.bodies.get(placed.id.as_str()).copied() else { return };
         let [x, z, angle] = placed.pose;
         let (sin, cos) = angle.sin_cos();
-        let origin = Place { up: true, ..*world }.at([x, z]);
+        let origin = Transform { up: true, ..*world }.at([x, z]);
         // A counterclockwise rotation with z up is a negative clockwise rotation on the page.
-        self.items(&body.items, &Place { origin, turn: [cos, -sin], up: true, ..*world });
+        self.items(&body.items, &Transform { origin, turn: [cos, -sin], up: true, ..*world });
     }
 
     fn word(

@@ -58,7 +58,7 @@ struct PlacedMark<'a> {
 }
 
 /// A series in the legend: the position and the lines of its text.
-struct Entry {
+struct LegendEntry {
     series: usize,
     corner: [f64; 2],
     lines: Vec<String>,
@@ -120,7 +120,7 @@ impl Plot {
             items: self.draw_series(&x, &y),
         });
         self.draw_marks(&mut drawing, &marks, &x, &y);
-        for Entry { series, corner, lines } in legend {
+        for LegendEntry { series, corner, lines } in legend {
             self.draw_sample(&mut drawing, series, [corner[0], corner[1] - 4.0]);
             for (line, text) in lines.iter().enumerate() {
                 let at = [corner[0] + SAMPLE + 6.0, corner[1] + LINE * line as f64];
@@ -168,7 +168,7 @@ impl Plot {
 
     /// Lays out the legend: position and lines of each entry, and the total height. If an entry
     /// does not fit beside the axis, all entries start at `edge`.
-    fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<Entry>, f64) {
+    fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<LegendEntry>, f64) {
         let named = || self.series.iter().filter(|series| !series.label.is_empty());
         let wide = |label: &str| SAMPLE + 6.0 + text_width(label, FONT);
         let longest = named().map(|series| wide(&series.label)).fold(0.0, f64::max);
@@ -186,7 +186,7 @@ impl Plot {
                 pen = [left, height + 17.0];
             }
             height = height.max(pen[1] + LINE * (lines.len() - 1) as f64);
-            entries.push(Entry { series: at, corner: pen, lines });
+            entries.push(LegendEntry { series: at, corner: pen, lines });
             pen[0] += wide + 18.0;
         }
         let height = if entries.is_empty() { 0.0 } else { height + 2.0 };

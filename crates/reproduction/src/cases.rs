@@ -57,7 +57,7 @@ impl Motion {
 
 /// The five cases.
 #[derive(Clone, Debug)]
-pub(super) struct Cases {
+pub(super) struct PaperCases {
     /// Six barrels, rack–ground friction 0.4.
     pub(super) six: Scenario,
     /// Six barrels, rack–ground friction 0.1.
@@ -72,7 +72,7 @@ pub(super) struct Cases {
     pub(super) motion: Motion,
 }
 
-impl Cases {
+impl PaperCases {
     /// Creates the cases; `record` is the ground motion of the six barrels.
     pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
         let change = match record {

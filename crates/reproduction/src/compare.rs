@@ -9,7 +9,7 @@ pub(super) const CLOSE: f64 = 0.20;
 
 /// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Agreement {
     /// Within ±20 % of the published number, or qualitatively equal.
     Agrees,
     /// Off by more than 20 %, but within the wider band that the project accepts.
@@ -20,7 +20,7 @@ pub enum Verdict {
     NotCompared,
 }
 
-impl Verdict {
+impl Agreement {
     /// Returns the text of the verdict in tables.
     pub fn words(self) -> &'static str {
         match self {
@@ -49,7 +49,7 @@ pub struct Comparison {
     /// The wider band that the project accepts, in words, if there is one.
     pub band: Option<&'static str>,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: Agreement,
     /// Explanation of the difference, or method of measurement.
     pub why: String,
 }
@@ -106,11 +106,11 @@ pub(super) fn number(
     let difference = ours.map(|ours| ours / published - 1.0);
     let within = |(low, high, _): Band| ours.is_some_and(|ours| (low..=high).contains(&ours));
     let verdict = if difference.is_some_and(|d| d.abs() <= CLOSE) {
-        Verdict::Agrees
+        Agreement::Agrees
     } else if band.is_some_and(within) {
-        Verdict::InBand
+        Agreement::InBand
     } else {
-        Verdict::Differs
+        Agreement::Differs
     };
     let text = |value: String| format!("{value} {unit}").trim_end().to_owned();
     let shown = |ours: f64| text(barrelstack_report::significant(ours, 3));
@@ -143,26 +143,26 @@ pub(super) fn finding(
         ours: ours.into(),
         difference: None,
         band: None,
-        verdict: if same { Verdict::Agrees } else { Verdict::Differs },
+        verdict: if same { Agreement::Agrees } else { Agreement::Differs },
         why: why.into(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Band, Verdict, number};
+    use super::{Agreement, Band, number};
 
-    fn judge(ours: Option<f64>, band: Option<Band>) -> Verdict {
+    fn judge(ours: Option<f64>, band: Option<Band>) -> Agreement {
         number("", "", (10.0, "s"), ours, band, "").verdict
     }
 
     #[test]
     fn the_verdict_is_the_narrowest_band_that_holds() {
         let band = Some((5.0, 15.0, "5 to 15 s"));
-        assert_eq!(judge(Some(11.9), band), Verdict::Agrees);
-        assert_eq!(judge(Some(12.1), band), Verdict::InBand);
-        assert_eq!(judge(Some(12.1), None), Verdict::Differs);
-        assert_eq!(judge(Some(15.1), band), Verdict::Differs);
-        assert_eq!(judge(None, band), Verdict::Differs);
+        assert_eq!(judge(Some(11.9), band), Agreement::Agrees);
+        assert_eq!(judge(Some(12.1), band), Agreement::InBand);
+        assert_eq!(judge(Some(12.1), None), Agreement::Differs);
+        assert_eq!(judge(Some(15.1), band), Agreement::Differs);
+        assert_eq!(judge(None, band), Agreement::Differs);
     }
 }

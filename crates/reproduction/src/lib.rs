@@ -31,7 +31,7 @@ use barrelstack::scenario::ScenarioError;
 use barrelstack_report::Document;
 
 pub use cases::{Motion, recognize};
-pub use compare::{Comparison, Verdict, percent};
+pub use compare::{Agreement, Comparison, percent};
 
 /// The comparison of the paper's results with ours.
 #[derive(Clone, Debug)]
@@ -108,7 +108,7 @@ pub fn reproduce(
     studies: bool,
     progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Reproduction, ReproduceError> {
-    let cases = cases::Cases::new(record)?;
+    let cases = cases::PaperCases::new(record)?;
     let mut plan = results::Plan::new(&cases, studies);
     let mut done = pool::run_all(&plan.jobs, progress)?;
     let stopped = done.iter().any(Option::is_none);

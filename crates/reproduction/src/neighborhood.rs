@@ -5,7 +5,7 @@ use barrelstack::scenario::{Cradle, Scenario, StackSpec};
 use barrelstack::summary::Summary;
 use barrelstack_report::{Block, Cell, Table};
 
-use super::cases::Cases;
+use super::cases::PaperCases;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
@@ -64,7 +64,7 @@ fn change(stack: &mut StackSpec, index: usize) {
 
 /// Returns the runs of every sample: the eight barrels, the stack along the barrels, and, if the paper's record is
 /// given, the six barrels.
-pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
+pub(super) fn jobs(cases: &PaperCases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for index in 0..COUNT {
         let mut job = |case: &str, base: &Scenario, until: Option<f64>| {

@@ -8,7 +8,7 @@ use barrelstack::report::scene;
 use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict as Headline, significant};
 
 use super::cases::Motion;
-use super::compare::{Comparison, Verdict, percent};
+use super::compare::{Agreement, Comparison, percent};
 use super::results::{Ran, Results};
 use super::study::Subject;
 use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
@@ -47,15 +47,15 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
 /// Summarizes the verdicts.
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    let compared = rows.len() - count(Verdict::NotCompared);
+    let compared = rows.len() - count(Agreement::NotCompared);
     // Writing to a String cannot fail.
-    let mut text = format!("{} of {compared} published results agree", count(Verdict::Agrees));
-    if count(Verdict::InBand) > 0 {
-        let _ = write!(text, ", {} more within a wider band", count(Verdict::InBand));
+    let mut text = format!("{} of {compared} published results agree", count(Agreement::Agrees));
+    if count(Agreement::InBand) > 0 {
+        let _ = write!(text, ", {} more within a wider band", count(Agreement::InBand));
     }
-    let _ = write!(text, ", {} differ", count(Verdict::Differs));
-    if count(Verdict::NotCompared) > 0 {
-        let _ = write!(text, "; not compared: {}", count(Verdict::NotCompared));
+    let _ = write!(text, ", {} differ", count(Agreement::Differs));
+    if count(Agreement::NotCompared) > 0 {
+        let _ = write!(text, "; not compared: {}", count(Agreement::NotCompared));
     }
     text.push('.');
     text

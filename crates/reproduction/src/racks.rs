@@ -5,7 +5,7 @@ use barrelstack::scenario::{Cradle, StackSpec};
 use barrelstack::summary::Summary;
 use barrelstack_report::{Block, Cell, Table};
 
-use super::cases::Cases;
+use super::cases::PaperCases;
 use super::ensemble;
 use super::pool::Job;
 use super::vary::{self, brief, with};
@@ -72,7 +72,7 @@ pub(super) struct Tried {
 
 /// Returns the runs of each rack: the six barrels, the eight barrels, and the eight barrels with every combination of
 /// changed contact parameters.
-pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
+pub(super) fn jobs(cases: &PaperCases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (name, change) in RACKS {
         let job = |case: &str, scenario| Job::brief(format!("{case} with {name}"), scenario);

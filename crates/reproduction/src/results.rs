@@ -4,7 +4,7 @@ use barrelstack::run::Run;
 use barrelstack::scenario::{Scale, Scenario};
 use barrelstack::summary::Summary;
 
-use super::cases::{Cases, Motion};
+use super::cases::{Motion, PaperCases};
 use super::neighborhood::{self, Kept};
 use super::pool::{Done, Job};
 use super::racks::{self, Tried};
@@ -62,7 +62,7 @@ pub(super) struct Results {
 
 impl Plan {
     /// Plans the runs of all cases, and of the studies if requested.
-    pub(super) fn new(cases: &Cases, with_studies: bool) -> Self {
+    pub(super) fn new(cases: &PaperCases, with_studies: bool) -> Self {
         let mut mirrored = cases.eight.clone();
         mirrored.motion.scale = Scale::Factor(-1.0);
         let measured = vary::with(&cases.eight, |stack| {

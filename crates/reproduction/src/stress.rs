@@ -4,7 +4,7 @@ use barrelstack::run::Run;
 use barrelstack::watch::StressEnvelope;
 use barrelstack_report::significant;
 
-use super::compare::{Comparison, Verdict};
+use super::compare::{Agreement, Comparison};
 use super::numbering;
 
 /// Returns the stress envelope of the barrel with the given number of the paper.
@@ -83,7 +83,7 @@ pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Com
         ours: value(run).map_or_else(|| "–".to_owned(), |value| significant(value, 3)),
         difference: None,
         band: None,
-        verdict: Verdict::NotCompared,
+        verdict: Agreement::NotCompared,
         why: format!("{meaning}; until the first loss of seat"),
     };
     DEFINITIONS.into_iter().map(row).collect()

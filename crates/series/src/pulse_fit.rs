@@ -67,12 +67,12 @@ pub fn dominant_pulse(
     let spectrum = forward_real(&velocity, length);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let count = (PER_E_FOLD * math::ln(longest / shortest)).ceil().clamp(1.0, 1e4) as usize;
-    let mut best = Trial { period: shortest, gamma: WIDTHS[0], center: 0.0, explained: 0.0 };
+    let mut best = Fit { period: shortest, gamma: WIDTHS[0], center: 0.0, explained: 0.0 };
     for period in math::log_space(shortest, longest, count) {
         for gamma in WIDTHS {
             let (center, explained) = best_shift(&spectrum, dt, velocity.len(), period, gamma);
             if explained > best.explained {
-                best = Trial { period, gamma, center, explained };
+                best = Fit { period, gamma, center, explained };
             }
         }
     }
@@ -97,7 +97,7 @@ pub fn dominant_pulse(
 }
 
 #[derive(Clone, Copy)]
-struct Trial {
+struct Fit {
     period: f64,
     gamma: f64,
     center: f64,
@@ -158,8 +158,8 @@ struct Projection {
 
 /// Computes the least-squares amplitudes of the cosine and sine forms, evaluated at the times of
 /// the samples.
-fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
-    let Trial { period, gamma, center, .. } = *trial;
+fn project(velocity: &[f64], dt: f64, trial: &Fit) -> Projection {
+    let Fit { period, gamma, center, .. } = *trial;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
     let index = |t: f64| (t / dt).clamp(0.0, velocity.len() as f64) as usize;
     let (first, last) = (
@@ -185,7 +185,7 @@ fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
 }
 
 /// Refines period, width and middle by coordinate search with decreasing steps.
-fn refine(velocity: &[f64], dt: f64, start: Trial, shortest: f64, longest: f64) -> Trial {
+fn refine(velocity: &[f64], dt: f64, start: Fit, shortest: f64, longest: f64) -> Fit {
     let mut best = start;
     best.explained = project(velocity, dt, &best).explained;
     let mut size = 0.05;
@@ -199,7 +199,7 @@ fn refine(velocity: &[f64], dt: f64, start: Trial, shortest: f64, longest: f64) 
             (0.0, 0.0, size),
             (0.0, 0.0, -size),
         ] {
-            let mut next = Trial {
+            let mut next = Fit {
                 period: (best.period * (1.0 + dp)).clamp(shortest, longest),
                 gamma: (best.gamma * (1.0 + dg)).clamp(WIDTHS[0], WIDTHS[WIDTHS.len() - 1]),
                 center: best.center + dc * best.period,

@@ -17,7 +17,7 @@ mod page;
 mod results;
 mod weigh;
 
-pub use cases::{COLUMNS, Case, Cases, UNKNOWNS};
+pub use cases::{COLUMNS, FieldCase, FieldCases, UNKNOWNS};
 pub use chance::{Chance, MEDIANS, Point};
 pub use observations::{Earthquake, Kind, Likelihood, Observation, Observations};
 pub use results::{Bin, Posterior, Results, Share};
@@ -41,8 +41,8 @@ pub fn evaluate(
     let observations = Observations::read(observations)?;
     let cases = cases
         .iter()
-        .map(|(name, text)| Cases::read(name, text))
-        .collect::<Result<Vec<Cases>, FieldError>>()?;
+        .map(|(name, text)| FieldCases::read(name, text))
+        .collect::<Result<Vec<FieldCases>, FieldError>>()?;
     let results = Results::of(&observations, &cases)?;
     Ok(vec![
         ("field.md".to_owned(), page::page(&observations, &cases, &results)),

@@ -161,29 +161,34 @@ pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) ->
 
 impl Setting {
     /// Adds the requested quantity, its unit (empty for pure numbers), and the exact answer.
-    pub fn quantity(self, quantity: &'static str, unit: &'static str, answer: Answer) -> Question {
+    pub fn quantity(
+        self,
+        quantity: &'static str,
+        unit: &'static str,
+        answer: Reference,
+    ) -> Question {
         Question { setting: self, quantity, unit, answer }
     }
 }
 
 /// The exact or published answer with its tolerance.
-pub struct Answer {
+pub struct Reference {
     exact: f64,
     tolerance: Tolerance,
     fast: Option<Tolerance>,
 }
 
 /// Creates an answer with a relative tolerance.
-pub fn relative(exact: f64, limit: f64) -> Answer {
-    Answer { exact, tolerance: Tolerance::Relative(limit), fast: None }
+pub fn relative(exact: f64, limit: f64) -> Reference {
+    Reference { exact, tolerance: Tolerance::Relative(limit), fast: None }
 }
 
 /// Creates an answer with an absolute tolerance, in the unit of the quantity.
-pub fn absolute(exact: f64, limit: f64) -> Answer {
-    Answer { exact, tolerance: Tolerance::Absolute(limit), fast: None }
+pub fn absolute(exact: f64, limit: f64) -> Reference {
+    Reference { exact, tolerance: Tolerance::Absolute(limit), fast: None }
 }
 
-impl Answer {
+impl Reference {
     /// Returns the answer with a second limit, of the same kind, that applies at fast effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
@@ -200,7 +205,7 @@ pub struct Question {
     setting: Setting,
     quantity: &'static str,
     unit: &'static str,
-    answer: Answer,
+    answer: Reference,
 }
 
 impl Question {
@@ -210,7 +215,7 @@ impl Question {
         answer: impl Fn(Effort) -> Result<A, Failure> + Send + Sync + 'static,
     ) -> Problem {
         let Self { setting: Setting { id, title, source }, quantity, unit, answer: wanted } = self;
-        let Answer { exact, tolerance, fast } = wanted;
+        let Reference { exact, tolerance, fast } = wanted;
         let run: Run = Box::new(move |effort| answer(effort).map(Into::into));
         Problem { id, title, source, quantity, unit, exact, tolerance, fast, run }
     }

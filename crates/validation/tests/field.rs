@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use barrelstack_validation::field::{Cases, Kind, Likelihood, Observations, evaluate};
+use barrelstack_validation::field::{FieldCases, Kind, Likelihood, Observations, evaluate};
 
 fn field() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/field")
@@ -65,7 +65,7 @@ fn every_study_has_its_cases_and_nearly_all_have_a_verdict() {
     let cases = cases();
     assert_eq!(studies, cases.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
     for (name, text) in &cases {
-        let read = Cases::read(name, text).unwrap();
+        let read = FieldCases::read(name, text).unwrap();
         assert!(read.unjudged * 50 <= read.cases.len(), "{name}: {} without", read.unjudged);
         assert!(read.cases.iter().all(|case| (2..=6).contains(&case.levels)));
     }

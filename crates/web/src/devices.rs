@@ -11,13 +11,13 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub(crate) struct Devices {
     /// Names of the devices on the stack, with their tables in `[stack]`.
-    present: Vec<Known>,
+    present: Vec<DeviceTable>,
     /// Settings of devices that the stack does not have but that could be added.
     candidates: Vec<Candidate>,
 }
 
 #[derive(Serialize)]
-struct Known {
+struct DeviceTable {
     name: &'static str,
     table: String,
 }
@@ -54,7 +54,7 @@ impl Devices {
             let settings = words.settings(stack.levels);
             if on.contains(words) {
                 let table = settings.iter().find_map(|(_, changes)| table(changes.first()?));
-                present.extend(table.map(|table| Known { name: words.many, table }));
+                present.extend(table.map(|table| DeviceTable { name: words.many, table }));
                 continue;
             }
             let of = |(name, changes)| Candidate { device: words.one, name, changes };

@@ -12,13 +12,13 @@ use serde::Serialize;
 /// The catalog of barrels and racks.
 #[derive(Serialize)]
 pub(crate) struct Catalog {
-    barrels: Vec<Known>,
-    racks: Vec<Known>,
+    barrels: Vec<CatalogEntry>,
+    racks: Vec<CatalogEntry>,
 }
 
 /// An entry of the catalog.
 #[derive(Serialize)]
-struct Known {
+struct CatalogEntry {
     name: &'static str,
     source: &'static str,
 }
@@ -28,8 +28,12 @@ impl Catalog {
         let barrels = catalog::BARRELS.iter();
         let racks = catalog::RACKS.iter();
         Self {
-            barrels: barrels.map(|one| Known { name: one.name, source: one.source }).collect(),
-            racks: racks.map(|one| Known { name: one.rack.base, source: one.source }).collect(),
+            barrels: barrels
+                .map(|one| CatalogEntry { name: one.name, source: one.source })
+                .collect(),
+            racks: racks
+                .map(|one| CatalogEntry { name: one.rack.base, source: one.source })
+                .collect(),
         }
     }
 }

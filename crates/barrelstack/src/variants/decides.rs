@@ -1,7 +1,7 @@
 //! Range of the share of collapses over the uncertain constants of the seats, and the constant that
 //! decides the result.
 
-use barrelstack_fragility::{Conditional, Influence, Trial, conditional, normal_quantile};
+use barrelstack_fragility::{Conditional, DrawnRun, Influence, conditional, normal_quantile};
 use barrelstack_motion::Random;
 use barrelstack_report::described;
 
@@ -368,7 +368,7 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
         return None;
     }
     let constants = drawn(&stack.interfaces, unknowns, stack.rack.posts.is_some());
-    let trial = |(number, result): (u32, &CaseResult)| Trial {
+    let trial = |(number, result): (u32, &CaseResult)| DrawnRun {
         deviates: constants
             .iter()
             .map(|one| draw::deviate(imperfections, one.axis, number))
@@ -376,7 +376,7 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
         second_half: plane.exchanged.is_some() && plane.is_exchanged(number),
         failed: collapsed(result),
     };
-    let trials: Vec<Trial> = (1..).zip(variants).map(trial).collect();
+    let trials: Vec<DrawnRun> = (1..).zip(variants).map(trial).collect();
     let mut random = Random::new(u64::from(imperfections.seed));
     let fitted = conditional(&trials, || random.uniform())?;
     let constants: Vec<Constant<'_>> = constants.iter().map(Drawn::constant).collect();

@@ -2,7 +2,7 @@
 
 use barrelstack::outcome::CollapseMode;
 use barrelstack::scenario::Dimension;
-use barrelstack_input::measured::Entry;
+use barrelstack_input::measured::CellContent;
 
 use crate::{CalibrateError, Table};
 
@@ -167,11 +167,11 @@ fn times(table: &Table, name: &str) -> Result<Vec<Option<Time>>, CalibrateError>
     if !table.has(name) {
         return Ok(vec![None; table.count()]);
     }
-    let time = |(row, entry): (usize, Entry)| match entry {
-        Entry::Empty => Ok(None),
-        Entry::Word => Ok(Some(Time::Never)),
-        Entry::Number(time) if time > 0.0 => Ok(Some(Time::At(time))),
-        Entry::Number(_) => {
+    let time = |(row, entry): (usize, CellContent)| match entry {
+        CellContent::Empty => Ok(None),
+        CellContent::Word => Ok(Some(Time::Never)),
+        CellContent::Number(time) if time > 0.0 => Ok(Some(Time::At(time))),
+        CellContent::Number(_) => {
             let found = table.cell(row, name);
             let remedy = "count time from the start of the scenario's motion";
             Err(table.at(row, name, "a time above zero", &found, remedy).into())

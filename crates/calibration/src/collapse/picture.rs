@@ -5,7 +5,7 @@ use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 use super::ensemble::Course;
 use super::observed::Time;
 use super::sampler::Posterior;
-use super::{Trial, alike};
+use super::{PreparedTest, alike};
 use crate::figures::measured;
 
 /// Quantiles of the simulated times at the two ends of a bar; the times are weighted by the posterior.
@@ -13,7 +13,7 @@ const MIDDLE: [f64; 2] = [0.05, 0.95];
 
 /// Draws the posterior weight of the observed modes, and the times of the observed events.
 pub(super) fn pictures(
-    trials: &[Trial<'_>],
+    trials: &[PreparedTest<'_>],
     courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Vec<Figure> {
@@ -27,14 +27,14 @@ pub(super) fn pictures(
 fn of<'a>(
     courses: &'a [Option<Course>],
     at: usize,
-    trials: &[Trial<'_>],
+    trials: &[PreparedTest<'_>],
 ) -> impl Iterator<Item = &'a Option<Course>> {
     courses.iter().skip(at).step_by(trials.len())
 }
 
 /// Draws the weight of the courses with the observed mode; `None` if no mode was observed.
 fn modes(
-    trials: &[Trial<'_>],
+    trials: &[PreparedTest<'_>],
     courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Option<Figure> {
@@ -53,7 +53,7 @@ fn modes(
 
 /// Draws the times of events; `None` if no time was observed.
 fn times(
-    trials: &[Trial<'_>],
+    trials: &[PreparedTest<'_>],
     courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Option<Figure> {

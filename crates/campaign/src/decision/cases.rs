@@ -90,7 +90,7 @@ impl Measure {
 
 /// A case that has a verdict.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct JudgedCase {
     /// Index of the table row of the case.
     pub row: u32,
     /// Index of the motion in [`Cases::records`].
@@ -124,7 +124,7 @@ pub struct Case {
     pub curve: u32,
 }
 
-impl Case {
+impl JudgedCase {
     /// Returns the intensity (SI) of the case in the measure at an index; `None` if unknown.
     pub fn intensity(&self, measure: usize) -> Option<f64> {
         self.intensities.get(measure).copied().filter(|value| !value.is_nan())
@@ -151,7 +151,7 @@ impl Case {
 pub struct Cases {
     /// Title of the study.
     pub title: String,
-    /// Names of the motions, to which [`Case::record`] refers.
+    /// Names of the motions, to which [`JudgedCase::record`] refers.
     pub records: Vec<String>,
     /// Names of the modes of collapse, in the order of first occurrence.
     pub modes: Vec<String>,
@@ -172,7 +172,7 @@ pub struct Cases {
     pub endings: Endings,
     /// All cases. They are shared by reference, since there may be a million of them and subsets are used as
     /// well.
-    pub all: Vec<Arc<Case>>,
+    pub all: Vec<Arc<JudgedCase>>,
     /// Number of rows without a verdict, because the run failed, could not start, or gave a result that is
     /// not judged.
     pub left_out: usize,
@@ -332,7 +332,7 @@ impl Reading {
                 let found = wines.and_then(|of| of[row].clone()).unwrap_or_default();
                 return Err(DecisionError::List { column: "fall_wine", found });
             }
-            self.cases.all.push(Arc::new(Case {
+            self.cases.all.push(Arc::new(JudgedCase {
                 row: small(first + row),
                 record: self.records.of(name),
                 collapsed,
@@ -380,7 +380,7 @@ impl Cases {
 
     /// Returns a copy that contains only the cases for which `keep` returns `true`.
     #[must_use]
-    pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
+    pub fn only(&self, keep: impl Fn(&JudgedCase) -> bool) -> Self {
         let mut fewer = self.clone();
         fewer.all.retain(|case| keep(case));
         fewer
@@ -438,14 +438,14 @@ impl Cases {
     /// equal numbers of neighboring cases, and the intensity of a bin is the geometric mean over its cases.
     /// The limits of a few dozen cases per bin and about a dozen bins are chosen because a fraction needs
     /// several dozen cases, and a trend is clearest in about a dozen bins.
-    pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
-        let mut sorted: Vec<(f64, &Case)> = self
+    pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
+        let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all
             .iter()
             .filter_map(|case| Some((case.intensity(measure)?, case.as_ref())))
             .collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.row.cmp(&b.1.row)));
-        let mut found: Vec<(f64, Vec<&Case>)> = Vec::new();
+        let mut found: Vec<(f64, Vec<&JudgedCase>)> = Vec::new();
         if self.shares_levels(measure) {
             for (level, case) in sorted {
                 match found.last_mut() {

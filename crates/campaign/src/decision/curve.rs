@@ -10,7 +10,7 @@ use barrelstack_fragility::{
 };
 use barrelstack_motion::Random;
 
-use super::cases::{Case, Cases};
+use super::cases::{Cases, JudgedCase};
 use super::limit::LimitState;
 
 /// Confidence level of all bands.
@@ -90,14 +90,14 @@ impl LimitCurve {
         } else {
             (Vec::new(), None, BandKind::None)
         };
-        let single = |case: &Case| {
+        let single = |case: &JudgedCase| {
             Some(stripe(case.intensity(measure)?, &[case], |case| limit.reached(case)))
         };
         let goodness = fit.as_ref().ok().map(|fit| {
             if cases.hunted {
                 return goodness(&stripes, fit);
             }
-            let of = |(_, of): &(f64, Vec<&Case>)| {
+            let of = |(_, of): &(f64, Vec<&JudgedCase>)| {
                 of.iter().filter_map(|case| single(case)).collect::<Vec<Stripe>>()
             };
             goodness_in_bins(&groups.iter().map(of).collect::<Vec<_>>(), fit)
@@ -171,7 +171,11 @@ pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
 }
 
 /// Counts cases and failures, and returns them as a stripe with the intensity.
-pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> bool) -> Stripe {
+pub(super) fn stripe(
+    intensity: f64,
+    of: &[&JudgedCase],
+    failed: impl Fn(&JudgedCase) -> bool,
+) -> Stripe {
     Stripe {
         intensity,
         cases: u32::try_from(of.len()).unwrap_or(u32::MAX),

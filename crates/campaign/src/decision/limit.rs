@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::cases::{Case, Cases};
+use super::cases::{Cases, JudgedCase};
 
 /// Definition of the failure of a stack.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub enum LimitState {
 
 impl LimitState {
     /// `true` if it is known whether a case reached the limit state.
-    pub(super) fn is_known(&self, case: &Case) -> bool {
+    pub(super) fn is_known(&self, case: &JudgedCase) -> bool {
         match self {
             Self::SeatLost => true,
             Self::Fallen(_) => case.followed,
@@ -23,7 +23,7 @@ impl LimitState {
     }
 
     /// `true` if a case reached the limit state.
-    pub fn reached(&self, case: &Case) -> bool {
+    pub fn reached(&self, case: &JudgedCase) -> bool {
         match self {
             Self::SeatLost => case.collapsed,
             Self::Fallen(count) => case.fallen() >= *count,

@@ -2,7 +2,7 @@
 
 use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 
-use super::cases::{Case, Cases};
+use super::cases::{Cases, JudgedCase};
 use super::curve::{LEVEL, interpolate};
 
 /// Assumed probability that a full barrel bursts in a fall, as a lognormal function of the height of the fall.
@@ -139,7 +139,7 @@ impl Losses {
     }
 }
 
-fn at(intensity: f64, of: &[&Case]) -> Loss {
+fn at(intensity: f64, of: &[&JudgedCase]) -> Loss {
     let count = of.len() as f64;
     let fallen = of.iter().map(|case| f64::from(case.fallen())).sum::<f64>() / count;
     let burst = Breakage::RANGE.map(|breakage| {

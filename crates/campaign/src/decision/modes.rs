@@ -2,7 +2,7 @@
 
 use barrelstack_fragility::{Interval, Shares, Stripe, wilson};
 
-use super::cases::{Case, Cases};
+use super::cases::{Cases, JudgedCase};
 use super::curve::{LEVEL, LimitCurve, stripe};
 
 /// Incidence of one collapse mode against the measure of the study.
@@ -20,7 +20,7 @@ pub struct ModeIncidence {
     pub fitted: Vec<f64>,
 }
 
-fn is(case: &Case, mode: usize) -> bool {
+fn is(case: &JudgedCase, mode: usize) -> bool {
     case.mode.map(usize::from) == Some(mode)
 }
 

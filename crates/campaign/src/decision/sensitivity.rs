@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use barrelstack_fragility::{Interval, grouped_mean, wilson};
 
-use super::cases::{Case, Cases, format_value};
+use super::cases::{Cases, JudgedCase, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
@@ -80,7 +80,7 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
         .iter()
         .enumerate()
         .filter_map(|(at, factor)| {
-            let belongs = |case: &&Case| {
+            let belongs = |case: &&JudgedCase| {
                 !alone
                     || factors.iter().zip(&base).enumerate().all(|(other, (column, base))| {
                         let value = || column.values.get(case.row as usize);
@@ -117,7 +117,7 @@ fn most_frequent(factor: &Column) -> Option<Value> {
     factor.values.get(first)
 }
 
-fn group(label: String, of: Vec<&Case>) -> (Group, Vec<&Case>) {
+fn group(label: String, of: Vec<&JudgedCase>) -> (Group, Vec<&JudgedCase>) {
     let cases = u32::try_from(of.len()).unwrap_or(u32::MAX);
     let collapsed = of.iter().map(|case| u32::from(case.collapsed)).sum();
     let interval = wilson(collapsed, cases, LEVEL);
@@ -125,7 +125,7 @@ fn group(label: String, of: Vec<&Case>) -> (Group, Vec<&Case>) {
 }
 
 /// Counts cases and collapses, and computes an interval of their share that is clustered by motion.
-fn by_motion(of: &[&Case]) -> Level {
+fn by_motion(of: &[&JudgedCase]) -> Level {
     let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     for case in of {
         let (collapsed, cases) = motions.entry(case.record).or_default();
@@ -143,24 +143,24 @@ fn by_motion(of: &[&Case]) -> Level {
 
 /// Counts cases and collapses at each level, in ascending order; empty if the cases were not scaled to
 /// levels.
-fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
+fn levels(of: &[&JudgedCase], cases: &Cases) -> Vec<Level> {
     let leveled = of.iter().filter(|_| cases.leveled);
-    let mut at: Vec<(f64, &Case)> =
+    let mut at: Vec<(f64, &JudgedCase)> =
         leveled.filter_map(|case| Some((case.intensity(cases.main)?, *case))).collect();
     at.sort_by(|a, b| a.0.total_cmp(&b.0));
     let parts = at.chunk_by(|a, b| alike(a.0, b.0));
-    let level = |part: &[(f64, &Case)]| {
-        let of: Vec<&Case> = part.iter().map(|(_, case)| *case).collect();
+    let level = |part: &[(f64, &JudgedCase)]| {
+        let of: Vec<&JudgedCase> = part.iter().map(|(_, case)| *case).collect();
         Level { intensity: part[0].0, ..by_motion(&of) }
     };
     parts.map(level).collect()
 }
 
 fn groups<'a>(
-    rows: impl Iterator<Item = (Option<Value>, &'a Case)> + Clone,
+    rows: impl Iterator<Item = (Option<Value>, &'a JudgedCase)> + Clone,
     unit: &str,
-) -> Vec<(Group, Vec<&'a Case>)> {
-    let numbers: Option<Vec<(f64, &'a Case)>> = rows
+) -> Vec<(Group, Vec<&'a JudgedCase>)> {
+    let numbers: Option<Vec<(f64, &'a JudgedCase)>> = rows
         .clone()
         .map(|(value, case)| match value {
             Some(Value::Number(x)) => Some((x, case)),
@@ -174,15 +174,15 @@ fn groups<'a>(
         if x.fract() == 0.0 { format!("{x}") } else { barrelstack_report::significant(x, 3) }
     };
     let Some(mut numbers) = numbers else {
-        let mut by_text: BTreeMap<String, Vec<&'a Case>> = BTreeMap::new();
+        let mut by_text: BTreeMap<String, Vec<&'a JudgedCase>> = BTreeMap::new();
         for (value, case) in rows {
             by_text.entry(format_value(value)).or_default().push(case);
         }
         return by_text.into_iter().map(|(label, of)| group(label, of)).collect();
     };
     numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let same: Vec<&[(f64, &'a Case)]> = numbers.chunk_by(|a, b| a.0 == b.0).collect();
-    let parts: Vec<&[(f64, &'a Case)]> = if same.len() <= MOST {
+    let same: Vec<&[(f64, &'a JudgedCase)]> = numbers.chunk_by(|a, b| a.0 == b.0).collect();
+    let parts: Vec<&[(f64, &'a JudgedCase)]> = if same.len() <= MOST {
         same
     } else {
         let third = |i: usize| &numbers[i * numbers.len() / 3..(i + 1) * numbers.len() / 3];

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use barrelstack_fragility::{Hazard, Interval, Shape, grouped_mean, interval_of, mean_difference};
 
-use crate::decision::{Breakage, Case, Cases};
+use crate::decision::{Breakage, Cases, JudgedCase};
 use crate::study::{Collected, Study};
 use crate::uncertain::Sample;
 
@@ -20,7 +20,7 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    fn of(case: &Case) -> Self {
+    fn of(case: &JudgedCase) -> Self {
         let burst: f64 = case.falls.iter().map(|fall| Breakage::RANGE[1].probability(*fall)).sum();
         Self {
             collapsed: f64::from(u8::from(case.collapsed)),

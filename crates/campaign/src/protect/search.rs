@@ -18,7 +18,7 @@ use crate::study::{RunOptions, Study, StudyError};
 use crate::system;
 
 /// Protection under trial, with its stacks and runs.
-pub(super) struct Trial {
+pub(super) struct Candidate {
     pub(super) protection: Protection,
     /// Scenario of the protected stack in each direction.
     pub(super) stacks: Vec<(Direction, Scenario)>,
@@ -26,7 +26,7 @@ pub(super) struct Trial {
     pub(super) round: u32,
 }
 
-impl Trial {
+impl Candidate {
     pub(super) fn new(base: &Scenario, protection: Protection) -> Result<Self, ProtectError> {
         let changed = protection.on(base)?;
         let stacks: Vec<(Direction, Scenario)> = planes(&changed)?
@@ -66,7 +66,7 @@ pub(super) struct Search<'a> {
 impl Search<'_> {
     /// Returns trials of the protections that can be built and do not exceed the budget; records the reasons
     /// for the others.
-    pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
+    pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Candidate> {
         let mut trials = Vec::new();
         for protection in protections {
             let name = protection.name.clone();
@@ -76,7 +76,7 @@ impl Search<'_> {
                 self.not_tried.push((name, reason));
                 continue;
             }
-            match Trial::new(self.base, protection) {
+            match Candidate::new(self.base, protection) {
                 Ok(trial) => trials.push(trial),
                 // The location in a generated text is of no use to the reader, so only the first line is kept.
                 Err(error) => {
@@ -92,7 +92,7 @@ impl Search<'_> {
     /// Runs a round of the trials with the indices `open`.
     pub(super) fn round(
         &self,
-        trials: &mut [Trial],
+        trials: &mut [Candidate],
         open: &[usize],
         round: u32,
     ) -> Result<(), ProtectError> {
@@ -135,7 +135,7 @@ impl Search<'_> {
     /// Runs the protections on the Pareto front in their worn states, under the motions of the first round.
     pub(super) fn worn(
         &mut self,
-        trials: &[Trial],
+        trials: &[Candidate],
         all: &mut [Ranked],
         weights: &[f64],
     ) -> Result<(), ProtectError> {

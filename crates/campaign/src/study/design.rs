@@ -84,7 +84,7 @@ impl Design {
 
 /// Description of a case before its model is built.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Case {
+pub(super) struct PlannedCase {
     /// Number of the case in the table; the numbers in an adaptive design have gaps.
     pub(super) number: u64,
     /// Identity of the case, which does not depend on the number of cases. It is also the seed of the random
@@ -216,7 +216,7 @@ impl Cases {
 
     /// Returns the case with the number `number`. For an incremental dynamic analysis this is a hunt, whose
     /// level is not set.
-    pub(super) fn case(&self, study: &Study, number: u64) -> Case {
+    pub(super) fn case(&self, study: &Study, number: u64) -> PlannedCase {
         match self {
             Self::Crossed => crossed(study, number),
             Self::OneAtATime { changes, draws } => one_at_a_time(study, changes, *draws, number),
@@ -233,7 +233,7 @@ fn digit(rest: &mut u64, base: usize) -> usize {
     digit as usize
 }
 
-fn crossed(study: &Study, number: u64) -> Case {
+fn crossed(study: &Study, number: u64) -> PlannedCase {
     let mut rest = number;
     let levels = study.crossed_levels();
     let level = levels[digit(&mut rest, levels.len())];
@@ -252,10 +252,15 @@ fn crossed(study: &Study, number: u64) -> Case {
             *setting = Some(distribution.quantile(uniform(id, &factor.name)));
         }
     }
-    Case { number, id, motion, level, settings }
+    PlannedCase { number, id, motion, level, settings }
 }
 
-fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number: u64) -> Case {
+fn one_at_a_time(
+    study: &Study,
+    changes: &[(usize, Setting)],
+    draws: u64,
+    number: u64,
+) -> PlannedCase {
     let mut rest = number;
     let change = digit(&mut rest, 1 + changes.len());
     let levels = study.crossed_levels();
@@ -275,7 +280,7 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     if let Some((factor, setting)) = change.checked_sub(1).and_then(|change| changes.get(change)) {
         settings[*factor] = Some(setting.clone());
     }
-    Case { number, id: study.identity(motion, level, &settings), motion, level, settings }
+    PlannedCase { number, id: study.identity(motion, level, &settings), motion, level, settings }
 }
 
 /// Returns every single change from the base values: each factor with each of its other values. Factors that
@@ -297,7 +302,7 @@ fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Se
     changes
 }
 
-fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
+fn sampled(study: &Study, sampling: &Sampling, number: u64) -> PlannedCase {
     let id = seed_of(study.seed, &format!("sample {number}"));
     // A sampled design has at most 2³² cases, since its count is a 32-bit number.
     let point = u32::try_from(number).unwrap_or(u32::MAX);
@@ -336,7 +341,7 @@ fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
         })
     };
     let settings = study.factors.iter().enumerate().map(setting).collect();
-    Case { number, id, motion, level, settings }
+    PlannedCase { number, id, motion, level, settings }
 }
 
 impl Study {
@@ -379,7 +384,7 @@ impl Study {
     }
 
     /// Returns the value of a factor in a case, in the form in which it is written to the table.
-    pub(super) fn factor_value(&self, case: &Case, factor: usize) -> Option<Value> {
+    pub(super) fn factor_value(&self, case: &PlannedCase, factor: usize) -> Option<Value> {
         match &case.settings[factor] {
             Some(setting) => Some(setting.value.clone()),
             None => self.factors[factor].base.clone(),

@@ -4,7 +4,7 @@
 use barrelstack_report::described;
 
 use super::Study;
-use super::design::{Case, Design};
+use super::design::{Design, PlannedCase};
 use super::error::StudyError;
 use super::folder::{MotionSource, Provenance};
 use super::motions::hash_files;
@@ -99,7 +99,7 @@ impl Study {
     /// Returns the key of a chunk: a fingerprint of the inputs that all cases share, and of the cases of the
     /// chunk with their motions, levels and values.
     pub(super) fn chunk_key(&self, chunk: usize, keys: &Keys) -> u64 {
-        let words = |case: &Case| {
+        let words = |case: &PlannedCase| {
             let settings: Vec<String> = case
                 .settings
                 .iter()

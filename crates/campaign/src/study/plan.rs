@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::Study;
-use super::design::{Case, Design};
+use super::design::{Design, PlannedCase};
 use barrelstack_report::column::Value;
 
 /// A chunk of a study: cases that are run and stored together.
@@ -153,7 +153,7 @@ impl Study {
     }
 
     /// Returns the values of those factors that change the bodies and contacts of the model.
-    fn structure(&self, case: &Case) -> Vec<Option<Value>> {
+    fn structure(&self, case: &PlannedCase) -> Vec<Option<Value>> {
         let structural = |index: &usize| self.factors[*index].structural;
         (0..self.factors.len())
             .filter(structural)

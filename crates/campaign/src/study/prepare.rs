@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::scenario::reader::Reader;
 use crate::scenario::{Scenario, ScenarioError, Scene};
 
-use super::design::{Case, Design, seed_of};
+use super::design::{Design, PlannedCase, seed_of};
 use super::error::StudyError;
 use super::ida::{Hunt, LevelResult};
 use super::motions::{Motion, MotionCache, Shaken, Shaking, Synthetic};
@@ -56,7 +56,7 @@ impl Study {
             return Ok(Some(table));
         }
         for numbers in numbers.chunks(BATCH) {
-            let cases: Vec<Case> =
+            let cases: Vec<PlannedCase> =
                 numbers.iter().map(|number| self.cases.case(self, *number)).collect();
             let Some(done) = self.shake(&cases, resources) else { return Ok(None) };
             for (case, (shaken, finished)) in cases.iter().zip(done) {
@@ -75,24 +75,27 @@ impl Study {
         chunk: usize,
         resources: &mut Resources<'_>,
     ) -> Option<Vec<Vec<Option<Value>>>> {
-        let hunts: Vec<Case> =
+        let hunts: Vec<PlannedCase> =
             numbers.iter().map(|number| self.cases.case(self, *number)).collect();
         let mut results: Vec<Vec<LevelResult>> = vec![Vec::new(); hunts.len()];
         let mut rows: Vec<(u64, Vec<Option<Value>>)> = Vec::new();
         loop {
-            let mut round: Vec<(usize, Case)> = Vec::new();
+            let mut round: Vec<(usize, PlannedCase)> = Vec::new();
             for (index, (base, results)) in hunts.iter().zip(&results).enumerate() {
                 if let Some(level) = hunt.next(results) {
                     let number = base.number * u64::from(hunt.runs) + results.len() as u64;
                     let id = seed_of(base.id, &crate::scenario::quantity::plain(level));
-                    round.push((index, Case { number, id, level: Some(level), ..base.clone() }));
+                    round.push((
+                        index,
+                        PlannedCase { number, id, level: Some(level), ..base.clone() },
+                    ));
                 }
             }
             if round.is_empty() {
                 break;
             }
             for part in round.chunks(BATCH) {
-                let cases: Vec<Case> = part.iter().map(|(_, case)| case.clone()).collect();
+                let cases: Vec<PlannedCase> = part.iter().map(|(_, case)| case.clone()).collect();
                 for ((index, case), (shaken, finished)) in
                     part.iter().zip(self.shake(&cases, resources)?)
                 {
@@ -116,7 +119,7 @@ impl Study {
     /// Cases in a plane run in lockstep. Cases that cannot be built have a result with the reason.
     fn shake(
         &self,
-        cases: &[Case],
+        cases: &[PlannedCase],
         resources: &mut Resources<'_>,
     ) -> Option<Vec<(Option<Shaken>, FinishedCase)>> {
         let built = self.build(cases, resources.cache);
@@ -144,11 +147,11 @@ impl Study {
         Some(done)
     }
 
-    fn build(&self, cases: &[Case], cache: &MotionCache) -> Vec<Built> {
+    fn build(&self, cases: &[PlannedCase], cache: &MotionCache) -> Vec<Built> {
         let mut built: Vec<Built> = Vec::with_capacity(cases.len());
         // Cases with the same values share a scenario; cases with the same motion and level also share the scaled motion.
-        let mut scenarios: Vec<(&Case, Result<Arc<Scenario>, String>)> = Vec::new();
-        let mut shakings: Vec<(&Case, *const Scenario, Shaken)> = Vec::new();
+        let mut scenarios: Vec<(&PlannedCase, Result<Arc<Scenario>, String>)> = Vec::new();
+        let mut shakings: Vec<(&PlannedCase, *const Scenario, Shaken)> = Vec::new();
         for case in cases {
             let known = scenarios.iter().find(|(other, _)| other.settings == case.settings);
             let scenario = if let Some((_, scenario)) = known {
@@ -166,7 +169,7 @@ impl Study {
                     continue;
                 }
             };
-            let same = |(other, at, _): &&(&Case, *const Scenario, Shaken)| {
+            let same = |(other, at, _): &&(&PlannedCase, *const Scenario, Shaken)| {
                 other.motion == case.motion
                     && other.level == case.level
                     && *at == Arc::as_ptr(&scenario)
@@ -219,7 +222,7 @@ impl Study {
     /// Returns the scaled motion of a case.
     fn shaken(
         &self,
-        case: &Case,
+        case: &PlannedCase,
         scenario: &Scenario,
         cache: &MotionCache,
     ) -> Result<Shaken, StudyError> {

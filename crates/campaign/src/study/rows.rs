@@ -1,7 +1,7 @@
 //! Columns of the table of a study, and the row for a case.
 
 use super::Study;
-use super::design::Case;
+use super::design::PlannedCase;
 use super::motions::{MEASURES, Shaken};
 use super::space::{self, FinishedCase};
 use crate::ensemble::{self, CASE_COLUMNS, CaseColumn};
@@ -62,7 +62,7 @@ impl Study {
     /// Returns the table row of a case; `shaken` is `None` if the motion could not be read.
     pub(super) fn row(
         &self,
-        case: &Case,
+        case: &PlannedCase,
         chunk: usize,
         shaken: Option<&Shaken>,
         finished: &FinishedCase,

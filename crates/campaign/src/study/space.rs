@@ -11,7 +11,7 @@ use barrelstack_space::variants::Case as InSpace;
 use barrelstack_space::{Ground, Heading, columns};
 
 use super::Study;
-use super::design::Case;
+use super::design::PlannedCase;
 use super::prepare::Resources;
 use crate::ensemble::CaseResult;
 use crate::scenario::Scenario;
@@ -46,7 +46,7 @@ impl Study {
     /// if canceled.
     pub(super) fn run_in_space(
         &self,
-        case: &Case,
+        case: &PlannedCase,
         scenario: &Scenario,
         factor: f64,
         resources: &mut Resources<'_>,

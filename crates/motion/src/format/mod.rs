@@ -43,7 +43,7 @@ use crate::record::{Channel, Quantity, Record};
 use crate::units::AccelerationUnit;
 use hints::Hints;
 pub(crate) use packed::LARGEST as LARGEST_UNPACKED;
-use source::{LARGEST_ACCELERATION, Place, parse_number};
+use source::{FilePosition, LARGEST_ACCELERATION, parse_number};
 pub(crate) use source::{Printed, Source, quoted, shorten, utf8};
 
 /// Information that a file may lack.
@@ -506,7 +506,7 @@ fn check_count(
     }
     let column = source.find(line, &stated.to_string());
     Err(source.damaged(
-        column.map_or(Place::from(line), |column| Place::from((line, column))),
+        column.map_or(FilePosition::from(line), |column| FilePosition::from((line, column))),
         format!("{stated} values as stated here"),
         format!("{found}"),
         "the file is truncated or its header belongs to another file; get it again from its source",

@@ -41,30 +41,30 @@ impl Columns {
 
 /// Position in a file, counted from 0.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Place {
+pub(crate) struct FilePosition {
     pub(crate) line: Option<usize>,
     pub(crate) column: Option<usize>,
 }
 
-impl From<()> for Place {
+impl From<()> for FilePosition {
     fn from((): ()) -> Self {
         Self::default()
     }
 }
 
-impl From<usize> for Place {
+impl From<usize> for FilePosition {
     fn from(line: usize) -> Self {
         Self { line: Some(line), column: None }
     }
 }
 
-impl From<Option<usize>> for Place {
+impl From<Option<usize>> for FilePosition {
     fn from(line: Option<usize>) -> Self {
         Self { line, column: None }
     }
 }
 
-impl From<(usize, usize)> for Place {
+impl From<(usize, usize)> for FilePosition {
     fn from((line, column): (usize, usize)) -> Self {
         Self { line: Some(line), column: Some(column) }
     }

@@ -4,7 +4,7 @@ use super::number::split_touching;
 pub(crate) use super::number::{
     Printed, leading_number, leading_printed, leading_text, parse_number, resolution,
 };
-pub(crate) use super::place::{Columns, Place};
+pub(crate) use super::place::{Columns, FilePosition};
 pub(crate) use super::quoted::{latin1, quoted, shorten, utf8};
 use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
@@ -184,7 +184,7 @@ impl<'a> Source<'a> {
     /// Returns an error about a damaged file.
     pub(crate) fn damaged(
         &self,
-        place: impl Into<Place>,
+        place: impl Into<FilePosition>,
         expected: impl Into<String>,
         found: impl Into<String>,
         remedy: impl Into<String>,
@@ -195,7 +195,7 @@ impl<'a> Source<'a> {
     /// Returns an error about a valid file that contains no accelerations.
     pub(crate) fn not_acceleration(
         &self,
-        place: impl Into<Place>,
+        place: impl Into<FilePosition>,
         expected: impl Into<String>,
         found: impl Into<String>,
         remedy: impl Into<String>,
@@ -206,7 +206,7 @@ impl<'a> Source<'a> {
     /// Returns an error about a damaged header.
     pub(crate) fn header(
         &self,
-        place: impl Into<Place>,
+        place: impl Into<FilePosition>,
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> ReadError {
@@ -215,7 +215,7 @@ impl<'a> Source<'a> {
 
     pub(crate) fn error(
         &self,
-        place: impl Into<Place>,
+        place: impl Into<FilePosition>,
         refusal: Refusal,
         expected: impl Into<String>,
         found: impl Into<String>,

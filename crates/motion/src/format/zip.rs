@@ -9,7 +9,7 @@ use std::io::Read as _;
 const MOST: usize = 50_000;
 
 /// A file in an archive.
-pub(crate) struct Entry<'a> {
+pub(crate) struct ZipEntry<'a> {
     pub(crate) name: String,
     /// Packed bytes of the file.
     packed: &'a [u8],
@@ -18,7 +18,7 @@ pub(crate) struct Entry<'a> {
 }
 
 /// Returns all files of an archive in the order of its directory, or a description of the damage.
-pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
+pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<ZipEntry<'_>>, String> {
     let cut = || "an archive that ends before its directory".to_owned();
     // The end of the directory has 22 bytes and a comment of at most 64 kB.
     let reach = bytes.len().saturating_sub(22 + 0xFFFF);
@@ -42,7 +42,7 @@ pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
 
 /// Returns the file described by the directory entry at an offset, and the offset of the next
 /// entry.
-fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
+fn entry(bytes: &[u8], at: usize) -> Option<(ZipEntry<'_>, usize)> {
     let head = bytes.get(at..)?;
     if !head.starts_with(b"PK\x01\x02") {
         return None;
@@ -60,10 +60,10 @@ fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
     // Encrypted files are marked by a method that does not exist.
     let method = if two(head, 8)? & 1 == 1 { u16::MAX } else { two(head, 10)? };
     let sum = four(head, 16)?;
-    Some((Entry { name, packed, method, sum }, next))
+    Some((ZipEntry { name, packed, method, sum }, next))
 }
 
-impl Entry<'_> {
+impl ZipEntry<'_> {
     /// Returns the unpacked file, which may have at most `limit` bytes, or a description of the
     /// error.
     pub(crate) fn unpack(&self, limit: u64) -> Result<Vec<u8>, String> {

@@ -188,7 +188,7 @@ impl Thinned {
 
 /// Position of a wavelet in time and scale, with the coefficients that it has in both components.
 #[derive(Clone, Copy)]
-struct Found {
+struct WaveletAt {
     /// Neighboring scales (s) between which the scale of the pulse is refined.
     scales: (f64, f64),
     scale: f64,
@@ -196,7 +196,7 @@ struct Found {
     coefficients: (f64, f64),
 }
 
-impl Found {
+impl WaveletAt {
     /// Returns the squared norm of the two coefficients.
     fn strength(self) -> f64 {
         let (x, y) = self.coefficients;
@@ -206,7 +206,7 @@ impl Found {
 
 /// The strongest wavelet at every time.
 struct Map {
-    best: Vec<Option<Found>>,
+    best: Vec<Option<WaveletAt>>,
     time_step: f64,
 }
 
@@ -225,8 +225,8 @@ impl Map {
             for (at, (x, y)) in pair.coefficients(&wavelet(k)).into_iter().enumerate() {
                 let views = [(x, 0.0), (0.0, y), (x, y)];
                 for (map, coefficients) in maps.iter_mut().zip(views) {
-                    let next = Found { scales, scale, at, coefficients };
-                    let before = map.best[at].map_or(0.0, Found::strength);
+                    let next = WaveletAt { scales, scale, at, coefficients };
+                    let before = map.best[at].map_or(0.0, WaveletAt::strength);
                     if next.strength() > before {
                         map.best[at] = Some(next);
                     }
@@ -236,13 +236,13 @@ impl Map {
         maps
     }
 
-    fn strongest(&self) -> Option<Found> {
+    fn strongest(&self) -> Option<WaveletAt> {
         let found = self.best.iter().flatten().copied();
         found.reduce(|best, next| if next.strength() > best.strength() { next } else { best })
     }
 
     /// Excludes the part of the record around a pulse from later searches.
-    fn take_out(&mut self, found: Found) {
+    fn take_out(&mut self, found: WaveletAt) {
         let reach = reach(found.scale, self.time_step);
         let last = (found.at + reach).min(self.best.len() - 1);
         self.best[found.at.saturating_sub(reach)..=last].fill(None);
@@ -265,7 +265,7 @@ struct Extracted {
 impl Extracted {
     /// Extracts ten wavelets of one scale. Each wavelet is the strongest one of the remaining
     /// motion near the previous wavelet.
-    fn of(velocity: &[f64], time_step: f64, found: Found) -> Self {
+    fn of(velocity: &[f64], time_step: f64, found: WaveletAt) -> Self {
         let (low, high) = found.scales;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
         let finer = ((high - low) / time_step).round().max(1.0) as usize;

@@ -123,7 +123,7 @@ pub struct Fates<R: Real = f64> {
 
 /// Kind and supports of a body, equal in all lanes.
 #[derive(Clone, Debug)]
-struct Place {
+struct Supported {
     kind: PartKind,
     carrier: Option<BodyId>,
     supports: Vec<BodyId>,
@@ -133,7 +133,7 @@ struct Place {
     foot: Option<f64>,
 }
 
-lanewise!(same Place);
+lanewise!(same Supported);
 lanewise!(struct Followed<R> {
     place, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, fall_force, drop,
     peak_displacement, residual_displacement, displacement_at_collapse, peak_slip, residual_slip,
@@ -144,7 +144,7 @@ lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 /// A body with its limits and its fate so far.
 #[derive(Clone, Debug)]
 struct Followed<R: Real> {
-    place: Place,
+    place: Supported,
     /// Position at rest (m), relative to the ground.
     rest: Vec2<R>,
     /// Limit (m) of the displacement of the body on its support.
@@ -194,7 +194,7 @@ impl Fates {
             let most_tilt =
                 if foot { thresholds.overturning_angle } else { thresholds.rocking_angle };
             Followed {
-                place: Place {
+                place: Supported {
                     kind: part.kind,
                     carrier: part.carrier,
                     supports: part.supports.clone(),

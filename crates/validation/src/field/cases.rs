@@ -25,7 +25,7 @@ pub const UNKNOWNS: usize = 4;
 
 /// One simulated stack.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct FieldCase {
     /// Levels.
     pub levels: usize,
     /// Azimuth (rad) of a stack in space.
@@ -44,16 +44,16 @@ pub struct Case {
 
 /// All cases of a study.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cases {
+pub struct FieldCases {
     /// Name of the study.
     pub study: String,
     /// The cases with a verdict.
-    pub cases: Vec<Case>,
+    pub cases: Vec<FieldCase>,
     /// Number of cases without one.
     pub unjudged: usize,
 }
 
-impl Cases {
+impl FieldCases {
     /// Reads a file of cases.
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl Cases {
                 }
             };
             let azimuth = if cells[1].is_empty() { None } else { Some(number(1)?.to_radians()) };
-            cases.push(Case {
+            cases.push(FieldCase {
                 levels: cells[0].parse().map_err(|_| fault("levels are no number".to_owned()))?,
                 azimuth,
                 unknowns: [number(2)?, number(3)?, number(4)?, number(6)?],
@@ -104,19 +104,19 @@ impl Cases {
     }
 
     /// Returns the cases of a height.
-    pub fn of(&self, levels: usize) -> impl Iterator<Item = &Case> {
+    pub fn of(&self, levels: usize) -> impl Iterator<Item = &FieldCase> {
         self.cases.iter().filter(move |case| case.levels == levels)
     }
 
     /// Returns the number of cases of some that fall, and their number.
-    pub fn count<'a>(cases: impl Iterator<Item = &'a Case>) -> (u32, u32) {
+    pub fn count<'a>(cases: impl Iterator<Item = &'a FieldCase>) -> (u32, u32) {
         cases.fold((0, 0), |(falls, all), case| (falls + u32::from(case.falls), all + 1))
     }
 
     /// Returns the share of the barrels that fell in those stacks of a height that fell; of all heights if none of
     /// that one fell, and 0 if none of any.
     pub fn fallen(&self, levels: usize) -> f64 {
-        let mean = |cases: &mut dyn Iterator<Item = &Case>| {
+        let mean = |cases: &mut dyn Iterator<Item = &FieldCase>| {
             let (mut sum, mut count) = (0.0, 0.0);
             for case in cases.filter(|case| case.falls) {
                 sum += case.fallen;

@@ -2,7 +2,7 @@
 
 use barrelstack_motion::Random;
 
-use super::cases::{Case, Cases, UNKNOWNS};
+use super::cases::{FieldCase, FieldCases, UNKNOWNS};
 
 /// Median of every unknown in the catalog: friction, friction, MN/m, factor on the motion.
 pub const MEDIANS: [f64; UNKNOWNS] = [0.30, 0.50, 3.0, 1.0];
@@ -105,13 +105,13 @@ fn forward(upper: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
 
 impl Chance {
     /// Fits the cases of a study.
-    pub fn fit(cases: &Cases) -> Self {
-        let point = |case: &Case| Point {
+    pub fn fit(cases: &FieldCases) -> Self {
+        let point = |case: &FieldCase| Point {
             unknowns: case.unknowns,
             azimuth: case.azimuth.unwrap_or(std::f64::consts::FRAC_PI_4),
         };
         // Planes have no azimuth: their harmonics are zero.
-        let row = |case: &Case| {
+        let row = |case: &FieldCase| {
             let mut row = features(case.levels, &point(case));
             if case.azimuth.is_none() {
                 let size = row.len();
@@ -165,7 +165,7 @@ impl Chance {
         let density = |coefficients: &[f64]| {
             let prior: f64 =
                 coefficients.iter().enumerate().map(|(at, c)| -0.5 * penalty(at) * c * c).sum();
-            let case = |(row, case): (&Vec<f64>, &Case)| {
+            let case = |(row, case): (&Vec<f64>, &FieldCase)| {
                 let x = dot(row, coefficients);
                 -libm::log1p(libm::exp(if case.falls { -x } else { x }))
             };
@@ -218,7 +218,7 @@ mod tests {
             .map(|at| {
                 let levels = 2 + at % 5;
                 let friction = 0.3 * libm::exp(0.5 * random.normal());
-                Case {
+                FieldCase {
                     levels,
                     azimuth: None,
                     unknowns: [friction, 0.5, 3.0, 1.0],
@@ -229,7 +229,7 @@ mod tests {
                 }
             })
             .collect();
-        let fit = Chance::fit(&Cases { study: "made".into(), cases, unjudged: 0 });
+        let fit = Chance::fit(&FieldCases { study: "made".into(), cases, unjudged: 0 });
         for (levels, friction) in [(3, 0.2), (4, 0.3), (5, 0.5)] {
             let point = Point { unknowns: [friction, 0.5, 3.0, 1.0], azimuth: 0.0 };
             let found = fit.of(levels, &point, false, None);

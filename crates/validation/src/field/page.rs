@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use barrelstack_fragility::wilson;
 
-use super::cases::Cases;
+use super::cases::FieldCases;
 use super::observations::{Earthquake, Kind, Observation, Observations};
 use super::results::{Bin, FRICTION, GROUND, MODEL, Posterior, Results, STIFFNESS, Share};
 use super::weigh::{DRAWS, Range};
@@ -66,7 +66,7 @@ some:     L(u) = E [1 − (1 − S)^stacks]
 ";
 
 /// Writes the page.
-pub(super) fn page(observations: &Observations, cases: &[Cases], results: &Results) -> String {
+pub(super) fn page(observations: &Observations, cases: &[FieldCases], results: &Results) -> String {
     let mut text = HEAD.to_owned();
     in_short(&mut text, cases, results);
     text.push_str("\n## What was observed\n");
@@ -253,14 +253,14 @@ fn bound(one: &Observation) -> String {
 }
 
 /// Counts the falls in space by the direction in which the first body left: along the barrels, and all.
-fn along(cases: &[Cases], study: &str) -> (u32, u32) {
+fn along(cases: &[FieldCases], study: &str) -> (u32, u32) {
     let all = cases.iter().filter(|one| one.study == study).flat_map(|one| &one.cases);
     all.filter(|case| case.falls).fold((0, 0), |(along, all), case| {
         (along + u32::from(matches!(case.heading.as_str(), "away" | "near")), all + 1)
     })
 }
 
-fn direction(text: &mut String, cases: &[Cases]) {
+fn direction(text: &mut String, cases: &[FieldCases]) {
     text.push_str("\n## Direction\n\nOf the stacks that fall in space, turned by any angle, the first body left along the barrels in:\n\n| station | along the barrels | share, 95 % | first mode (cases) |\n| :--- | ---: | :--- | :--- |\n");
     for (study, name) in
         [("south-napa-space", "Napa College"), ("curico-space", "Curicó"), ("waiau-space", "Waiau")]
@@ -299,7 +299,7 @@ fn unknown(one: Option<&Posterior>, at: usize) -> String {
     one.map_or_else(String::new, |one| of_value(&one.unknowns[at]))
 }
 
-fn in_short(text: &mut String, cases: &[Cases], results: &Results) {
+fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     let range = |id: &str| results.prediction(id);
     text.push_str("\n## In short\n\n");
     if let Some((prior, posterior)) = range("half") {
@@ -367,7 +367,7 @@ fn likelihood(results: &Results, given: &str, from: f64) -> String {
 }
 
 /// Describes what falls at the far station.
-fn far(cases: &[Cases]) -> String {
+fn far(cases: &[FieldCases]) -> String {
     let all: Vec<_> = cases
         .iter()
         .filter(|one| one.study.starts_with("concord"))

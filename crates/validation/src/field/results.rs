@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use barrelstack_fragility::{Interval, wilson};
 
 use super::FieldError;
-use super::cases::{Cases, UNKNOWNS};
+use super::cases::{FieldCases, UNKNOWNS};
 use super::chance::{MEDIANS, Point};
 use super::observations::{Earthquake, Observations};
 use super::weigh::{self, Fitted, Range};
@@ -98,7 +98,10 @@ pub struct Results {
 
 impl Results {
     /// Computes all numbers.
-    pub(super) fn of(observations: &Observations, cases: &[Cases]) -> Result<Self, FieldError> {
+    pub(super) fn of(
+        observations: &Observations,
+        cases: &[FieldCases],
+    ) -> Result<Self, FieldError> {
         let fitted: Vec<Fitted<'_>> = cases.iter().map(Fitted::new).collect();
         let (napa, _) = observations
             .find("half")
@@ -306,7 +309,7 @@ fn shares(one: &Fitted<'_>, at_napa: bool, draws: &[[f64; UNKNOWNS]], half: &[f6
     };
     let even = vec![1.0; FEW];
     let of = |(place, levels): (usize, usize)| {
-        let count = Cases::count(one.cases.of(levels));
+        let count = FieldCases::count(one.cases.of(levels));
         let chance = |unknowns: [f64; UNKNOWNS], azimuth: f64, fit: Option<usize>| {
             one.share(levels, &Point { unknowns, azimuth }, fit)
         };

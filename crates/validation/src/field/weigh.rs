@@ -2,7 +2,7 @@
 
 use barrelstack_motion::Random;
 
-use super::cases::{Cases, UNKNOWNS};
+use super::cases::{FieldCases, UNKNOWNS};
 use super::chance::{Chance, FITS, MEDIANS, Point};
 use super::observations::{Kind, Likelihood, Observation};
 
@@ -21,7 +21,7 @@ pub(super) const DRAWS: usize = 20_000;
 #[derive(Clone, Debug)]
 pub(super) struct Fitted<'a> {
     /// Its cases.
-    pub(super) cases: &'a Cases,
+    pub(super) cases: &'a FieldCases,
     /// Chance of a fall.
     pub(super) chance: Chance,
     /// Share of the barrels of a fallen stack that fell, by height from 2 to 6 levels.
@@ -31,7 +31,7 @@ pub(super) struct Fitted<'a> {
 
 impl<'a> Fitted<'a> {
     /// Fits a study.
-    pub(super) fn new(cases: &'a Cases) -> Self {
+    pub(super) fn new(cases: &'a FieldCases) -> Self {
         Self {
             cases,
             chance: Chance::fit(cases),

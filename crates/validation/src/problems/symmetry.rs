@@ -3,7 +3,7 @@
 use barrelstack_dynamics::Space;
 
 use crate::order::{Order, planar_heap, planar_pairs, spatial_heap, spatial_pairs};
-use crate::problem::{Answer, absolute, setting};
+use crate::problem::{Reference, absolute, setting};
 use crate::{Effort, Outcome, Problem};
 
 /// Time step (s) and end time (s).
@@ -34,7 +34,7 @@ pub(super) fn problems() -> Vec<Problem> {
 fn problem<S: Space<Real = f64>>(
     name: &str,
     title: &str,
-    answer: Answer,
+    answer: Reference,
     scenes: fn(Effort) -> Vec<Order<S>>,
 ) -> Problem {
     setting(format!("symmetry/{name}"), title, "symmetry of mechanics")

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use barrelstack_fragility::Lognormal;
 
 use super::Foreign;
-use crate::decision::cases::Case;
+use crate::decision::cases::JudgedCase;
 use crate::decision::curve::interpolate;
 use crate::decision::{Breakage, Decision};
 use crate::scenario::quantity::plain;
@@ -96,7 +96,7 @@ pub(super) fn fragility(
 
 /// Returns the share of the wine of a stack that is lost in burst barrels, under the central assumption of
 /// breakage; 0 if the stack holds no wine.
-fn wine_lost(case: &Case) -> f64 {
+fn wine_lost(case: &JudgedCase) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
     // The sum starts from 0, since an empty sum of floats is -0.
     let lost = case.falls.iter().zip(&case.wines).map(lost).fold(0.0, |sum, lost| sum + lost);
@@ -137,7 +137,7 @@ struct Ratios {
 }
 
 impl Ratios {
-    fn of(groups: &[(f64, Vec<&Case>)], of: impl Fn(&Case) -> f64) -> Self {
+    fn of(groups: &[(f64, Vec<&JudgedCase>)], of: impl Fn(&JudgedCase) -> f64) -> Self {
         let (mut means, mut shares) = (Vec::new(), Vec::new());
         for (x, cases) in groups {
             let n = cases.len() as f64;
@@ -217,7 +217,7 @@ fn vulnerability(
     asset: &str,
     about: &str,
     (loss, words): (&str, &str),
-    ratio: fn(&Case) -> f64,
+    ratio: fn(&JudgedCase) -> f64,
 ) -> String {
     let known = decision.cases.with_known_falls();
     let levels = Ratios::of(&known.groups(known.main), ratio).levels();
@@ -246,7 +246,10 @@ pub(super) fn vulnerabilities(
     let barrels = ("nonstructural", "share of the barrels that fall");
     let wine = ("contents", "share of the wine that is lost (central assumption of breakage)");
     [
-        (BARRELS, vulnerability(decision, foreign, asset, about, barrels, Case::fallen_share)),
+        (
+            BARRELS,
+            vulnerability(decision, foreign, asset, about, barrels, JudgedCase::fallen_share),
+        ),
         (WINE, vulnerability(decision, foreign, asset, about, wine, wine_lost)),
     ]
 }

@@ -53,7 +53,7 @@ pub(super) struct ProcessArgs {
     /// Bring the final velocity and displacement to zero by adding the smallest smooth acceleration
     /// that does so.
     #[arg(long, value_enum)]
-    close: Option<Answer>,
+    close: Option<YesOrNo>,
     /// Take both corner frequencies from the record. With auto, the signal between the corners is
     /// at least three times the noise before the first arrival; both horizontals have the same
     /// corners.
@@ -129,7 +129,7 @@ typed! {
 
 typed! {
     /// Yes or no.
-    enum Answer of bool {
+    enum YesOrNo of bool {
         /// Do it.
         Yes = true,
         /// Do not do it.

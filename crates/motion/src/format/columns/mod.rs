@@ -327,7 +327,7 @@ fn require_no_mark(
     let found = table.iter().find_map(|column| Some((shape::mark(column)?, column)));
     found.map_or(Ok(()), |(row, column)| {
         Err(source.damaged(
-            first.map_or(crate::format::Place::from(()), |first| (first + row).into()),
+            first.map_or(crate::format::FilePosition::from(()), |first| (first + row).into()),
             "accelerations only",
             format!(
                 "{} as sample {}, which looks like a placeholder for a missing value",

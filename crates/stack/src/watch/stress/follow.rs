@@ -32,7 +32,7 @@ pub(super) struct Bounds<R: Real = f64> {
 
 /// Kind of the range of points over which a contact loads the same cells.
 #[derive(Clone, Copy, Debug)]
-enum Place {
+enum CellRange {
     /// All points of a rack: a contact element keeps the place of its first contact.
     Everywhere,
     /// Points between two directions, counterclockwise.
@@ -45,7 +45,7 @@ enum Place {
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: BodyId,
-    place: Place,
+    place: CellRange,
     /// `true` if the body is the target of the pair; contact points are stated in the frame of the target's surface.
     is_target: bool,
 }
@@ -100,14 +100,14 @@ impl Bounds {
 impl<R: Real> Bounds<R> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
-    fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
+    fn hold(&self, place: CellRange, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
         match place {
-            Place::Everywhere => above,
-            Place::Wedge => {
+            CellRange::Everywhere => above,
+            CellRange::Wedge => {
                 (from.z * point.x).le(from.x * point.z) & (point.z * to.x).lt(point.x * to.z)
             }
-            Place::Strip => {
+            CellRange::Strip => {
                 let upper = R::zero().le(point.z);
                 let side = (upper & above) | (!upper & !above);
                 from.x.le(point.x) & point.x.lt(to.x) & side
@@ -172,9 +172,9 @@ impl StressWatch {
         for pair in assembly.model.pairs().take_while(|_| watched) {
             let side = |(body, is_target): (BodyId, bool)| {
                 let place = match stresses.of(body)?.cells {
-                    Cells::Around(_) => Place::Wedge,
-                    Cells::Along(_) => Place::Strip,
-                    Cells::Nodes => Place::Everywhere,
+                    Cells::Around(_) => CellRange::Wedge,
+                    Cells::Along(_) => CellRange::Strip,
+                    Cells::Nodes => CellRange::Everywhere,
                 };
                 Some(Side { body, place, is_target })
             };

@@ -6,7 +6,7 @@ use barrelstack_motion::{ClassifiedPulse, FlatRow, Measured, MeasuredComponent};
 use super::{Source, Worked, stage_of};
 
 /// Data of a record for a row of the table.
-pub(super) struct Found<'a> {
+pub(super) struct RecordData<'a> {
     pub(super) source: &'a Source,
     pub(super) worked: &'a Worked,
     pub(super) measured: &'a Measured,
@@ -15,7 +15,7 @@ pub(super) struct Found<'a> {
     pub(super) flat: Option<&'a FlatRow>,
 }
 
-impl Found<'_> {
+impl RecordData<'_> {
     /// Returns the file of a horizontal component, counted from 0, and its channel in the file,
     /// such as `#1` for the first.
     ///
@@ -57,7 +57,7 @@ fn integer(name: impl Into<String>, value: Option<usize>) -> Cell {
 }
 
 /// Returns all columns in order, with the values of a row if `found` is given.
-pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
+pub(super) fn cells(found: Option<&RecordData<'_>>, periods: &[f64]) -> Vec<Cell> {
     let mut cells = header(found);
     let horizontal = |k: usize| found.and_then(|f| f.measured.horizontals.get(k));
     for (k, place) in ["h1", "h2"].into_iter().enumerate() {
@@ -99,7 +99,7 @@ pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
 
 /// Returns the columns that describe a record and its processing; a flatfile takes precedence over
 /// a header.
-fn header(found: Option<&Found<'_>>) -> Vec<Cell> {
+fn header(found: Option<&RecordData<'_>>) -> Vec<Cell> {
     let record = found.map(|f| &f.worked.record);
     let first = record.and_then(|record| record.channels.first());
     let flat = found.and_then(|f| f.flat);

@@ -16,7 +16,7 @@ use crate::commands::motion::input;
 
 /// Result of one record: its row, if any, and the files that were refused.
 #[derive(Debug)]
-pub(super) struct Entry {
+pub(super) struct JournalEntry {
     pub(super) record: String,
     /// Fingerprint of the bytes of the files of the record.
     pub(super) hash: u64,
@@ -104,7 +104,7 @@ impl Journal {
             if !line.ends_with(b"\n") {
                 break;
             }
-            if let Some(entry) = found.and_then(|found| Entry::of(&found, specs)) {
+            if let Some(entry) = found.and_then(|found| JournalEntry::of(&found, specs)) {
                 let measured = entry.row.is_some();
                 lines.insert(entry.record, Line { hash: entry.hash, measured, at });
             }
@@ -127,7 +127,7 @@ impl Journal {
     }
 
     /// Adds a finished record.
-    pub(super) fn note(&self, entry: &Entry) -> anyhow::Result<()> {
+    pub(super) fn note(&self, entry: &JournalEntry) -> anyhow::Result<()> {
         let text = format!("{}\n", entry.line());
         let Ok(mut inner) = self.inner.lock() else { bail!("another thread failed to write") };
         let line = Line { hash: entry.hash, measured: entry.row.is_some(), at: inner.length };
@@ -137,7 +137,7 @@ impl Journal {
     }
 
     /// Reads the entry of a record.
-    pub(super) fn entry(&self, record: &str) -> anyhow::Result<Entry> {
+    pub(super) fn entry(&self, record: &str) -> anyhow::Result<JournalEntry> {
         let damaged = || {
             format!(
                 "{} was changed while the command was running: run the command again",
@@ -151,12 +151,12 @@ impl Journal {
         let mut text = Vec::new();
         reader.read_until(b'\n', &mut text).map_err(input::plain).with_context(damaged)?;
         let found = serde_json::from_slice(&text).ok();
-        let entry = found.and_then(|found| Entry::of(&found, &self.specs));
+        let entry = found.and_then(|found| JournalEntry::of(&found, &self.specs));
         entry.filter(|entry| entry.record == record).with_context(damaged)
     }
 }
 
-impl Entry {
+impl JournalEntry {
     fn line(&self) -> serde_json::Value {
         let value = |value: &Option<Value>| match value {
             None => serde_json::Value::Null,

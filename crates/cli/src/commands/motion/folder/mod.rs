@@ -23,8 +23,8 @@ use crate::interrupt::Interrupt;
 use crate::printer;
 use crate::progress::{Bar, Lines, Of, style};
 use crate::store::store;
-use columns::{Found, cells};
-use journal::{Entry, Journal};
+use columns::{RecordData, cells};
+use journal::{Journal, JournalEntry};
 pub(super) use tree::Source;
 
 /// Default periods (s) of the spectra.
@@ -287,9 +287,9 @@ fn entry(
     periods: &[f64],
     flatfile: Option<&(Flatfile, u64)>,
     work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
-) -> (Entry, bool) {
+) -> (JournalEntry, bool) {
     let mut entry =
-        Entry { record: source.record.name.clone(), hash, row: None, refused: Vec::new() };
+        JournalEntry { record: source.record.name.clone(), hash, row: None, refused: Vec::new() };
     let mut records = Vec::new();
     for path in source.paths() {
         let file = path.display().to_string();
@@ -316,7 +316,7 @@ fn entry(
             let flat = flatfile.and_then(|(flatfile, _)| {
                 number.and_then(|n| flatfile.get(n)).or_else(|| flatfile.of_record(&worked.record))
             });
-            let found = Found { source, worked: &worked, measured: &measured, number, flat };
+            let found = RecordData { source, worked: &worked, measured: &measured, number, flat };
             Ok(cells(Some(&found), periods).into_iter().map(|(_, value)| value).collect())
         });
     match row {
