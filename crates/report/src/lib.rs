@@ -61,6 +61,8 @@ mod figure;
 #[cfg(feature = "documents")]
 mod film;
 #[cfg(feature = "documents")]
+mod floor_plan;
+#[cfg(feature = "documents")]
 mod font;
 #[cfg(feature = "documents")]
 mod glossary;
@@ -136,6 +138,8 @@ pub use escape::{capital, csv as csv_field, listed};
 pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 #[cfg(feature = "documents")]
 pub use film::Film;
+#[cfg(feature = "documents")]
+pub use floor_plan::{FloorPlan, Heat, Region, RegionKind};
 #[cfg(feature = "documents")]
 pub use html::{Fragment, badge, fragment, html, html_with};
 #[cfg(feature = "documents")]
