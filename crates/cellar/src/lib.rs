@@ -14,15 +14,20 @@
 // (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod geometry;
+pub mod plan;
 pub mod result;
 pub mod room;
 mod run;
+pub mod scenario;
 
+pub use plan::Plan;
 pub use result::{
     BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
 };
 pub use room::{Obstacle, Placed, Room, RoomFailure, Settings};
 pub use run::{Advance, run};
+pub use scenario::Cellar;
 
 /// The example of the README, which is compiled and run with the tests of the documentation.
 #[cfg(doctest)]
