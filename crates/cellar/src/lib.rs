@@ -19,6 +19,7 @@ pub mod plan;
 pub mod result;
 pub mod room;
 mod run;
+pub mod sample;
 pub mod scenario;
 
 pub use plan::Plan;
@@ -27,6 +28,7 @@ pub use result::{
 };
 pub use room::{Obstacle, Placed, Room, RoomFailure, Settings};
 pub use run::{Advance, run};
+pub use sample::{CellarFailure, Prepared};
 pub use scenario::Cellar;
 
 /// The example of the README, which is compiled and run with the tests of the documentation.
