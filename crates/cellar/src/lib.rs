@@ -14,14 +14,19 @@
 // (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod answer;
 pub mod geometry;
 pub mod plan;
+pub mod report;
 pub mod result;
 pub mod room;
 mod run;
 pub mod sample;
 pub mod scenario;
+pub mod summary;
+pub mod words;
 
+pub use answer::{Answer, answer};
 pub use plan::Plan;
 pub use result::{
     BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
