@@ -22,6 +22,8 @@ const LEAF: f64 = 0.12;
 pub struct Model {
     /// Footprint about the origin of the stack.
     pub footprint: Convex,
+    /// The stack as stated, before it settles.
+    pub stack: Stack,
     /// Points (m) of the surface of every body, in its body frame, in the order of the bodies without the ground.
     pub surfaces: Vec<Vec<Vec3>>,
     /// Number of barrels.
@@ -48,6 +50,7 @@ impl Model {
             surfaces,
             barrels: stack.of_kind(PartKind::Barrel).count(),
             wine: stack.of_kind(PartKind::Barrel).map(|body| stack.parts[body].wine).sum(),
+            stack,
         })
     }
 }

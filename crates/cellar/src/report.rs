@@ -1,11 +1,15 @@
 //! The page, the tables and the files of a cellar.
 
+use std::sync::Arc;
+
 use barrelstack::report::WORDS;
 use barrelstack::variants::Range;
 use barrelstack::variants::words::percent;
 use barrelstack_report::{
-    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, RegionKind, Table, Verdict, described,
+    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Pane, Players, RegionKind, Table, Verdict,
+    described,
 };
+use barrelstack_space::drawing::{Shown, Sight, together};
 
 use crate::answer::Answer;
 use crate::plan::liters;
@@ -38,6 +42,57 @@ pub fn picture(answer: &Answer) -> FloorPlan {
     FloorPlan { heat, ..prepared.plan.drawn(&prepared.cellar, &kind) }
 }
 
+/// Largest number of poses in the animation of a page.
+const MOST_POSES: f64 = 60_000.0;
+
+/// Largest frame rate (1/s) of the animation of a page.
+const RATE: f64 = 20.0;
+
+/// Returns the animation of the run that is shown; `None` without frames, or for a room of so many bodies that a page
+/// could not show them smoothly.
+fn players(answer: &Answer) -> Option<Block> {
+    let Answer { prepared, shown, summary, .. } = answer;
+    let end = shown.end_time;
+    let bodies = shown.bodies.len() as f64;
+    let rate = RATE.min(MOST_POSES / (bodies * end.max(1.0)));
+    if shown.frames.is_empty() || rate < 2.0 {
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded")]
+    let times: Vec<f64> = (0..=(end * rate) as usize).map(|at| at as f64 / rate).collect();
+    let mut all = Vec::new();
+    for (at, (frames, end)) in shown.frames.iter().zip(&shown.stacks).enumerate() {
+        let model = &prepared.plan.models[prepared.plan.stacks[at].model].stack;
+        // A stack at rest has no further frames.
+        let frame = |time: &f64| frames.times.partition_point(|t| *t <= *time).max(1) - 1;
+        let chosen: Vec<usize> = times.iter().map(frame).collect();
+        for (index, body) in end.bodies.clone().enumerate() {
+            all.push(Shown {
+                name: format!("{} {}", end.name, shown.bodies[body].name),
+                part: &model.parts[index + 1],
+                body: &model.model.bodies()[index + 1],
+                path: chosen.iter().map(|frame| frames.poses[*frame][index]).collect(),
+                leaves_at: shown.bodies[body].fate.left_seat.map(|(time, ..)| time),
+            });
+        }
+    }
+    let pane = |sight: Sight, mark: &str, name: &str| Pane {
+        mark: mark.to_owned(),
+        name: name.to_owned(),
+        verdict: String::new(),
+        tone: tone(summary),
+        scene: Arc::new(together(&all, &times, sight)),
+        traces: Vec::new(),
+    };
+    Some(Block::Players(Players {
+        id: "players".into(),
+        caption: "One run, the most typical, in a view that can be turned, or from the front and from above.".into(),
+        panes: vec![pane(Sight::Across, "X", "From the front"), pane(Sight::Above, "Z", "From above")],
+        overlay: None,
+        ground: Vec::new(),
+    }))
+}
+
 /// Returns the report on a cellar as a document that does not depend on the output format.
 pub fn document(answer: &Answer) -> Document {
     let summary = &answer.summary;
@@ -55,6 +110,7 @@ pub fn document(answer: &Answer) -> Document {
         heading("Where barrels end"),
         Block::Figure(Figure::new("plan", caption, picture(answer))),
     ];
+    blocks.extend(players(answer));
     if !summary.aisles.is_empty() || !summary.places.is_empty() {
         blocks.push(heading("Aisles and ways out"));
     }

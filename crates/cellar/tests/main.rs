@@ -2,3 +2,5 @@
 #![allow(clippy::unwrap_used, reason = "a test panics on a wrong value")]
 
 mod alone;
+mod answer;
+mod plan;
