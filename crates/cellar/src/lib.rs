@@ -14,9 +14,13 @@
 // (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod island;
+mod nearby;
 pub mod result;
 pub mod room;
 mod run;
+mod sorts;
+mod world;
 
 pub use result::{
     BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
