@@ -75,7 +75,8 @@ impl Convex {
                 continue;
             }
             inside = inside.max(-cross(a, b, point) / length);
-            let along = ((point[0] - a[0]) * edge[0] + (point[1] - a[1]) * edge[1]) / (length * length);
+            let along =
+                ((point[0] - a[0]) * edge[0] + (point[1] - a[1]) * edge[1]) / (length * length);
             let along = along.clamp(0.0, 1.0);
             let off = [point[0] - a[0] - along * edge[0], point[1] - a[1] - along * edge[1]];
             nearest = nearest.min((off[0] * off[0] + off[1] * off[1]).sqrt());
@@ -109,8 +110,7 @@ impl Convex {
     #[must_use]
     pub fn placed(&self, at: Point, azimuth: f64) -> Self {
         let (sin, cos) = math::sin_cos(azimuth);
-        let turn =
-            |[x, y]: &Point| [at[0] + cos * x - sin * y, at[1] + sin * x + cos * y];
+        let turn = |[x, y]: &Point| [at[0] + cos * x - sin * y, at[1] + sin * x + cos * y];
         Self(self.0.iter().map(turn).collect())
     }
 }
@@ -235,7 +235,10 @@ mod tests {
     fn hulls_and_distances_are_those_of_the_plane() {
         let square = Convex::hull(vec![[0.0, 0.0], [1.0, 1.0], [0.5, 0.5], [1.0, 0.0], [0.0, 1.0]]);
         assert_eq!(square.corners(), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
-        assert_eq!([[0.5, 0.5], [2.0, 0.5], [4.0, 5.0]].map(|p| square.distance(p)), [-0.5, 1.0, 5.0]);
+        assert_eq!(
+            [[0.5, 0.5], [2.0, 0.5], [4.0, 5.0]].map(|p| square.distance(p)),
+            [-0.5, 1.0, 5.0]
+        );
         let beside = Convex::rectangle([1.3, 0.2], [2.0, 0.8]);
         assert!((square.apart(&beside) - 0.3).abs() < 1e-12);
         let over = Convex::rectangle([0.9, 0.2], [2.0, 0.8]);
@@ -243,7 +246,8 @@ mod tests {
         // Corner to corner, and turned by an eighth.
         let corner = Convex::rectangle([4.0, 5.0], [6.0, 6.0]);
         assert_eq!(square.apart(&corner), 5.0);
-        let turned = Convex::rectangle([-0.5, -0.5], [0.5, 0.5]).placed([2.0, 0.5], 0.785_398_163_397_448_3);
+        let turned =
+            Convex::rectangle([-0.5, -0.5], [0.5, 0.5]).placed([2.0, 0.5], 0.785_398_163_397_448_3);
         assert!((square.apart(&turned) - (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
     }
 

@@ -16,6 +16,8 @@
 
 mod answer;
 pub mod geometry;
+mod island;
+mod nearby;
 pub mod plan;
 pub mod report;
 pub mod result;
@@ -23,8 +25,10 @@ pub mod room;
 mod run;
 pub mod sample;
 pub mod scenario;
+mod sorts;
 pub mod summary;
 pub mod words;
+mod world;
 
 pub use answer::{Answer, answer};
 pub use plan::Plan;

@@ -384,7 +384,10 @@ fn neighbors(
         } else if one.row == two.row {
             [format!("block.{}.spacing", two.block + 1), "increase the spacing".to_owned()]
         } else {
-            [format!("block.{}.aisle", two.block + 1), "increase the distance between the rows".to_owned()]
+            [
+                format!("block.{}.aisle", two.block + 1),
+                "increase the distance between the rows".to_owned(),
+            ]
         };
         let fallback = format!("block.{}.first", two.block + 1);
         let message = format!(
@@ -458,12 +461,7 @@ fn column_corners(column: &crate::scenario::Column) -> [Point; 2] {
 }
 
 /// Finds stacks in columns.
-fn columns(
-    cellar: &Cellar,
-    stacks: &[Standing],
-    footprints: &[Convex],
-    problems: &mut Problems,
-) {
+fn columns(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems: &mut Problems) {
     for (index, column) in (1..).zip(&cellar.columns) {
         let [lower, upper] = column_corners(column);
         let shape = Convex::rectangle(lower, upper);

@@ -6,8 +6,8 @@ use barrelstack::report::WORDS;
 use barrelstack::variants::Range;
 use barrelstack::variants::words::percent;
 use barrelstack_report::{
-    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Pane, Players, RegionKind, Table, Verdict,
-    described,
+    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Pane, Players, RegionKind, Table,
+    Verdict, described,
 };
 use barrelstack_space::drawing::{Shown, Sight, together};
 
@@ -137,7 +137,12 @@ pub fn document(answer: &Answer) -> Document {
     }
     blocks.push(heading("The plan before the shaking"));
     blocks.push(Block::List(
-        summary.plan.sentences().into_iter().chain(summary.plan.findings.iter().map(sentence)).collect(),
+        summary
+            .plan
+            .sentences()
+            .into_iter()
+            .chain(summary.plan.findings.iter().map(sentence))
+            .collect(),
     ));
     let fell = summary.room.some_fall.of_variants;
     Document {
@@ -203,7 +208,9 @@ fn aisles(summary: &CellarSummary) -> Table {
             ("blocked at the end", "", &|aisle| count(&aisle.blocked)),
             ("blocked after", "", &|aisle| times(aisle.blocked_at.as_ref())),
             ("area covered", "", &|aisle| Cell::text(spans_of_shares(&aisle.covered))),
-            ("fastest barrel", "m/s", &|aisle| Cell::measured(aisle.fastest.map(|fast| fast.most), 1)),
+            ("fastest barrel", "m/s", &|aisle| {
+                Cell::measured(aisle.fastest.map(|fast| fast.most), 1)
+            }),
         ],
     )
 }
@@ -214,7 +221,9 @@ fn places(summary: &CellarSummary) -> Table {
         &summary.places,
         &[
             ("place", "", &|place| Cell::text(&place.name)),
-            ("a way out is left", "", &|place| place.leads_out.as_ref().map_or(Cell::Missing, count)),
+            ("a way out is left", "", &|place| {
+                place.leads_out.as_ref().map_or(Cell::Missing, count)
+            }),
         ],
     )
 }
@@ -289,8 +298,10 @@ fn rows(summary: &CellarSummary) -> Table {
 }
 
 fn obstacles(summary: &CellarSummary) -> Table {
-    let most = |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.most), 2);
-    let median = |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.p50), 2);
+    let most =
+        |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.most), 2);
+    let median =
+        |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.p50), 2);
     Table::of(
         "Forces on walls and columns, in the variants in which a body strikes them: for design, the largest force of all \
          variants.",

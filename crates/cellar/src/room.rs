@@ -91,7 +91,9 @@ pub enum RoomFailure {
         failure: RunFailure,
     },
     /// A stack starts from poses of other bodies.
-    #[error("stack \"{name}\" starts from {found} poses, but has {expected} bodies: state one pose for each body")]
+    #[error(
+        "stack \"{name}\" starts from {found} poses, but has {expected} bodies: state one pose for each body"
+    )]
     Start {
         /// Name of the stack.
         name: String,

@@ -205,9 +205,8 @@ impl Prepared {
         let aisles =
             self.cellar.aisles.iter().map(|aisle| self.aisle(aisle.from, aisle.to, run, &taken));
         let fallen = run.bodies.iter().zip(&outlines);
-        let fallen = fallen.filter(|(body, _)| {
-            body.kind == PartKind::Barrel && body.fate.fell_at.is_some()
-        });
+        let fallen =
+            fallen.filter(|(body, _)| body.kind == PartKind::Barrel && body.fate.fell_at.is_some());
         let mut map = self.map();
         fallen.for_each(|(_, outline)| map.take(outline, 0.0));
         Case {
@@ -247,13 +246,7 @@ impl Prepared {
     }
 
     /// Returns what happens in an aisle.
-    fn aisle(
-        &self,
-        from: [f64; 2],
-        to: [f64; 2],
-        run: &RoomRun,
-        end: &Obstacles<'_>,
-    ) -> AisleCase {
+    fn aisle(&self, from: [f64; 2], to: [f64; 2], run: &RoomRun, end: &Obstacles<'_>) -> AisleCase {
         let inside = |pose: &[f64; 7]| {
             (from[0]..=to[0]).contains(&pose[0]) && (from[1]..=to[1]).contains(&pose[1])
         };
@@ -297,9 +290,9 @@ impl Prepared {
         // Bodies whose middle is farther than a barrel is long cannot reach into the aisle.
         const REACH: f64 = 2.0;
         let near = |pose: &[f64; 7]| {
-            [0, 1].into_iter().all(|axis| {
-                (from[axis] - REACH..=to[axis] + REACH).contains(&pose[axis])
-            })
+            [0, 1]
+                .into_iter()
+                .all(|axis| (from[axis] - REACH..=to[axis] + REACH).contains(&pose[axis]))
         };
         let passable = |time: f64| {
             let mut outlines = Vec::new();

@@ -395,9 +395,16 @@ impl Cellar {
         if readers.is_empty() {
             return Err(reader.missing("block"));
         }
-        for inherited in
-            ["stack", "interface", "motion", "run", "record", "outcome", "imperfections", "unknowns"]
-        {
+        for inherited in [
+            "stack",
+            "interface",
+            "motion",
+            "run",
+            "record",
+            "outcome",
+            "imperfections",
+            "unknowns",
+        ] {
             reader.skip(inherited);
         }
         reader.finish();
@@ -480,7 +487,8 @@ impl Cellar {
         for (at, column) in (1..).zip(&self.columns) {
             let [a, b] = column.size;
             if a <= 0.0 || b <= 0.0 {
-                let message = format!("a column has sides of {a} m and {b} m: give it two positive sides");
+                let message =
+                    format!("a column has sides of {a} m and {b} m: give it two positive sides");
                 return Err(self.host.error(&[&format!("column.{at}.size")], message));
             }
             let ends = [-0.5, 0.5].map(|s| [column.at[0] + s * a, column.at[1] + s * b]);
@@ -593,7 +601,8 @@ fn distinct<'a>(
     let mut known = BTreeSet::new();
     for (at, name) in (1..).zip(all) {
         if !known.insert(name) {
-            let message = format!("two of [[{list}]] are called \"{name}\"; give each its own name");
+            let message =
+                format!("two of [[{list}]] are called \"{name}\"; give each its own name");
             return Err(host.error(&[&format!("{list}.{at}.name")], message));
         }
     }

@@ -91,9 +91,9 @@ described! {
         /// How far a collapse spreads: stacks that fall, for each that falls by itself; null if none falls.
         pub spread: Option<f64> as "1",
         /// Distribution of the number of stacks that fall.
-        pub stacks_fallen: Range,
+        pub stacks_fallen: Range as "1",
         /// Distribution of the number of barrels that fall.
-        pub barrels_fallen: Range,
+        pub barrels_fallen: Range as "1",
         /// Expected number of barrels that burst, if few, as assumed, or many burst at a given height of fall.
         pub burst: [f64; 3] as "1",
         /// Expected loss of wine, under the same assumptions.
@@ -144,19 +144,19 @@ described! {
         /// Variants in which it is knocked over.
         pub knocked_over: Count,
         /// Distribution of the time of its first loss of seat.
-        pub falls_at: Option<Range>,
+        pub falls_at: Option<Range> as "s",
         /// The stack that touches it first in most variants; null if none does.
         pub touched_by: Option<String>,
         /// Distribution of the time of its first contact with another stack.
-        pub touched_at: Option<Range>,
+        pub touched_at: Option<Range> as "s",
         /// Distribution of the impulse of other stacks on it until it lost a seat, or over the whole run if it stands.
-        pub impulse: Option<Range>,
+        pub impulse: Option<Range> as "N s",
         /// Mean number of barrels that fall from it.
         pub barrels_fallen: f64 as "1",
         /// Expected loss of its wine, under the central assumption.
         pub wine_lost: f64 as "m3",
         /// Distribution of its largest horizontal movement at the end, in the variants in which it stands.
-        pub moved: Option<Range>,
+        pub moved: Option<Range> as "m",
     }
 
     /// An aisle.
@@ -167,15 +167,15 @@ described! {
         /// Variants in which a barrel comes into the aisle.
         pub entered: Count,
         /// Distribution of the time of the first barrel in the aisle.
-        pub first_barrel: Option<Range>,
+        pub first_barrel: Option<Range> as "s",
         /// Variants in which no path of 0.6 m leads through the aisle at the end.
         pub blocked: Count,
         /// Distribution of the time from which on the aisle is blocked.
-        pub blocked_at: Option<Range>,
+        pub blocked_at: Option<Range> as "s",
         /// Distribution of the share of its area that is covered at the end.
-        pub covered: Range,
+        pub covered: Range as "1",
         /// Distribution of the largest speed of a barrel in the aisle.
-        pub fastest: Option<Range>,
+        pub fastest: Option<Range> as "m/s",
     }
 
     /// A place of people.
@@ -194,10 +194,10 @@ described! {
         pub name: String,
         /// Variants in which a body strikes it.
         pub struck: Count,
-        /// Distribution of the largest force, in N, in the variants in which a body strikes it.
-        pub peak: Option<Range>,
-        /// Distribution of the impulse, in N·s, likewise.
-        pub impulse: Option<Range>,
+        /// Distribution of the largest force, in the variants in which a body strikes it.
+        pub peak: Option<Range> as "N",
+        /// Distribution of the impulse, likewise.
+        pub impulse: Option<Range> as "N s",
     }
 
     /// The run that is shown.
@@ -248,7 +248,8 @@ described! {
 impl Count {
     /// Counts variants.
     pub fn of<'a>(cases: &[&'a Case], is: impl Fn(&'a Case) -> bool) -> Self {
-        let of_variants = u32::try_from(cases.iter().filter(|case| is(case)).count()).unwrap_or(u32::MAX);
+        let of_variants =
+            u32::try_from(cases.iter().filter(|case| is(case)).count()).unwrap_or(u32::MAX);
         let all = u32::try_from(cases.len()).unwrap_or(u32::MAX);
         let interval = wilson(of_variants, all, LEVEL);
         Self {
@@ -314,8 +315,7 @@ pub fn typical(cases: &[Case]) -> Option<u32> {
         let barrels: usize = case.stacks.iter().map(|stack| stack.barrels).sum();
         [own, knocked, 0.05 * barrels as f64]
     };
-    let medians =
-        [0, 1, 2].map(|which| range(counted.iter().map(|case| numbers(case)[which])).p50);
+    let medians = [0, 1, 2].map(|which| range(counted.iter().map(|case| numbers(case)[which])).p50);
     let far = |case: &Case| -> f64 {
         numbers(case).iter().zip(medians).map(|(value, median)| (value - median).abs()).sum()
     };
@@ -395,9 +395,10 @@ fn rows(prepared: &Prepared, all: &[&Case]) -> Vec<RowAnswer> {
     let row = |row: u32| {
         let own: Vec<usize> = (0..stacks.len()).filter(|at| stacks[*at].row == row).collect();
         let many = |is: &dyn Fn(&StackCase) -> bool| {
-            mean(all.iter().map(|case| {
-                own.iter().filter(|at| is(&case.stacks[**at])).count() as f64
-            }))
+            mean(
+                all.iter()
+                    .map(|case| own.iter().filter(|at| is(&case.stacks[**at])).count() as f64),
+            )
         };
         RowAnswer {
             row,

@@ -16,7 +16,11 @@ pub(crate) fn counted(count: u32, thing: &str) -> String {
 pub(crate) fn share(count: &Count, of: u32) -> String {
     let [low, high] = count.interval.map(percent);
     let share = count.share.map_or_else(String::new, |share| format!("{}, ", percent(share)));
-    format!("{} of {} ({share}95 % interval {low} to {high})", count.of_variants, counted(of, "variant"))
+    format!(
+        "{} of {} ({share}95 % interval {low} to {high})",
+        count.of_variants,
+        counted(of, "variant")
+    )
 }
 
 /// Returns the 5 and 95 % fractiles, such as "2.1 to 3.4 s"; one number where they are shown alike.
@@ -124,9 +128,8 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
             all.push(format!("No barrel comes into the aisle \"{}\".", aisle.name));
             continue;
         };
-        let fast = aisle.fastest.map_or(String::new(), |fast| {
-            format!(", at up to {:.1} m/s", fast.most)
-        });
+        let fast =
+            aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
         all.push(format!(
             "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end {} of its area are \
              covered, and it is blocked in {}.",

@@ -27,15 +27,19 @@ fn answered() -> Answer {
 }
 
 fn tables(blocks: &[Block]) -> Vec<&Table> {
-    let of = |block| if let Block::Table(table) = block { Some(table) } else { None };
-    blocks.iter().filter_map(of).collect()
+    let mut all = Vec::new();
+    for block in blocks {
+        if let Block::Table(table) = block {
+            all.push(table);
+        }
+    }
+    all
 }
 
 #[test]
 fn every_number_of_the_page_is_that_of_the_document() {
     let answer = answered();
-    let json: Value =
-        serde_json::from_str(&described::to_json(&answer.summary).unwrap()).unwrap();
+    let json: Value = serde_json::from_str(&described::to_json(&answer.summary).unwrap()).unwrap();
     let page = document(&answer);
     assert_eq!(json["schema"], "cellar/1");
     assert_eq!(json["headline"], page.verdict.headline.as_str());

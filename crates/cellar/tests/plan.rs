@@ -43,7 +43,8 @@ fn a_cellar_reads_back_from_its_resolved_text() {
 
 #[test]
 fn changes_reach_the_stack_and_the_block() {
-    let cellar = changed(&["stack.levels=3", "block.1.stacks=1", "imperfections.variants=5"]).unwrap();
+    let cellar =
+        changed(&["stack.levels=3", "block.1.stacks=1", "imperfections.variants=5"]).unwrap();
     assert_eq!((cellar.barrels(), cellar.stated().stack().unwrap().levels), (12, 3));
     assert_eq!(cellar.stated().imperfections().unwrap().variants, 5);
     let wrong = changed(&["block.1.spacng=1 m"]).unwrap_err();
@@ -56,12 +57,26 @@ fn changes_reach_the_stack_and_the_block() {
 fn stacks_in_wrong_places_are_errors_with_place_and_remedy() {
     for (changes, words) in [
         (&["block.1.aisle=0 m", "block.1.first=[\"0.46 m\", \"1 m\"]"][..], &[][..]),
-        (&["block.1.first=[\"-0.2 m\", \"0.7 m\"]"], &["reaches 0.20 m into the left wall", "move the block"]),
-        (&["room.width=3 m", "aisle.aisle.to=[\"5 m\", \"2.9 m\"]"], &["into the far wall", "enlarge"]),
-        (&["door.door.side=near", "door.door.position=1.2 m", "block.1.first=[\"0.46 m\", \"0.1 m\"]"],
-            &["stands in the door \"door\"", "move the door or the block"]),
-        (&["column=[{ name = \"post\", at = [\"1 m\", \"1 m\"] }]"],
-            &["the column \"post\" stands in stack 1-1", "move the column or the block"]),
+        (
+            &["block.1.first=[\"-0.2 m\", \"0.7 m\"]"],
+            &["reaches 0.20 m into the left wall", "move the block"],
+        ),
+        (
+            &["room.width=3 m", "aisle.aisle.to=[\"5 m\", \"2.9 m\"]"],
+            &["into the far wall", "enlarge"],
+        ),
+        (
+            &[
+                "door.door.side=near",
+                "door.door.position=1.2 m",
+                "block.1.first=[\"0.46 m\", \"0.1 m\"]",
+            ],
+            &["stands in the door \"door\"", "move the door or the block"],
+        ),
+        (
+            &["column=[{ name = \"post\", at = [\"1 m\", \"1 m\"] }]"],
+            &["the column \"post\" stands in stack 1-1", "move the column or the block"],
+        ),
     ] {
         let found = problems(changes);
         assert_eq!(found.len(), usize::from(!words.is_empty()), "{changes:?}: {found:?}");
@@ -81,7 +96,10 @@ fn overlapping_blocks_are_one_error_and_are_not_run() {
     let plan = Plan::of(&cellar).unwrap();
     assert_eq!(plan.problems.len(), 1, "{:?}", plan.summary.problems);
     let found = &plan.summary.problems[0];
-    assert!(found.starts_with("two.toml:6:") && found.contains("stacks 1-1 and 2-1 overlap"), "{found}");
+    assert!(
+        found.starts_with("two.toml:6:") && found.contains("stacks 1-1 and 2-1 overlap"),
+        "{found}"
+    );
     assert_eq!(plan.problems[0].1, [0, 1]);
     assert!(matches!(Prepared::new(&cellar), Err(CellarFailure::Plan(_))));
 }
@@ -114,12 +132,8 @@ fn a_room_that_cannot_be_is_one_error_with_its_place() {
 #[test]
 fn the_number_of_barrels_is_limited_before_anything_is_built() {
     // 500 rows of 500 stacks of 480 barrels would be 1.2e8 barrels.
-    let found = changed(&[
-        "block.1.rows=500",
-        "block.1.stacks=500",
-        "stack.columns=40",
-        "stack.levels=12",
-    ]);
+    let found =
+        changed(&["block.1.rows=500", "block.1.stacks=500", "stack.columns=40", "stack.levels=12"]);
     let found = found.unwrap_err();
     assert!(found.contains(&format!("more than {MOST_BARRELS} barrels")), "{found}");
     assert!(found.contains("with row 1 of this block") && found.contains("take fewer"), "{found}");

@@ -302,9 +302,8 @@ impl Region {
 
     /// `true` if a point lies in the region.
     fn holds(&self, [x, y]: Point) -> bool {
-        let side = |(a, b): (&Point, &Point)| {
-            (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
-        };
+        let side =
+            |(a, b): (&Point, &Point)| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
         let edges = self.outline.iter().zip(self.outline.iter().cycle().skip(1));
         let (mut left, mut right) = (false, false);
         for turn in edges.map(side) {

@@ -49,8 +49,8 @@ pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCod
 /// Prints how the stacks of a cellar rest before the motion.
 fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     for model in &cellar.models {
-        let found = barrelstack_space::check(model)
-            .map_err(|error| placed(error.into(), cellar, args))?;
+        let found =
+            barrelstack_space::check(model).map_err(|error| placed(error.into(), cellar, args))?;
         let heading = model.stack().filter(|_| cellar.models.len() > 1);
         let heading = heading.map(|stack| format!("a stack of {} levels:", stack.levels));
         printer::lines(heading.unwrap_or_else(|| "each stack:".to_owned()).lines())?;
@@ -64,14 +64,19 @@ fn write_new(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     if path.exists() {
         bail!("{} exists; give another name after --plan", path.display());
     }
-    std::fs::write(path, bytes)
-        .map_err(|error| anyhow::anyhow!("cannot write {}: {}", path.display(), system::words(&error)))
+    std::fs::write(path, bytes).map_err(|error| {
+        anyhow::anyhow!("cannot write {}: {}", path.display(), system::words(&error))
+    })
 }
 
 /// Runs a cellar and prints and writes the result.
 pub(crate) fn run(args: &RunArgs, cellar: Cellar) -> anyhow::Result<ExitCode> {
     for (given, option, reason) in [
-        (args.with_engine.is_some(), "--with-engine", "the page that contains the program runs one stack"),
+        (
+            args.with_engine.is_some(),
+            "--with-engine",
+            "the page that contains the program runs one stack",
+        ),
         (args.verify, "--verify", "runs are repeated for one stack only"),
     ] {
         if given {

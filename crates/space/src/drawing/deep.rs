@@ -51,8 +51,8 @@ pub(super) fn of_bodies<'a>(
         volumes: Vec::new(),
         rows: vec![[0.0; 3]],
     };
-    let named = bodies
-        .map(|(part, body, name)| DepthBody { name: name.to_owned(), ..drawn(part, body) });
+    let named =
+        bodies.map(|(part, body, name)| DepthBody { name: name.to_owned(), ..drawn(part, body) });
     Depth {
         bodies: std::iter::once(floor).chain(named).collect(),
         poses: DepthPoses::Free(poses),

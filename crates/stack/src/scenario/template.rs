@@ -137,8 +137,7 @@ impl Host {
         overrides: &[String],
         language: &Language,
     ) -> Result<Self, ScenarioError> {
-        let (sources, table) =
-            load::merged(name, bytes, overrides, Access::BuiltinOnly, language)?;
+        let (sources, table) = load::merged(name, bytes, overrides, Access::BuiltinOnly, language)?;
         Ok(Self { sources, table })
     }
 
@@ -187,11 +186,7 @@ impl Host {
     ///
     /// # Errors
     /// Returns the first problem found, with the place where the value was written.
-    pub fn stack(
-        &self,
-        own: &[&str],
-        changes: &[(&str, Node)],
-    ) -> Result<Scenario, ScenarioError> {
+    pub fn stack(&self, own: &[&str], changes: &[(&str, Node)]) -> Result<Scenario, ScenarioError> {
         let mut table = self.table.clone();
         own.iter().for_each(|key| table.remove(key));
         let view = self.node("stack.view");
