@@ -144,13 +144,8 @@ impl Running<'_> {
         for number in 0..self.islands.len() {
             self.open(number);
         }
-        let mut tasks: Vec<Mutex<&mut Island>> = self
-            .islands
-            .iter_mut()
-            .flatten()
-            .filter(|island| island.is_awake())
-            .map(Mutex::new)
-            .collect();
+        let mut tasks: Vec<Mutex<&mut Island>> =
+            self.islands.iter_mut().flatten().filter(|island| island.is_awake()).map(Mutex::new).collect();
         // The largest first, since threads take them in order.
         tasks.sort_by_key(|task| {
             task.lock().map_or(0, |island| usize::MAX - island.fixed.owners.len())
@@ -171,7 +166,8 @@ impl Running<'_> {
 
     /// Starts the window of an island.
     fn open(&mut self, number: usize) {
-        let (tubes, near) = self.nearby.limit(self.world, &self.islands, &self.places, number);
+        let (tubes, near) =
+            self.nearby.limit(self.world, &self.islands, &self.places, number);
         if let Some(island) = &mut self.islands[number] {
             island.tubes = tubes;
             let keeps = near && island.is_awake();
@@ -242,9 +238,8 @@ impl Running<'_> {
                 continue;
             }
             let of_group = |at: usize| root(&group, at) == first;
-            let numbers: Vec<usize> = (first..group.len())
-                .filter(|at| of_group(*at) && self.islands[*at].is_some())
-                .collect();
+            let numbers: Vec<usize> =
+                (first..group.len()).filter(|at| of_group(*at) && self.islands[*at].is_some()).collect();
             let own: Vec<usize> =
                 obstacles.iter().filter(|(at, _)| of_group(*at)).map(|(_, of)| *of).collect();
             if numbers.len() == 1 && own.is_empty() {
@@ -411,7 +406,8 @@ impl Running<'_> {
                     own: numbers(own),
                 });
             }
-            let lost_seat = watch.fates.collapse().map(|(time, body)| (time, first + body - 1));
+            let lost_seat =
+                watch.fates.collapse().map(|(time, body)| (time, first + body - 1));
             let touched = watch.touched.map(|(time, own, by)| Touch {
                 time,
                 body: first + own - 1,
@@ -494,7 +490,10 @@ fn obstacle_end(
 }
 
 /// Returns the sum of two histories of a force, each of which is zero outside of its samples and linear between them.
-pub(crate) fn summed(one: &[(f64, [f64; 3])], other: &[(f64, [f64; 3])]) -> Vec<(f64, [f64; 3])> {
+pub(crate) fn summed(
+    one: &[(f64, [f64; 3])],
+    other: &[(f64, [f64; 3])],
+) -> Vec<(f64, [f64; 3])> {
     if one.is_empty() || other.is_empty() {
         return if one.is_empty() { other.to_vec() } else { one.to_vec() };
     }
