@@ -197,11 +197,11 @@ impl Grid {
 
     /// `true` if free cells lead from one that satisfies `starts` to one that satisfies `ends`.
     pub fn leads(&self, starts: impl Fn(Point) -> bool, ends: impl Fn(Point) -> bool) -> bool {
-        let mut seen = self.taken.clone();
+        let mut visited = self.taken.clone();
         let mut queue = VecDeque::new();
-        for at in 0..seen.len() {
-            if !seen[at] && starts(self.middle(at)) {
-                seen[at] = true;
+        for at in 0..visited.len() {
+            if !visited[at] && starts(self.middle(at)) {
+                visited[at] = true;
                 queue.push_back(at);
             }
         }
@@ -217,8 +217,8 @@ impl Grid {
                 (row + 1 < self.rows).then(|| at + self.columns),
             ];
             for next in near.into_iter().flatten() {
-                if !seen[next] {
-                    seen[next] = true;
+                if !visited[next] {
+                    visited[next] = true;
                     queue.push_back(next);
                 }
             }

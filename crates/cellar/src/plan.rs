@@ -98,7 +98,7 @@ described! {
         pub places: Vec<PlacePlan>,
         /// What prevents a run, one sentence each, with its place in the file.
         pub problems: Vec<String>,
-        /// What narrows an aisle or leaves a place without a way out, one sentence each.
+        /// What narrows an aisle or leaves a place without a path to a door, one sentence each.
         pub findings: Vec<String>,
         /// Hash of the cellar with every default written out.
         pub cellar_hash: String,
@@ -213,7 +213,7 @@ impl Plan {
             places,
             problems: problems.iter().map(|(error, _)| error.sentence()).collect(),
             findings,
-            cellar_hash: format!("{:016x}", cellar.fingerprint()),
+            cellar_hash: format!("{:016x}", cellar.with_records()?.fingerprint()),
         };
         Ok(Self { models, stacks, footprints, problems, summary })
     }
@@ -649,7 +649,7 @@ fn section(polygon: &Convex, axis: usize, at: f64) -> Option<[f64; 2]> {
     found
 }
 
-/// Returns the plan of a body: the hull of points of its surface in a pose, seen from above.
+/// Returns the plan of a body: the hull of points of its surface in a pose, from above.
 pub(crate) fn seen_from_above(points: &[Vec3], pose: &[f64; 7]) -> Convex {
     let [x, y, _, w, a, b, c] = *pose;
     let turn = Quaternion { w, v: Vec3::new(a, b, c) }.matrix();

@@ -36,7 +36,7 @@ pub fn picture(answer: &Answer) -> FloorPlan {
         cell: grid.cell,
         columns: grid.columns,
         shares: (0..grid.cells().len()).map(share).collect(),
-        label: "variants in which fallen barrels lie here".to_owned(),
+        label: "barrels".to_owned(),
     };
     let heat = Some(heat).filter(|heat| heat.shares.iter().any(|share| *share > 0.0));
     FloorPlan { heat, ..prepared.plan.drawn(&prepared.cellar, &kind) }
@@ -98,7 +98,7 @@ pub fn document(answer: &Answer) -> Document {
     let summary = &answer.summary;
     let heading = |text: &str| Block::heading(2, text);
     let caption = format!(
-        "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades: share \
+        "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades (barrels): share \
          of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
         if summary.shown.variant == 0 {
             "the room as stated".to_owned()
@@ -112,7 +112,7 @@ pub fn document(answer: &Answer) -> Document {
     ];
     blocks.extend(players(answer));
     if !summary.aisles.is_empty() || !summary.places.is_empty() {
-        blocks.push(heading("Aisles and ways out"));
+        blocks.push(heading("Aisles and paths to the doors"));
     }
     if !summary.aisles.is_empty() {
         blocks.push(Block::Table(aisles(summary)));
@@ -221,7 +221,7 @@ fn places(summary: &CellarSummary) -> Table {
         &summary.places,
         &[
             ("place", "", &|place| Cell::text(&place.name)),
-            ("a way out is left", "", &|place| {
+            ("a path to a door is left", "", &|place| {
                 place.leads_out.as_ref().map_or(Cell::Missing, count)
             }),
         ],

@@ -73,15 +73,12 @@ impl Prepared {
     /// # Errors
     /// If the plan is wrong, a stack cannot be built, or the motion cannot be read.
     pub fn new(cellar: &Cellar) -> Result<Self, CellarFailure> {
-        let plan = Plan::of(cellar)?;
+        let cellar = cellar.with_records()?;
+        let plan = Plan::of(&cellar)?;
         if let Some((error, _)) = plan.problems.into_iter().next() {
             return Err(error.into());
         }
         let plan = Plan { problems: Vec::new(), ..plan };
-        let mut cellar = cellar.clone();
-        for model in &mut cellar.models {
-            *model = model.with_records(&mut barrelstack::ground::from_disk)?;
-        }
         let mut ground = Ground::of_spec(&cellar.stated().motion, 1.0)?;
         ground.warnings.splice(0..0, cellar.stated().warnings().iter().cloned());
         let onset = onset(&ground);
@@ -235,7 +232,7 @@ impl Prepared {
         Grid::new([0.0; 2], [self.cellar.room.length, self.cellar.room.width], CELL)
     }
 
-    /// Returns the bodies at the end of a run, seen from above.
+    /// Returns the bodies at the end of a run, from above.
     fn outlines(&self, run: &RoomRun) -> Vec<Convex> {
         let of = |(at, end): (usize, &StackEnd)| {
             let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use barrelstack::ground::{GroundError, from_disk};
 use barrelstack::scenario::error::ScenarioError;
 use barrelstack::scenario::field::{Default, Kind, Range, names};
 use barrelstack::scenario::imperfections::IMPERFECTIONS;
@@ -139,7 +140,7 @@ pub struct Block {
     pub aisle: f64,
     /// Number of rows that stand back to back before an aisle follows.
     pub rows_together: u32,
-    /// Angle (rad) by which every stack is turned, counterclockwise seen from above.
+    /// Angle (rad) by which every stack is turned, counterclockwise from above.
     pub azimuth: f64,
     /// Number of levels; that of the stack if absent.
     pub levels: Option<u32>,
@@ -166,7 +167,7 @@ table! {
     aisle = APART, Default::Value("\"1.2 m\"");
     /// Number of rows that stand back to back before an aisle follows.
     rows_together = Kind::Integer(1, 500), Default::Value("1");
-    /// Angle by which every stack is turned, counterclockwise seen from above; at zero the barrels lie along y.
+    /// Angle by which every stack is turned, counterclockwise from above; at zero the barrels lie along y.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-7.0, 7.0)), Default::Value("\"0 deg\"");
     /// Number of levels.
     levels = Kind::Integer(1, 12), Default::Derived("`stack.levels`");
@@ -348,6 +349,18 @@ impl Cellar {
     /// Returns the scenario of the stack as stated, whose motion, settings and imperfections are those of the room.
     pub fn stated(&self) -> &Scenario {
         &self.models[0]
+    }
+
+    /// Returns the cellar with the records of its motion in memory.
+    ///
+    /// # Errors
+    /// If a record cannot be read.
+    pub fn with_records(&self) -> Result<Self, GroundError> {
+        let mut held = self.clone();
+        for model in &mut held.models {
+            *model = model.with_records(&mut from_disk)?;
+        }
+        Ok(held)
     }
 
     /// Returns the same cellar with another number of variants.

@@ -7,6 +7,9 @@ use barrelstack_report::{Tone, listed};
 use crate::plan::liters;
 use crate::summary::{CellarSummary, Count};
 
+/// Number of variants needed for the verdict that a room stands.
+const ENOUGH: u32 = 8;
+
 /// Returns a number of things, such as "1 stack" or "3 stacks".
 pub(crate) fn counted(count: u32, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
@@ -35,10 +38,16 @@ pub fn headline(summary: &CellarSummary) -> String {
     let all = summary.plan.stacks;
     let (own, knocked) = (shown.by_themselves, shown.knocked_over);
     if own + knocked == 0 {
-        return if all == 1 {
-            "The only stack stands.".to_owned()
+        let stand = if all == 1 { "The only stack stands".to_owned() } else { format!("All {all} stacks stand") };
+        let some = &summary.room.some_fall;
+        return if some.of_variants == 0 {
+            format!("{stand}.")
         } else {
-            format!("All {all} stacks stand.")
+            format!(
+                "{stand} in the most typical run, but at least one falls in {} of {}.",
+                some.of_variants,
+                counted(summary.counted, "variant")
+            )
         };
     }
     let starts = shown.starts.filter(|_| summary.plan.rows > 1);
@@ -79,6 +88,8 @@ fn blocked(summary: &CellarSummary) -> String {
 pub fn tone(summary: &CellarSummary) -> Tone {
     match summary.room.some_fall.of_variants {
         _ if summary.counted == 0 => Tone::Invalid,
+        // As for one stack, few variants that stand are no verdict.
+        0 if summary.counted < ENOUGH => Tone::Neutral,
         0 => Tone::Stands,
         _ => Tone::Falls,
     }

@@ -62,7 +62,7 @@ fn stacks_in_wrong_places_are_errors_with_place_and_remedy() {
             &["reaches 0.20 m into the left wall", "move the block"],
         ),
         (
-            &["room.width=3 m", "aisle.aisle.to=[\"5 m\", \"2.9 m\"]"],
+            &["room.width=3 m", "aisle.aisle.to=[\"5 m\", \"2.9 m\"]", "door.door.position=2 m"],
             &["into the far wall", "enlarge"],
         ),
         (

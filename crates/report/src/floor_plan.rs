@@ -1,4 +1,4 @@
-//! A floor plan: regions seen from above, with labels, and shares by cell as shades.
+//! A floor plan: regions from above, with labels, and shares by cell as shades.
 
 use std::fmt::Write as _;
 
