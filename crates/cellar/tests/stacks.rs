@@ -53,7 +53,7 @@ fn show(run: &RoomRun) {
 
 #[test]
 fn a_stack_that_falls_on_its_neighbors_is_the_first_and_they_are_touched() {
-    let room = crowd("8", 1.0);
+    let room = crowd("11", 1.0);
     let run = on(2, &room);
     show(&run);
     let [high, others] = [&run.stacks[..1], &run.stacks[1..]];
