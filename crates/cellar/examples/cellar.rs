@@ -1,10 +1,11 @@
 //! Measures how fast a cellar is computed: the tables of `validation/cellar.md`.
 //!
 //! ```text
-//! cargo run --release -p barrelstack-cellar --example cellar -- ROWS STACKS [THREADS [SECONDS [LEVELS]]]
+//! cargo run --release -p barrelstack-cellar --example cellar -- ROWS STACKS [THREADS [SECONDS [LEVELS [ALIKE]]]]
 //! ```
 //!
-//! The cellar has rows of four-barrel racks, with walls around them, under the South Napa record of the demo.
+//! The cellar has rows of four-barrel racks, with walls around them, under the South Napa record of the demo. Every
+//! stack is another variant unless ALIKE is 1; without SECONDS a room is run to rest.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
@@ -27,7 +28,7 @@ const FOOTPRINT: [f64; 2] = [1.5, 1.95];
 /// Distances (m) of the outermost stacks from the walls across and along the barrels.
 const TO_WALL: [f64; 2] = [0.3, 0.46];
 
-fn cellar(rows: u32, stacks: u32, changes: &[String]) -> Result<Room, Box<dyn Error>> {
+fn cellar(rows: u32, stacks: u32, alike: bool, changes: &[String]) -> Result<Room, Box<dyn Error>> {
     let stated = Scenario::builtin("demo-napa", changes)?;
     // Every stack has positions, masses and friction of its own.
     let planes = barrelstack::variants::planes(&stated)?;
@@ -36,7 +37,7 @@ fn cellar(rows: u32, stacks: u32, changes: &[String]) -> Result<Room, Box<dyn Er
         let (row, stack) = (number / stacks, number % stacks);
         let at = [PITCH[0] * middle(stack, stacks), PITCH[1] * middle(row, rows)];
         let name = format!("{:02}-{:02}", row + 1, stack + 1);
-        Placed::new(&name, planes[0].variant(number + 1), at)
+        Placed::new(&name, planes[0].variant(if alike { 0 } else { number + 1 }), at)
     };
     let half = [stacks, rows].map(f64::from);
     let half: [f64; 2] = std::array::from_fn(|axis| {
@@ -110,7 +111,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         changes.push(format!("run.duration={seconds} s"));
     }
     let start = Instant::now();
-    let room = cellar(rows as u32, stacks as u32, &changes)?;
+    let room = cellar(rows as u32, stacks as u32, number(5, 0.0) == 1.0, &changes)?;
     let settings = Settings { threads: threads as usize, ..Settings::default() };
     let (mut settled, mut shown) = (0.0, Instant::now());
     let run = run(&room, &settings, &mut |now| {

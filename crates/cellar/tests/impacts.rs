@@ -155,3 +155,46 @@ fn a_barrel_that_rolls_into_a_wall_is_thrown_back_by_the_rebound_law() {
     // The wall pushes along its normal only: the weight stays on the floor.
     assert!(run.bodies[0].fate.moved.z.abs() < 1e-3 && G > 9.8);
 }
+
+/// Returns the positions at the end, in the room, of two blocks that pound and of which the second meets a wall. The
+/// room is turned by an angle (rad), and the second block about its own vertical axis by another one; `side` is -1 for
+/// the mirror image.
+fn pounded(turn: f64, own: f64, side: f64) -> [[f64; 2]; 2] {
+    let (sin, cos) = turn.sin_cos();
+    let place = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y];
+    let at = |name: &str, speed: f64, x: f64, y: f64, own: f64| Placed {
+        azimuth: turn + own,
+        ..Placed::new(name, free(&block(speed, 1e6)), place(x, y))
+    };
+    // The second block is beside the course of the first, so that both turn.
+    let mut room =
+        room(vec![at("A", side * 0.8, 0.0, 0.0, 0.0), at("B", 0.0, side * 0.45, 0.1, own)]);
+    let mut wall = wall("wall", 0.7, NormalLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 });
+    let [x, y] = place(side * wall.center[0], 0.0);
+    (wall.center, wall.azimuth) = ([x, y, 1.0], turn);
+    room.obstacles.push(wall);
+    let run = on(1, &room);
+    assert_eq!((run.meetings.len() >= 1, run.obstacles[0].first.is_some()), (true, true));
+    [0, 1].map(|body| {
+        let [x, y, ..] = run.bodies[body].to;
+        [cos * x + sin * y, cos * y - sin * x]
+    })
+}
+
+#[test]
+fn a_room_that_is_turned_or_mirrored_moves_as_the_room_itself() {
+    let straight = pounded(0.0, 0.0, 1.0);
+    println!("{straight:?}");
+    assert!(straight[1][1].abs() > 0.01);
+    for (turn, own, side) in
+        [(0.7, 0.0, 1.0), (0.0, std::f64::consts::PI, 1.0), (0.0, 0.0, -1.0), (-2.0, std::f64::consts::PI, -1.0)]
+    {
+        let other = pounded(turn, own, side);
+        for (one, other) in straight.iter().zip(other) {
+            let apart = (one[0] - side * other[0]).abs().max((one[1] - other[1]).abs());
+            println!("turned by {turn}, {own}, side {side}: {apart:e}");
+            // MEASURED
+            assert!(apart < 1e-6, "{apart:e}");
+        }
+    }
+}
