@@ -18,7 +18,8 @@ pub struct Placed {
     pub azimuth: f64,
     /// Poses from which the stack starts, by the order of its bodies, without the ground: position of the center of
     /// mass (m), and quaternion `w`, `x`, `y`, `z`, in the frame of the stack, relative to the ground; such as
-    /// [`BodyEnd::own`](crate::BodyEnd::own). `None` to start as built.
+    /// [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest; losses of seats still count from the places as
+    /// built, so a seat that was lost before is lost at time zero. `None` to start as built.
     pub start: Option<Vec<[f64; 7]>>,
 }
 
@@ -101,6 +102,17 @@ pub enum RoomFailure {
         found: usize,
         /// Number of bodies.
         expected: usize,
+    },
+    /// A pose from which a stack starts is invalid.
+    #[error(
+        "stack \"{name}\": the pose of body {body} is not finite, or its quaternion is not of length one: state position \
+         (m) and unit quaternion"
+    )]
+    Pose {
+        /// Name of the stack.
+        name: String,
+        /// Number of the body, counted from 1.
+        body: usize,
     },
     /// Bodies of two stacks, or a body and an obstacle, overlap from the start.
     #[error(

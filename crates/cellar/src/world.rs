@@ -6,11 +6,12 @@ use barrelstack::Scenario;
 use barrelstack::pool;
 use barrelstack::run::{check_length, end_time, method, thresholds};
 use barrelstack::watch::Thresholds;
+use barrelstack_dynamics::contact_elements::ContactElements;
 use barrelstack_dynamics::join::{Crossing, Frame, Running};
 use barrelstack_dynamics::solid::Block;
 use barrelstack_dynamics::{
     Body, Model, Motion, Placed as On, Pose, Quaternion, Rotation3, Simulation, Solid, Spatial,
-    State, Stepper, Substepping, Vec3,
+    State, Stepper, Substepping, Twist, Vec3,
 };
 use barrelstack_space::Stack;
 use barrelstack_space::run::Standing;
@@ -86,6 +87,9 @@ impl<'a> World<'a> {
             let simulation =
                 Simulation { method: method(scenario), time_step: stack.step, end_time: end };
             let at_rest = state.clone();
+            if let Some(poses) = &placed.start {
+                start_from(&mut state, placed, poses)?;
+            }
             let drive = room.ground.clone().turned(placed.azimuth);
             let stepper =
                 Stepper::start(&stack.model, &drive, &mut state, &mut scratch, &simulation);
@@ -150,6 +154,33 @@ impl<'a> World<'a> {
             Owner::Obstacle(obstacle) => self.room.obstacles[obstacle].name.clone(),
         }
     }
+}
+
+/// Moves the bodies of a stack to the poses from which it starts, at rest and without memory of contacts.
+fn start_from(
+    state: &mut State<Spatial>,
+    placed: &Placed,
+    poses: &[[f64; 7]],
+) -> Result<(), RoomFailure> {
+    let name = || placed.name.clone();
+    let expected = state.poses.len() - 1;
+    if poses.len() != expected {
+        return Err(RoomFailure::Start { name: name(), found: poses.len(), expected });
+    }
+    for (body, numbers) in poses.iter().enumerate() {
+        let [x, y, z, w, a, b, c] = *numbers;
+        let size = (w * w + a * a + b * b + c * c).sqrt();
+        if !(numbers.iter().all(|number| number.is_finite()) && (size - 1.0).abs() < 1e-6) {
+            return Err(RoomFailure::Pose { name: name(), body: body + 1 });
+        }
+        state.poses[body + 1] = Pose {
+            position: Vec3::new(x, y, z),
+            orientation: Quaternion { w, v: Vec3::new(a, b, c) },
+        };
+    }
+    state.twists.fill(Twist::default());
+    state.contact_elements = ContactElements::default();
+    Ok(())
 }
 
 fn check_names(room: &Room) -> Result<(), RoomFailure> {
