@@ -168,6 +168,9 @@ pub(crate) struct CheckArgs {
     /// which the stack falls.
     #[arg(long)]
     pub(crate) table: bool,
+    /// Write the plan of a cellar as a picture (SVG) into this file, which must not exist.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plan: Option<PathBuf>,
     /// Print one JSON document in place of text.
     #[arg(long)]
     pub(crate) json: bool,

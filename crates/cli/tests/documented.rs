@@ -34,7 +34,7 @@ const AT_MOST: Duration = Duration::from_secs(60);
 const STOPPED: i32 = 130;
 
 /// Lines of other programs in the blocks, by their beginnings, with the reason why they are not run.
-const NOT_RUN: [(&str, &str); 7] = [
+const NOT_RUN: [(&str, &str); 8] = [
     ("cargo run --release -- ", "is run as the command that it stands for"),
     ("cargo xtask test", "runs this test"),
     ("cargo xtask validate", "the checks of the workspace run it"),
@@ -42,6 +42,7 @@ const NOT_RUN: [(&str, &str); 7] = [
     ("cargo xtask web", "builds the page; a page with the mark of one stands in"),
     ("pip install .", "the tests of the Python package run it"),
     ("cargo run --release -p barrelstack-space --example ", "runs for hours"),
+    ("cargo run --release -p barrelstack-cellar --example ", "runs for minutes"),
 ];
 
 /// Stacks of two barrels that fall at some levels, in place of a study of hours whose curves are exported.

@@ -7,6 +7,7 @@
 #[cfg(unix)]
 #[path = "common/cases.rs"]
 mod cases;
+mod cellar;
 mod cli;
 mod cluster;
 mod common;

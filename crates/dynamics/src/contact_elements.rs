@@ -12,7 +12,8 @@ use crate::model::{ContactPair, Counts, InterfaceId, Model};
 use crate::pair_frame::PairFrame;
 use crate::real::{Mask, Real};
 use crate::shape::{Surface, Whole};
-use crate::space::{Linear, Planar, Pose, Space, Twist};
+use crate::space::{Linear, Planar, Pose, Rotation3, Space, Spatial, Twist, Vec3};
+use crate::state::State;
 
 /// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on the list, so
 /// the gap of every element that is missing from the list must exceed the displacements within the lookahead plus this
@@ -282,7 +283,10 @@ impl<S: Space> ContactElements<S> {
                         let touch = S::Real::splat(balls[body] + balls[*other]);
                         if !(touch * touch).lt(apart.dot(apart)).all() {
                             let bodies = [body.min(*other), body.max(*other)];
-                            couples.push(model.pairs.of_couple(bodies));
+                            let pairs = model.pairs.of_couple(bodies);
+                            if !pairs.is_empty() {
+                                couples.push(pairs);
+                            }
                         }
                     }
                 },
@@ -425,6 +429,76 @@ impl<S: Space> ContactElements<S> {
             }
         }
         least
+    }
+}
+
+/// A group of elements on its way into another model.
+pub(crate) struct Moved {
+    /// Number of the pair in the new model.
+    pair: usize,
+    group: Group,
+    nodes: Vec<u32>,
+    sticks: Vec<Stick<Spatial>>,
+    slip_rates: Vec<Vec3>,
+}
+
+impl Moved {
+    /// Returns the number of the pair in the new model.
+    pub(crate) fn pair(&self) -> usize {
+        self.pair
+    }
+}
+
+impl ContactElements<Spatial> {
+    /// Returns the groups whose pairs are in a new model, where `number_of` returns their numbers, with sticks and slip
+    /// rates rotated.
+    pub(crate) fn moved(
+        &self,
+        slip_rates: &[Vec3],
+        turn: Rotation3,
+        number_of: &dyn Fn(usize) -> Option<usize>,
+    ) -> Vec<Moved> {
+        let stick = |stick: &Stick<Spatial>| Stick {
+            displacement: turn.apply(stick.displacement),
+            tangent_plane: turn.apply(stick.tangent_plane),
+            slipping: stick.slipping,
+        };
+        let moved = |group: &Group| {
+            let own = group.first..group.end;
+            let rates = slip_rates.get(own.clone()).unwrap_or_default();
+            Some(Moved {
+                pair: number_of(group.pair)?,
+                group: *group,
+                nodes: self.nodes[own.clone()].to_vec(),
+                sticks: self.sticks[own].iter().map(stick).collect(),
+                slip_rates: rates.iter().map(|rate| turn.apply(*rate)).collect(),
+            })
+        };
+        self.groups.iter().filter_map(moved).collect()
+    }
+
+    /// Lists the elements of a model at a state with the memory of moved groups, which must be sorted by their pairs;
+    /// returns the list and the slip rates of its elements.
+    pub(crate) fn of_moved(
+        model: &Model<Spatial>,
+        moved: &[Moved],
+        state: &State<Spatial>,
+    ) -> (Self, Vec<Vec3>) {
+        let (mut list, mut rates) = (Self::default(), Vec::new());
+        for one in moved {
+            let first = list.nodes.len();
+            list.nodes.extend(&one.nodes);
+            list.sticks.extend(&one.sticks);
+            rates.extend(&one.slip_rates);
+            let end = list.nodes.len();
+            list.groups.push(Group { pair: one.pair, first, end, ..one.group });
+        }
+        let origins = list.rebuild(model, &state.poses, &state.twists);
+        let rate = |origin: &Option<usize>| {
+            origin.and_then(|origin| rates.get(origin).copied()).unwrap_or_default()
+        };
+        let rates = origins.iter().map(rate).collect();
+        (list, rates)
     }
 }
 

@@ -42,6 +42,7 @@ pub mod element;
 pub mod energy;
 pub mod forces;
 pub mod integrate;
+pub mod join;
 pub mod lanes;
 pub mod math;
 pub mod model;

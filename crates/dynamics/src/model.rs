@@ -199,7 +199,7 @@ impl<S: Space> Model<S> {
         Self::of_pairs(bodies, interfaces, pairs, gravity)
     }
 
-    fn of_pairs(
+    pub(crate) fn of_pairs(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
         pairs: Pairs,
@@ -328,8 +328,14 @@ impl<S: Space> Model<S> {
         self.pairs.get(number)
     }
 
+    /// Returns the number from which on contact pairs join bodies of different parties of a
+    /// [joined](crate::join::joined) model.
+    pub fn first_foreign_pair(&self) -> usize {
+        self.pairs.first_foreign()
+    }
+
     /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all bodies that may be
-    /// its target.
+    /// its target. Pairs between the parties of a [joined](crate::join::joined) model are left out.
     pub fn each_meeting(&self, report: &mut TellMeeting<'_>) {
         self.pairs.each(report);
     }

@@ -1,9 +1,11 @@
 //! Contact pairs of a model, listed one by one or generated from the kinds of the bodies.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::body::BodyId;
-use crate::model::ContactPair;
+use crate::join::Crossing;
+use crate::model::{ContactPair, Counts, InterfaceId};
 
 /// Contact pairs of a model, grouped by their two bodies, in the order in which forces are summed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -26,6 +28,50 @@ pub(crate) enum Pairs {
         /// Number of pair indices that are reserved for every two bodies.
         most: usize,
     },
+    /// The pairs within each party are stored; those between parties follow from the sorts of their bodies, since
+    /// their number would be quadratic in the number of bodies.
+    Joined {
+        /// The pairs within parties; those between parties have higher numbers.
+        pairs: Vec<ContactPair>,
+        /// Ranges of the pairs within parties.
+        couples: Vec<Couple>,
+        /// Pairs between parties.
+        foreign: Foreign,
+    },
+}
+
+/// Pairs between the parties of a joined model.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Foreign {
+    /// Party and sort of every body.
+    pub(crate) bodies: Vec<(usize, usize)>,
+    /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the law.
+    pub(crate) parties: Vec<(usize, InterfaceId)>,
+    /// Laws between sorts.
+    pub(crate) crossing: Arc<Crossing>,
+    /// Number of pair indices that are reserved for every two bodies.
+    pub(crate) most: usize,
+}
+
+impl Foreign {
+    /// Returns the pairs of two bodies, given with the lower ID first: contactor, target, law, and the numbers of node
+    /// sets and surfaces; `None` if they are of one party or never touch.
+    #[inline(always)]
+    fn of(&self, [a, b]: [BodyId; 2]) -> Option<(BodyId, BodyId, InterfaceId, [usize; 2])> {
+        let ((first, one), (second, other)) = (self.bodies[a], self.bodies[b]);
+        if first == second {
+            return None;
+        }
+        let rule = self.crossing.rules[one][other]?;
+        let ((rank, law), (other_rank, other_law)) = (self.parties[first], self.parties[second]);
+        let law = if rank < other_rank { law + rule.laws[0] } else { other_law + rule.laws[1] };
+        let sorts = &self.crossing.sorts;
+        Some(if rule.turned {
+            (b, a, law, [sorts[other].nodes, sorts[one].surfaces])
+        } else {
+            (a, b, law, [sorts[one].nodes, sorts[other].surfaces])
+        })
+    }
 }
 
 /// Callback that receives a representative pair, all bodies that may be its contactor, and all bodies that may be its
@@ -109,15 +155,57 @@ impl Pairs {
                     ..pair
                 }
             }
+            Self::Joined { pairs, foreign, .. } => {
+                let Some(beyond) = index.checked_sub(pairs.len()) else { return pairs[index] };
+                let (couple, at) = (beyond / foreign.most, beyond % foreign.most);
+                let count = foreign.bodies.len();
+                let found = foreign.of([couple / count, couple % count]);
+                // Only numbers of `of_couple` are passed.
+                let (contactor, target, interface, [_, surfaces]) = found.unwrap_or_default();
+                let (nodes, surface) = (at / surfaces.max(1), at % surfaces.max(1));
+                let counts = Counts::Everywhere;
+                ContactPair { contactor, nodes, target, surface, interface, counts }
+            }
+        }
+    }
+
+    /// Returns the number of a pair, given by its bodies, node set and surface; the interface is ignored.
+    pub(crate) fn number_of(&self, pair: &ContactPair) -> Option<usize> {
+        let found = |number: &usize| {
+            let at = self.get(*number);
+            (at.contactor, at.nodes, at.target, at.surface, at.counts)
+                == (pair.contactor, pair.nodes, pair.target, pair.surface, pair.counts)
+        };
+        self.of_couple(between(pair)).find(found)
+    }
+
+    /// Returns the number from which on pairs join bodies of two parties.
+    pub(crate) fn first_foreign(&self) -> usize {
+        match self {
+            Self::Listed { pairs, .. } | Self::Joined { pairs, .. } => pairs.len(),
+            Self::OfKinds { .. } => usize::MAX,
         }
     }
 
     /// Returns the numbers of the pairs of two bodies, given with the lower ID first.
     pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
-        match self {
-            Self::Listed { couples, .. } => couples
+        let listed = |couples: &[Couple]| {
+            couples
                 .binary_search_by_key(&bodies, |couple| couple.bodies)
-                .map_or(0..0, |at| couples[at].pairs.clone()),
+                .map_or(0..0, |at| couples[at].pairs.clone())
+        };
+        match self {
+            Self::Listed { couples, .. } => listed(couples),
+            Self::Joined { pairs, couples, foreign } => {
+                let [a, b] = bodies;
+                if foreign.bodies[a].0 == foreign.bodies[b].0 {
+                    return listed(couples);
+                }
+                foreign.of(bodies).map_or(0..0, |(.., [nodes, surfaces])| {
+                    let first = pairs.len() + (a * foreign.bodies.len() + b) * foreign.most;
+                    first..first + nodes * surfaces
+                })
+            }
             Self::OfKinds { kinds, meetings, most } => {
                 let first = (bodies[0] * kinds.len() + bodies[1]) * most;
                 first..first + meetings[kinds[bodies[0]]][kinds[bodies[1]]].len()
@@ -130,16 +218,18 @@ impl Pairs {
         let (listed, bodies) = match self {
             Self::Listed { pairs, .. } => (pairs.len(), 0),
             Self::OfKinds { kinds, .. } => (0, kinds.len()),
+            Self::Joined { pairs, foreign, .. } => (pairs.len(), foreign.bodies.len()),
         };
         let couples = (0..bodies).flat_map(move |a| (a + 1..bodies).map(move |b| [a, b]));
-        (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
+        let beyond = couples.flat_map(|couple| self.of_couple(couple));
+        (0..listed).chain(beyond.filter(move |number| *number >= listed))
     }
 
     /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all bodies that may be
-    /// its target.
+    /// its target. Pairs between the parties of a joined model are left out.
     pub(crate) fn each(&self, report: &mut TellMeeting<'_>) {
         match self {
-            Self::Listed { pairs, .. } => {
+            Self::Listed { pairs, .. } | Self::Joined { pairs, .. } => {
                 for pair in pairs {
                     report(pair, &[pair.contactor], &[pair.target]);
                 }

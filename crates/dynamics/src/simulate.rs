@@ -220,6 +220,68 @@ impl<S: Space<Real = f64>> Stepper<S> {
         }
     }
 
+    /// Continues runs that have reached the state of a joined model. If their steps are at the same times, the steps go
+    /// on at these times.
+    pub(crate) fn after(
+        sources: &[&Self],
+        model: &Model<S>,
+        state: &State<S>,
+        scratch: &mut Scratch<S>,
+        energy: EnergyLedger<S>,
+        simulation: &Simulation,
+    ) -> Self {
+        let first = sources[0];
+        let mut times = StepTimes::new(model, simulation.time_step);
+        if simulation.method.is_adaptive() {
+            times.undivided();
+        }
+        let alike = |source: &&Self| {
+            let own = source.times;
+            (own.whole, own.short, own.shortest) == (times.whole, times.short, times.shortest)
+                && (own.count, source.start) == (first.times.count, first.start)
+                && source.start + own.count * own.shortest == state.time
+        };
+        let mut start = state.time;
+        if sources.iter().all(alike) {
+            (times.count, start) = (first.times.count, first.start);
+        }
+        times.hard = sources.iter().any(|source| source.times.hard);
+        scratch.lookahead = times.lookahead();
+        let next_step = sources.iter().map(|source| source.next_step);
+        Self {
+            simulation: *simulation,
+            integrator: Integrator::new(simulation.method),
+            times,
+            energy,
+            start,
+            steps: 0,
+            next_step: next_step.fold(simulation.time_step, f64::min),
+        }
+    }
+
+    /// Takes one step that ends at a time (s) at the latest, earlier if the step is longer than usual.
+    ///
+    /// # Errors
+    /// As [`Stepper::step`].
+    pub fn step_until(
+        &mut self,
+        model: &Model<S>,
+        drive: &impl Drive<S>,
+        state: &mut State<S>,
+        scratch: &mut Scratch<S>,
+        until: f64,
+    ) -> Result<(), RunError> {
+        let (end_time, times) = (self.simulation.end_time, self.times);
+        self.simulation.end_time = end_time.min(until);
+        let result = self.step(model, drive, state, scratch);
+        self.simulation.end_time = end_time;
+        // A step that was cut short does not count, so that the next one ends where it would have ended.
+        if state.time < self.start + self.times.count * self.times.shortest {
+            self.times.count = times.count;
+        }
+        result
+    }
+
     /// Returns the time (s) below which a remainder is due to rounding and is not a step.
     #[inline]
     fn sliver(&self) -> f64 {

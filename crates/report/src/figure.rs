@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::{
-    Block, Diagram, Document, Envelope, Panels, Plot, Strip,
+    Block, Diagram, Document, Envelope, FloorPlan, Panels, Plot, Strip,
     drawing::{Drawing, Room},
     escape, pages, raster,
 };
@@ -33,6 +33,8 @@ pub enum FigureKind {
     Envelope(Envelope),
     /// A scene at one instant with labels and arrows.
     Diagram(Diagram),
+    /// A floor seen from above.
+    FloorPlan(FloorPlan),
 }
 
 macro_rules! kinds {
@@ -45,7 +47,7 @@ macro_rules! kinds {
     };
 }
 
-kinds!(Plot, Panels, Strip, Envelope, Diagram);
+kinds!(Plot, Panels, Strip, Envelope, Diagram, FloorPlan);
 
 impl Figure {
     /// Creates a figure.
@@ -90,7 +92,8 @@ impl Figure {
     ///
     /// A plot gives one pair of `x` and `y` columns per series. Panels give the columns of each
     /// plot, one plot below the other, separated by an empty line. A strip gives one row per
-    /// instant and body, an envelope one row per sample, and a diagram one row per arrow.
+    /// instant and body, an envelope one row per sample, a diagram one row per arrow, and a floor plan one row per corner,
+    /// mark and cell.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
@@ -98,6 +101,7 @@ impl Figure {
             FigureKind::Strip(strip) => strip.to_csv(),
             FigureKind::Envelope(envelope) => envelope.to_csv(),
             FigureKind::Diagram(diagram) => diagram.to_csv(),
+            FigureKind::FloorPlan(plan) => plan.to_csv(),
         }
     }
 
@@ -114,6 +118,7 @@ impl Figure {
             FigureKind::Strip(strip) => strip.draw(id, &self.caption),
             FigureKind::Envelope(envelope) => envelope.draw(&self.caption, room),
             FigureKind::Diagram(diagram) => diagram.draw(id, &self.caption, room),
+            FigureKind::FloorPlan(plan) => plan.draw(id, &self.caption, room),
         }
     }
 }

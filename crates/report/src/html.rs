@@ -313,13 +313,14 @@ impl<'a> Writer<'a> {
             | FigureKind::Panels(_)
             | FigureKind::Strip(_)
             | FigureKind::Envelope(_)
-            | FigureKind::Diagram(_) => None,
+            | FigureKind::Diagram(_)
+            | FigureKind::FloorPlan(_) => None,
         };
         let kind = match &figure.kind {
             FigureKind::Plot(_) | FigureKind::Panels(_) => "plot",
             FigureKind::Strip(_) => "strip",
             FigureKind::Envelope(_) => "envelope",
-            FigureKind::Diagram(_) => "diagram",
+            FigureKind::Diagram(_) | FigureKind::FloorPlan(_) => "diagram",
         };
         let data = live.map_or(String::new(), |place| format!(" data-plot=\"{place}\""));
         self.put(&format!("<figure class=\"{kind}\" id=\"figure-{id}\"{data}>\n"));

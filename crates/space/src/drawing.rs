@@ -25,6 +25,7 @@ use barrelstack_report::{
 
 use self::view::BodyView;
 use crate::fate::Heading;
+use crate::part::Part;
 use crate::run::Run;
 use crate::stack::Stack;
 use crate::words::leaves;
@@ -109,20 +110,8 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     for body in order {
         first[body] = drawn.len();
         let part = &run.stack.parts[body];
-        let kind = if is_barrel(&bodies[body]) { PartKind::Barrel } else { part.kind };
-        let mut known: BTreeMap<[i32; 3], usize> = BTreeMap::new();
-        for (at, frame) in frames.iter().enumerate() {
-            let (place, rotation) = placed(run.frames.poses[*frame][body]);
-            let page = [right, up].map(|axis| rotation.unapply(axis));
-            let view = BodyView::of(kind, page);
-            let slot = *known.entry(view.key()).or_insert_with(|| {
-                drawn.push(view.draw(part, &bodies[body]));
-                drawn.len() - 1
-            });
-            let row = &mut poses[at];
-            row.resize(drawn.len(), [f64::NAN; 3]);
-            row[slot] = [place.dot(right), place.dot(up), view.angle];
-        }
+        let path = frames.iter().map(|frame| run.frames.poses[*frame][body]);
+        enter((part, &bodies[body]), path, [right, up], &mut drawn, &mut poses);
     }
     let ties = bands(run, sight, drawn.len());
     for (row, frame) in poses.iter_mut().zip(&frames) {
@@ -146,6 +135,108 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         depth: (sight == Sight::Across).then(|| deep::depth(run, &frames)),
         ..Scene::default()
     })
+}
+
+/// Adds the drawings of a body for all view directions that occur in its path, and its poses in all frames.
+fn enter(
+    (part, body): (&Part, &Body<Spatial>),
+    path: impl Iterator<Item = [f64; 7]>,
+    [right, up]: [Vec3; 2],
+    drawn: &mut Vec<SceneBody>,
+    poses: &mut [Vec<[f64; 3]>],
+) {
+    let kind = if is_barrel(body) { PartKind::Barrel } else { part.kind };
+    let mut known: BTreeMap<[i32; 3], usize> = BTreeMap::new();
+    for (row, pose) in poses.iter_mut().zip(path) {
+        let (place, rotation) = placed(pose);
+        let page = [right, up].map(|axis| rotation.unapply(axis));
+        let view = BodyView::of(kind, page);
+        let slot = *known.entry(view.key()).or_insert_with(|| {
+            drawn.push(view.draw(part, body));
+            drawn.len() - 1
+        });
+        row.resize(drawn.len(), [f64::NAN; 3]);
+        row[slot] = [place.dot(right), place.dot(up), view.angle];
+    }
+}
+
+/// A body of a room for a picture.
+#[derive(Clone, Debug)]
+pub struct Shown<'a> {
+    /// Name in the picture.
+    pub name: String,
+    /// Description of the body.
+    pub part: &'a Part,
+    /// The body.
+    pub body: &'a Body<Spatial>,
+    /// Poses in all frames: position (m) and quaternion `w`, `x`, `y`, `z`.
+    pub path: Vec<[f64; 7]>,
+    /// Time (s) at which the body leaves its seat.
+    pub leaves_at: Option<f64>,
+}
+
+/// Returns the drawing of many bodies at rest on one floor, such as those of the stacks of a room, at the times (s) of
+/// their frames. The scene across the barrels also has all bodies in three dimensions.
+pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
+    let [right, up] = sight.page();
+    let toward = right.cross(up);
+    let depth = |body: &Shown<'_>| {
+        body.path.first().map_or(0.0, |[x, y, z, ..]| Vec3::new(*x, *y, *z).dot(toward))
+    };
+    let mut order: Vec<usize> = (0..bodies.len()).collect();
+    order.sort_by(|a, b| depth(&bodies[*a]).total_cmp(&depth(&bodies[*b])));
+    let floor = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
+    let floor = if sight == Sight::Above { Vec::new() } else { vec![floor] };
+    let mut drawn = vec![SceneBody::new("ground", Role::Ground, floor)];
+    let mut poses = vec![vec![[0.0; 3]]; times.len()];
+    let mut first = vec![0; bodies.len()];
+    for body in order {
+        first[body] = drawn.len();
+        let Shown { part, body: shape, path, .. } = &bodies[body];
+        enter((part, shape), path.iter().copied(), [right, up], &mut drawn, &mut poses);
+        for view in &mut drawn[first[body]..] {
+            view.name.clone_from(&bodies[body].name);
+        }
+    }
+    poses.iter_mut().for_each(|row| row.resize(drawn.len(), [f64::NAN; 3]));
+    let of = |number: &dyn Fn(usize) -> usize| {
+        let leaving = bodies.iter().enumerate();
+        let leaving = leaving.filter_map(|(at, body)| Some((body.leaves_at?, at)));
+        let mut events: Vec<Event> = leaving
+            .map(|(time, at)| Event {
+                time,
+                body: Some(number(at)),
+                kind: EventKind::LossOfSeat,
+                text: format!("{} leaves its seat", bodies[at].name),
+            })
+            .collect();
+        events.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let moment = events.first().map(|event| Moment {
+            time: event.time,
+            body: event.body.unwrap_or_default(),
+            text: format!("here {}", event.text),
+            falls: true,
+        });
+        (events, moment)
+    };
+    let (events, moment) = of(&|body| first[body]);
+    let deep = (sight == Sight::Across).then(|| {
+        // The first body is the floor, as in the flat scene.
+        let (events, moment) = of(&|body| body + 1);
+        let at_rest = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+        deep::of_bodies(
+            bodies.iter().map(|one| (one.part, one.body, one.name.as_str())),
+            (0..times.len())
+                .map(|frame| {
+                    std::iter::once(at_rest).chain(bodies.iter().map(|b| b.path[frame])).collect()
+                })
+                .collect(),
+            events,
+            moment,
+        )
+    });
+    let frames = Frames { times: times.to_vec(), poses, forces: Vec::new() };
+    Scene { bodies: drawn, frames, events, moment, depth: deep, ..Scene::default() }
 }
 
 /// A strap or a tie. It is drawn between two invisible bodies at its ends. It cannot be attached to the drawings of the

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
 use barrelstack::watch::{Loss, Thresholds};
-use barrelstack_dynamics::{BodyId, Linear as _, Rotation3, Scratch, Spatial, State, Vec3, math};
+use barrelstack_dynamics::space::Wrench;
+use barrelstack_dynamics::{
+    BodyId, Linear as _, Pose, Rotation3, Scratch, Spatial, State, Vec3, math,
+};
 use serde::Serialize;
 
 use crate::stack::Stack;
@@ -130,10 +133,7 @@ impl Fates {
     /// Creates the recorder for a stack at rest.
     pub fn new(stack: Arc<Stack>, state: &State<Spatial>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Stack::GROUND].position;
-        let fate = |pose: &barrelstack_dynamics::Pose<Spatial>| Fate {
-            rest: pose.position - ground,
-            ..Fate::default()
-        };
+        let fate = |pose: &Pose<Spatial>| Fate { rest: pose.position - ground, ..Fate::default() };
         let upright: Vec<_> = state.poses.iter().map(|pose| pose.orientation.matrix()).collect();
         Self {
             stack,
@@ -164,10 +164,10 @@ impl Fates {
 
     /// Returns the fates of all bodies at the end of a run, in the order of the parts.
     pub fn at_end(mut self, state: &State<Spatial>) -> Vec<Fate> {
-        self.turn(state);
+        self.turn(&state.poses);
         let mut slips = Vec::new();
         for i in 1..self.all.len() {
-            self.slips(state, i, &mut slips);
+            self.slips(&state.poses, i, &mut slips);
             let Vec3 { x, y, .. } = mean(&slips);
             self.all[i].residual_slip = [x, y];
         }
@@ -175,37 +175,47 @@ impl Fates {
     }
 
     /// Updates the rotations of the bodies.
-    fn turn(&mut self, state: &State<Spatial>) {
-        for (turned, pose) in self.turned.iter_mut().zip(&state.poses) {
+    fn turn(&mut self, poses: &[Pose<Spatial>]) {
+        for (turned, pose) in self.turned.iter_mut().zip(poses) {
             *turned = pose.orientation.matrix();
         }
     }
 
     /// Records an accepted state.
     pub fn observe(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
-        let ground = state.poses[Stack::GROUND].position;
+        self.observe_bodies(state.time, &state.poses, &scratch.wrenches);
+    }
+
+    /// Records the poses of all bodies and the forces on them at a time (s).
+    pub fn observe_bodies(
+        &mut self,
+        time: f64,
+        poses: &[Pose<Spatial>],
+        wrenches: &[Wrench<Spatial>],
+    ) {
+        let ground = poses[Stack::GROUND].position;
         let standing = self.collapse.is_none();
-        self.turn(state);
+        self.turn(poses);
         let mut slips = Vec::with_capacity(4);
         for i in 1..self.all.len() {
             let kind = self.stack.parts[i].kind;
-            let moved = state.poses[i].position - ground - self.all[i].rest;
+            let moved = poses[i].position - ground - self.all[i].rest;
             let fate = &mut self.all[i];
             fate.moved = moved;
             fate.drop = fate.drop.max(-moved.z);
             if fate.fell_at.is_none() && -moved.z > self.thresholds.fall_drop {
-                fate.fell_at = Some(state.time);
+                fate.fell_at = Some(time);
                 if kind == PartKind::Barrel && self.first_fall.is_none() {
-                    self.first_fall = Some(state.time);
+                    self.first_fall = Some(time);
                 }
             }
             if fate.fell_at.is_some() {
-                fate.fall_force = fate.fall_force.max(scratch.wrenches[i].force.length());
+                fate.fall_force = fate.fall_force.max(wrenches[i].force.length());
             }
             if standing {
                 fate.moved_at_collapse = moved;
             }
-            self.slips(state, i, &mut slips);
+            self.slips(poses, i, &mut slips);
             let mean = mean(&slips);
             // A barrel may roll about its axis without limit.
             let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
@@ -222,8 +232,8 @@ impl Fates {
             if self.all[i].left_seat.is_none()
                 && let Some((loss, heading)) = self.lost(i, &slips)
             {
-                self.all[i].left_seat = Some((state.time, loss, heading));
-                self.collapse.get_or_insert((state.time, i));
+                self.all[i].left_seat = Some((time, loss, heading));
+                self.collapse.get_or_insert((time, i));
             }
         }
     }
@@ -281,19 +291,19 @@ impl Fates {
     ///
     /// A barrel has one displacement, in the frame of its rack. A rack has one displacement for each barrel below, in
     /// the frame of the rack. Any other body has one displacement, relative to the ground.
-    fn slips(&self, state: &State<Spatial>, i: BodyId, slips: &mut Vec<Vec3>) {
+    fn slips(&self, poses: &[Pose<Spatial>], i: BodyId, slips: &mut Vec<Vec3>) {
         slips.clear();
         let part = &self.stack.parts[i];
         let seen_from = |frame: BodyId, body: BodyId| {
-            let arm = state.poses[body].position - state.poses[frame].position;
+            let arm = poses[body].position - poses[frame].position;
             let place = self.upright[frame].apply(self.turned[frame].unapply(arm));
             place - (self.all[body].rest - self.all[frame].rest)
         };
         if let Some(rack) = part.carrier {
             slips.push(seen_from(rack, i));
         } else if part.supports.is_empty() {
-            let ground = state.poses[Stack::GROUND].position;
-            slips.push(state.poses[i].position - ground - self.all[i].rest);
+            let ground = poses[Stack::GROUND].position;
+            slips.push(poses[i].position - ground - self.all[i].rest);
         } else {
             slips.extend(part.supports.iter().map(|barrel| -seen_from(i, *barrel)));
         }

@@ -74,6 +74,12 @@ impl Ground {
     #[must_use]
     pub fn under(self, scenario: &Scenario) -> Self {
         let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
+        self.turned(azimuth)
+    }
+
+    /// Returns the motion along the axes of a stack that is rotated counterclockwise by an azimuth (rad).
+    #[must_use]
+    pub fn turned(self, azimuth: f64) -> Self {
         let (sin, cos) = math::sin_cos(azimuth);
         Self { turn: [cos, sin], ..self }
     }

@@ -59,6 +59,13 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     }
 }
 
+/// Returns points (m) of the surface of a body, in the body frame, whose convex hull is nearly that of the body; the
+/// floor has none.
+pub fn points(body: &Body<Spatial>) -> Vec<Vec3> {
+    let round = body.surfaces.iter().any(|placed| !matches!(placed.surface, Solid::HalfSpace));
+    if round { surface(body, &[], 0.0).0 } else { Vec::new() }
+}
+
 /// Returns half the side (m) of the square that represents a half-space. The square is kept small, since viewers fit
 /// their first picture to it.
 fn floor(run: &Run) -> f64 {

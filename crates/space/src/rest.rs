@@ -6,14 +6,17 @@ use std::sync::Arc;
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::Scenario;
 use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm, quiet_from};
-use barrelstack_dynamics::{BodyId, Linear as _, Space as _, Spatial, State, Vec3};
+use barrelstack_dynamics::{BodyId, Linear as _, Pose, Space as _, Spatial, State, Twist, Vec3};
 
 use crate::ground::Ground;
 use crate::stack::Stack;
 
+/// Poses and twists of all bodies of a stack, the ground first.
+pub type Motions<'a> = (&'a [Pose<Spatial>], &'a [Twist<Spatial>]);
+
 /// Detector of the rest of all bodies.
 #[derive(Clone, Debug)]
-pub(crate) struct Rest {
+pub struct Rest {
     stack: Arc<Stack>,
     /// Times (s) from which the ground is still (`still_from`) and nearly still (`calm_from`); infinite if the run does
     /// not end by rest.
@@ -26,7 +29,8 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    pub(crate) fn new(scenario: &Scenario, stack: Arc<Stack>, ground: &Ground) -> Self {
+    /// Creates the detector for the stack of a scenario on a ground.
+    pub fn new(scenario: &Scenario, stack: Arc<Stack>, ground: &Ground) -> Self {
         let gravity = scenario.run.gravity;
         let calm = || ground.calm_from(gravity * calm(stack.model.interfaces()));
         let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);
@@ -36,39 +40,52 @@ impl Rest {
     /// Records an accepted state; returns `true` if all bodies have come to rest. `collapsed` is `true` after a loss of
     /// seat.
     pub(crate) fn observe(&mut self, state: &State<Spatial>, collapsed: bool) -> bool {
-        let from = if collapsed { self.calm_from } else { self.still_from };
-        let moves = state.time < from
-            || (1..self.stack.parts.len())
-                .any(|body| self.is_fast(state, body) && !self.rolls_away(state, body));
-        if moves {
-            self.moved = state.time;
-        }
-        self.moved + HOLD <= state.time
+        self.observe_bodies(state.time, (&state.poses, &state.twists), collapsed)
     }
 
-    fn is_fast(&self, state: &State<Spatial>, body: BodyId) -> bool {
+    /// Records the poses and twists of all bodies at a time (s), as [`Rest::observe`] does.
+    pub fn observe_bodies(&mut self, time: f64, bodies: Motions<'_>, collapsed: bool) -> bool {
+        let from = if collapsed { self.calm_from } else { self.still_from };
+        let moves = time < from || self.moving(bodies).any(|body| !self.rolls_away(bodies, body));
+        if moves {
+            self.moved = time;
+        }
+        self.moved + HOLD <= time
+    }
+
+    /// Returns the bodies that are not at rest.
+    pub fn moving<'a>(&'a self, bodies: Motions<'a>) -> impl Iterator<Item = BodyId> + 'a {
+        (1..self.stack.parts.len()).filter(move |body| self.is_fast(bodies, *body))
+    }
+
+    /// Starts the time of rest anew, for a stack that is set in motion again.
+    pub fn wake(&mut self, time: f64) {
+        self.moved = time;
+    }
+
+    fn is_fast(&self, (poses, twists): Motions<'_>, body: BodyId) -> bool {
         let of = &self.stack.model.bodies()[body];
-        let velocity = state.twists[body].linear - state.twists[Stack::GROUND].linear;
-        let rotation = state.poses[body].orientation.matrix();
-        let turning = Spatial::spin_energy(of.inertia, rotation, state.twists[body].angular);
+        let velocity = twists[body].linear - twists[Stack::GROUND].linear;
+        let rotation = poses[body].orientation.matrix();
+        let turning = Spatial::spin_energy(of.inertia, rotation, twists[body].angular);
         self.slow < 0.5 * velocity.dot(velocity) + turning / of.mass
     }
 
     /// Returns `true` if a body is a barrel on the floor that rolls away from all other bodies.
-    fn rolls_away(&self, state: &State<Spatial>, own: BodyId) -> bool {
+    fn rolls_away(&self, (poses, twists): Motions<'_>, own: BodyId) -> bool {
         let part = &self.stack.parts[own];
         if part.kind != PartKind::Barrel {
             return false;
         }
         let ground = Stack::GROUND;
-        let (here, velocity) = (state.poses[own].position, state.twists[own].linear);
-        let rise = velocity.z - state.twists[ground].linear.z;
-        let height = here.z - state.poses[ground].position.z;
+        let (here, velocity) = (poses[own].position, twists[own].linear);
+        let rise = velocity.z - twists[ground].linear.z;
+        let height = here.z - poses[ground].position.z;
         height <= ON_FLOOR * self.stack.bilge_radius
             && 0.5 * rise * rise <= self.slow
             && (1..self.stack.parts.len()).filter(|other| *other != own).all(|other| {
-                let apart = state.poses[other].position - here;
-                let parting = state.twists[other].linear - velocity;
+                let apart = poses[other].position - here;
+                let parting = twists[other].linear - velocity;
                 let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
                 level(apart).dot(level(parting)) >= 0.0
             })

@@ -161,11 +161,10 @@ pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
 }
 
 /// Returns the latest end (s) of a run; rejects a run that would not finish within a day or would not fit into memory.
-pub(crate) fn affordable(
-    scenario: &Scenario,
-    stack: &Stack,
-    ground: &Ground,
-) -> Result<f64, RunFailure> {
+///
+/// # Errors
+/// If the run would be too long or need too much memory.
+pub fn affordable(scenario: &Scenario, stack: &Stack, ground: &Ground) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
     // A frame has 13 numbers of every body: position, quaternion, velocity and spin.
@@ -230,7 +229,7 @@ const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 /// A rack has slid off along the barrels if a beam has passed the ends of the barrels, or if the rack tilts in this
 /// direction after a slip of more than half of its reach: a round beam drops over the chime before the middle of the
 /// beam has passed the chime.
-pub(crate) fn judge(stack: &Stack, fates: &Fates) -> Outcome {
+pub fn judge(stack: &Stack, fates: &Fates) -> Outcome {
     let Some((time, first)) = fates.collapse() else {
         return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };
     };

@@ -2,9 +2,11 @@
 
 use barrelstack::RunFailure;
 use barrelstack::scenario::{Method, Scenario};
-use barrelstack::step::round_down;
+use barrelstack::step::{IMPACT_SHARE, WHOLE_STEP, WHOLE_STEP_SHARE, round_down};
 use barrelstack_dynamics::solid::Hull;
-use barrelstack_dynamics::{Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Vec3};
+use barrelstack_dynamics::{
+    Body, ContactPair, Interface, Model, Motion, Nodes, NormalLaw, Rotation3, Spatial, Vec3,
+};
 
 /// Time step as a fraction of the critical time step, as in the plane.
 const SHARE: f64 = 0.3;
@@ -68,12 +70,41 @@ fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f6
     let mut most = 0.0_f64;
     for pair in model.pairs() {
         let bodies = [pair.contactor, pair.target].map(|id| &model.bodies()[id]);
-        let bearing = 2.0 * contacts(&bodies[0].nodes[pair.nodes]) * constant(&pair);
+        let constant = constant(&pair);
         for body in bodies.into_iter().filter(|body| body.motion == Motion::Free) {
-            most = most.max(bearing * (1.0 / body.mass + turned(body)));
+            most = most.max(constant * bearing(body, &bodies[0].nodes[pair.nodes]));
         }
     }
     most
+}
+
+/// Returns the rate (1/kg) of a body per contact constant of a node set.
+fn bearing(body: &Body<Spatial>, nodes: &Nodes<Spatial>) -> f64 {
+    2.0 * contacts(nodes) * (1.0 / body.mass + turned(body))
+}
+
+/// Returns the longest time steps (s) with which contacts of free bodies with a fixed one are integrated, outside of
+/// impacts and during impacts, and the penetration (m) that the former resolve.
+pub fn steps_at_fixed<'a>(
+    bodies: impl Iterator<Item = &'a Body<Spatial>>,
+    law: &Interface<Spatial>,
+) -> [f64; 3] {
+    let free = bodies.filter(|body| body.motion == Motion::Free);
+    let most = free
+        .flat_map(|body| body.nodes.iter().map(|nodes| bearing(body, nodes)))
+        .fold(0.0, f64::max);
+    let critical = |depth: f64| {
+        let stiffness = law.normal.tangent_stiffness(depth).max(law.friction.stick_stiffness());
+        2.0 / (most * stiffness).sqrt()
+    };
+    let damped = DAMPING_SHARE / (most * law.normal.tangent_damping(REFERENCE));
+    if let NormalLaw::Rebound { .. } = law.normal {
+        let depth = WHOLE_STEP * REFERENCE;
+        let step = (WHOLE_STEP_SHARE * critical(depth)).min(damped);
+        return [step, step.min(IMPACT_SHARE * critical(REFERENCE)), depth];
+    }
+    let step = (SHARE * critical(REFERENCE)).min(damped);
+    [step, step, f64::INFINITY]
 }
 
 /// Returns the number of contacts of a solid that can bear at the same time.

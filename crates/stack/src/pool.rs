@@ -13,6 +13,16 @@ pub fn map<T: Sync, R: Send>(
     work: impl Fn(&T) -> R + Sync,
     done: &(dyn Fn(usize) + Sync),
 ) -> Vec<R> {
+    map_on(0, tasks, work, done)
+}
+
+/// Runs all tasks as [`map`] does, on a number of threads; zero for all cores.
+pub fn map_on<T: Sync, R: Send>(
+    threads: usize,
+    tasks: &[T],
+    work: impl Fn(&T) -> R + Sync,
+    done: &(dyn Fn(usize) + Sync),
+) -> Vec<R> {
     let (next, finished) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let slots: Vec<Mutex<Option<R>>> = tasks.iter().map(|_| Mutex::new(None)).collect();
     let worker = || {
@@ -26,7 +36,8 @@ pub fn map<T: Sync, R: Send>(
             done(finished.fetch_add(1, Ordering::Relaxed) + 1);
         }
     };
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(tasks.len());
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    let threads = if threads == 0 { cores() } else { threads }.min(tasks.len());
     std::thread::scope(|scope| {
         for _ in 1..threads {
             scope.spawn(worker);

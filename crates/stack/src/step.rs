@@ -26,14 +26,14 @@ const REFERENCE: f64 = 0.01;
 ///
 /// With this fraction, the energy balance of the paper's cases closes to 3e-5. Halving the step changes the time of
 /// every fall by at most 0.3 ms (`tests/paper.rs`).
-const IMPACT_SHARE: f64 = 0.4;
+pub const IMPACT_SHARE: f64 = 0.4;
 
 /// Penetration up to which impacts take whole steps, as a fraction of [`REFERENCE`]; the penetration of resting
 /// contacts is smaller.
 ///
 /// With this value, the energy residual of the demo along the barrels is 1.1e-5; with a value four times as large, it
 /// is 2.4e-4.
-const WHOLE_STEP: f64 = 0.05;
+pub const WHOLE_STEP: f64 = 0.05;
 
 /// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
 /// springs.
@@ -41,7 +41,7 @@ const WHOLE_STEP: f64 = 0.05;
 /// Bodies at rest require stability only. A resting contact takes whole steps up to twice that penetration. At twice
 /// that penetration, the step is 0.83 of the critical step, since the stiffness grows with the square root of the
 /// penetration.
-const WHOLE_STEP_SHARE: f64 = 0.7;
+pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.
 const LOAD: f64 = 3.0;

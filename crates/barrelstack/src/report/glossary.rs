@@ -37,6 +37,8 @@ pub const WORDS: &[Word] = &[
         "residual",
         "what remains at the end: for the energy balance, the error of the computation; for a displacement, the displacement at the end of the run",
     ),
+    word("falls by itself", "a stack that loses a seat before a body of another stack touches it"),
+    word("knocked over", "a stack that loses a seat after a body of another stack touched it"),
     word("similitude", "scaling of a stack to a model that behaves like the full-size stack"),
 ];
 

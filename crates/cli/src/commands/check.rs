@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use barrelstack::Scenario;
 use barrelstack::check::Checked;
 use barrelstack::ground::from_disk;
@@ -10,6 +10,7 @@ use barrelstack::scenario::catalog;
 use barrelstack::stability::{StabilityRow, StabilityTable};
 use barrelstack::variants;
 
+use super::Loaded;
 use crate::args::{CheckArgs, ScenarioArgs};
 use crate::printer;
 
@@ -18,7 +19,13 @@ const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
 
 /// Reads the scenario, builds the stack, lets it settle, and prints the findings.
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
-    let scenario = super::load(&args.scenario)?;
+    let scenario = match super::load_any(&args.scenario)? {
+        Loaded::Scenario(scenario) => scenario,
+        Loaded::Cellar(cellar) => return super::cellar::check(args, &cellar),
+    };
+    if args.plan.is_some() {
+        bail!("--plan draws the room of a cellar; leave it out for one stack");
+    }
     if args.table {
         let table = table(&scenario, &args.scenario)?;
         if args.json {

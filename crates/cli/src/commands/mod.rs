@@ -1,6 +1,7 @@
 //! One file per subcommand.
 
 pub(crate) mod calibrate;
+mod cellar;
 mod check;
 pub(crate) mod compare;
 mod demo;
@@ -25,6 +26,8 @@ use anyhow::Context;
 use barrelstack::ground::GroundError;
 use barrelstack::scenario::{Problem, ScenarioError, builtin};
 use barrelstack::{RunFailure, Scenario};
+use barrelstack_cellar::Cellar;
+use barrelstack_input::system;
 
 use crate::args::{Args, Command, ScenarioArgs};
 
@@ -53,11 +56,28 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Loads a scenario file, standard input (`-`) or a built-in scenario, and applies the changes.
+/// A file that a command names.
+enum Loaded {
+    Scenario(Scenario),
+    Cellar(Box<Cellar>),
+}
+
+/// Loads the scenario of a command that does not read cellars.
+fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
+    match load_any(args)? {
+        Loaded::Scenario(scenario) => Ok(scenario),
+        Loaded::Cellar(_) => anyhow::bail!(
+            "{}: this is a cellar, which `barrelstack check` and `barrelstack run` read; give the scenario of one stack",
+            args.scenario
+        ),
+    }
+}
+
+/// Loads a scenario or a cellar from a file, standard input (`-`) or those that are built in, and applies the changes.
 ///
 /// An existing file takes precedence. If no such file exists, a name without a dot or a path
 /// separator refers to a built-in scenario.
-fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
+fn load_any(args: &ScenarioArgs) -> anyhow::Result<Loaded> {
     let mut overrides = args.set.clone();
     if let Some(record) = &args.record {
         let path = std::path::absolute(record)
@@ -65,6 +85,9 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
         let quoted = serde_json::to_string(&path.display().to_string())?;
         overrides.push(format!("motion.record={quoted}"));
     }
+    let cellar = |cellar: Result<Cellar, ScenarioError>| -> anyhow::Result<Loaded> {
+        Ok(Loaded::Cellar(Box::new(cellar?)))
+    };
     if args.scenario == "-" {
         let mut bytes = Vec::new();
         let input = std::io::stdin().lock();
@@ -72,23 +95,33 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
             .take(INPUT_LIMIT)
             .read_to_end(&mut bytes)
             .context("cannot read the scenario from standard input")?;
-        return Ok(Scenario::parse_bytes("standard input", &bytes, &overrides)?);
+        if Cellar::is_stated(None, &bytes) {
+            return cellar(Cellar::parse("standard input", &bytes, &overrides));
+        }
+        return Ok(Loaded::Scenario(Scenario::parse_bytes("standard input", &bytes, &overrides)?));
     }
     let path = Path::new(&args.scenario);
     let looks_like_a_file = args.scenario.contains(['.', '/', '\\']);
-    let scenario = if path.is_file() || looks_like_a_file {
-        Scenario::load(path, &overrides)?
-    } else {
-        Scenario::builtin(&args.scenario, &overrides).map_err(|error| {
-            // A mistyped name may be meant as a file, which the library does not consider.
-            if builtin::get(&args.scenario).is_none() {
-                no_such(&args.scenario, &error)
-            } else {
-                error.into()
-            }
-        })?
-    };
-    Ok(scenario)
+    if path.is_file() || looks_like_a_file {
+        // A file that cannot be read is reported by the reader of scenarios.
+        let bytes = system::read(path, INPUT_LIMIT as usize).unwrap_or_default();
+        if Cellar::is_stated(Some(path), &bytes) {
+            return cellar(Cellar::load(path, &overrides));
+        }
+        return Ok(Loaded::Scenario(Scenario::load(path, &overrides)?));
+    }
+    if barrelstack_cellar::scenario::built_in(&args.scenario).is_some() {
+        return cellar(Cellar::builtin(&args.scenario, &overrides));
+    }
+    let scenario = Scenario::builtin(&args.scenario, &overrides).map_err(|error| {
+        // A mistyped name may be meant as a file, which the library does not consider.
+        if builtin::get(&args.scenario).is_none() {
+            no_such(&args.scenario, &error)
+        } else {
+            error.into()
+        }
+    })?;
+    Ok(Loaded::Scenario(scenario))
 }
 
 /// Returns the error for a name that is neither a file nor a built-in scenario, with a hint about the

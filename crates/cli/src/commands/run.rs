@@ -14,6 +14,7 @@ use barrelstack_input::system;
 use barrelstack_report::Characters;
 use barrelstack_space::AnyAnswer;
 
+use super::Loaded;
 use crate::args::{RunArgs, VariantArgs};
 use crate::comparison::Command;
 use crate::printer;
@@ -24,7 +25,10 @@ const PAGE_LIMIT: usize = 64 << 20;
 
 /// Runs the scenario and prints and writes the result.
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    let mut scenario = super::load(&args.scenario)?;
+    let mut scenario = match super::load_any(&args.scenario)? {
+        Loaded::Scenario(scenario) => scenario,
+        Loaded::Cellar(cellar) => return super::cellar::run(args, *cellar),
+    };
     let selection = selected(&mut scenario, args.variants)?;
     // The folder is checked before the computation starts.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use anyhow::bail;
 use barrelstack::Scenario;
 use barrelstack::scenario::{builtin, reference, schema};
+use barrelstack_cellar::{Cellar, scenario as cellars};
 use barrelstack_report::described;
 
 use crate::args::{ScenariosAction, ScenariosArgs};
@@ -16,6 +17,11 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
         None => list(args.json)?,
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
         Some(_) if args.json => bail!("--json applies only to the list of scenarios; leave it out"),
+        Some(ScenariosAction::Show { name, resolved }) if cellars::built_in(name).is_some() => {
+            let text = cellars::built_in(name).unwrap_or_default();
+            let cellar = Cellar::builtin(name, &[])?;
+            printer::text(&if *resolved { cellar.to_resolved_toml() } else { text.to_owned() })?;
+        }
         Some(ScenariosAction::Show { name, resolved: false }) => {
             // If there is no such scenario, loading it gives an error with the nearest name.
             Scenario::builtin(name, &[])?;
@@ -54,8 +60,11 @@ described! {
 }
 
 fn list(json: bool) -> anyhow::Result<()> {
+    let cellars = cellars::names_built_in()
+        .map(|name| Ok(Listed { name, title: Cellar::builtin(name, &[])?.title }));
     let scenarios = builtin::names()
         .map(|name| Ok(Listed { name, title: Scenario::builtin(name, &[])?.title }))
+        .chain(cellars)
         .collect::<anyhow::Result<Vec<_>>>()?;
     if json {
         return printer::document(&ScenarioList { schema: "scenarios/1", scenarios });

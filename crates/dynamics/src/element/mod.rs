@@ -76,6 +76,11 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => &element.link),* }
             }
 
+            /// Returns the link for changes.
+            pub(crate) fn link_mut(&mut self) -> &mut Link<S> {
+                match self { $(Self::$kind(element) => &mut element.link),* }
+            }
+
             /// Returns the largest stiffness (N/m) of the element between its two points.
             pub fn stiffness(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.stiffness()),* }

@@ -2,7 +2,9 @@
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
-use barrelstack_report::{Depth, DepthBody, DepthPoses, DepthTie, Point3, Role, Volume};
+use barrelstack_report::{
+    Depth, DepthBody, DepthPoses, DepthTie, Event, Moment, Point3, Role, Volume,
+};
 
 use super::{PLATE, Sight, events, moment};
 use crate::part::Part;
@@ -33,6 +35,30 @@ pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
         ties: straps.collect(),
         events: all,
         moment: moment(run, &own),
+    }
+}
+
+/// Returns bodies with their names and their poses in all frames, above a floor, which is the first body.
+pub(super) fn of_bodies<'a>(
+    bodies: impl Iterator<Item = (&'a Part, &'a Body<Spatial>, &'a str)>,
+    poses: Vec<Vec<[f64; 7]>>,
+    events: Vec<Event>,
+    moment: Option<Moment>,
+) -> Depth {
+    let floor = DepthBody {
+        name: "ground".to_owned(),
+        role: Role::Ground,
+        volumes: Vec::new(),
+        rows: vec![[0.0; 3]],
+    };
+    let named =
+        bodies.map(|(part, body, name)| DepthBody { name: name.to_owned(), ..drawn(part, body) });
+    Depth {
+        bodies: std::iter::once(floor).chain(named).collect(),
+        poses: DepthPoses::Free(poses),
+        ties: Vec::new(),
+        events,
+        moment,
     }
 }
 

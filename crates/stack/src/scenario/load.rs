@@ -5,6 +5,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use super::error::{Place, Problem, ScenarioError};
+use super::field::Section;
 use super::reader::{Reader, nearest};
 use super::tree::{Entry, Node, Origin, SourceFile, Sources, Table, Value};
 use super::{Scenario, Written, builtin, merge, renamed, root};
@@ -28,6 +29,21 @@ pub(crate) enum Access {
     /// Built-in scenarios only.
     BuiltinOnly,
 }
+
+/// A kind of file: its fields, and the files of this kind that come with the program.
+#[derive(Clone, Copy, Debug)]
+pub struct Language {
+    /// The fields.
+    pub root: &'static Section,
+    /// Returns the text of a built-in file.
+    pub builtin: fn(&str) -> Option<&'static str>,
+    /// Returns the names of all built-in files.
+    pub names: fn() -> Vec<&'static str>,
+}
+
+/// The language of scenarios.
+pub(super) const SCENARIO: Language =
+    Language { root: &root::ROOT, builtin: builtin::get, names: || builtin::names().collect() };
 
 impl Scenario {
     /// Reads a scenario from text; [`Scenario::parse`] also takes overrides and a name for error messages.
@@ -147,7 +163,7 @@ impl Scenario {
             let node = Node { origin: Origin::Whole(0), value: schema };
             tree.set(Entry { key: "schema".to_owned(), origin: Origin::Whole(0), node });
         }
-        let table = extend(&mut sources, tree, 0, Access::Files)?;
+        let table = extend(&mut sources, tree, 0, Access::Files, &SCENARIO)?;
         finished(sources, table, Vec::new())
     }
 
@@ -187,7 +203,7 @@ impl Scenario {
     pub fn builtin(name: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
         let Some(text) = builtin::get(name) else {
             let place = Place::Whole { file: name.to_owned() };
-            return Err(ScenarioError::new(unknown_builtin("scenario", name), place));
+            return Err(ScenarioError::new(unknown_builtin("scenario", name, &SCENARIO), place));
         };
         Self::parse(&format!("{name}.toml"), text, overrides)
     }
@@ -201,8 +217,8 @@ impl FromStr for Scenario {
     }
 }
 
-fn unknown_builtin(field: &str, name: &str) -> Problem {
-    let valid: Vec<&str> = builtin::names().collect();
+pub(super) fn unknown_builtin(field: &str, name: &str, language: &Language) -> Problem {
+    let valid = (language.names)();
     Problem::UnknownName {
         field: field.to_owned(),
         found: super::quantity::shorten(name),
@@ -230,16 +246,29 @@ fn read(
     overrides: &[String],
     access: Access,
 ) -> Result<Scenario, ScenarioError> {
-    let mut sources = Sources { files: Vec::new(), overrides: overrides.to_vec() };
-    let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
-    add_source(&mut sources, name, bytes, folder)?;
-    let mut table = chain(&mut sources, access)?;
-    merge::apply_overrides(&mut table, &root::ROOT, &sources, 0)?;
+    let (sources, table) = merged(name, bytes, overrides, access, &SCENARIO)?;
     finished(sources, table, Vec::new())
 }
 
+/// Reads a file, overlays it on the files that it extends, and applies the overrides.
+pub(super) fn merged(
+    name: &str,
+    bytes: &[u8],
+    overrides: &[String],
+    access: Access,
+    language: &Language,
+) -> Result<(Sources, Table), ScenarioError> {
+    let mut sources = Sources { files: Vec::new(), overrides: overrides.to_vec() };
+    let folder = Path::new(name).parent().map(Path::to_path_buf).unwrap_or_default();
+    add_source(&mut sources, name, bytes, folder)?;
+    let table = parsed(&sources, 0)?;
+    let mut table = extend(&mut sources, table, 0, access, language)?;
+    merge::apply_overrides(&mut table, language.root, &sources, 0)?;
+    Ok((sources, table))
+}
+
 /// Builds the scenario from a table to which all overrides have been applied, with earlier warnings about it.
-fn finished(
+pub(super) fn finished(
     sources: Sources,
     mut table: Table,
     mut warnings: Vec<String>,
@@ -291,12 +320,6 @@ pub(super) fn add_source(
     Ok(())
 }
 
-/// Parses the first file and overlays it on the scenario that it extends.
-fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> {
-    let table = parsed(sources, 0)?;
-    extend(sources, table, 0, access)
-}
-
 fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
     let table = sources.parse(file)?;
     if table.entries.is_empty() {
@@ -313,6 +336,7 @@ pub(super) fn extend(
     table: Table,
     file: usize,
     access: Access,
+    language: &Language,
 ) -> Result<Table, ScenarioError> {
     let mut tables: Vec<Table> = Vec::new();
     let mut next = Some((table, file));
@@ -345,8 +369,8 @@ pub(super) fn extend(
                     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
                     (name, bytes, folder)
                 } else {
-                    let text = builtin::get(target)
-                        .ok_or_else(|| problem(unknown_builtin("extends", target)))?;
+                    let text = (language.builtin)(target)
+                        .ok_or_else(|| problem(unknown_builtin("extends", target, language)))?;
                     (format!("{target}.toml"), text.as_bytes().to_vec(), PathBuf::new())
                 };
                 if tables.len() + 1 >= CHAIN_LIMIT {
@@ -365,7 +389,7 @@ pub(super) fn extend(
     }
     let mut total = tables.pop().unwrap_or_default();
     while let Some(above) = tables.pop() {
-        merge::overlay(&mut total, above, Some(&root::ROOT));
+        merge::overlay(&mut total, above, Some(language.root));
     }
     Ok(total)
 }

@@ -229,6 +229,11 @@ impl Scenario {
         if let tree::Value::Text(text) = &self.node(path)?.value { Some(text) } else { None }
     }
 
+    /// Returns the scenario as a table with all defaults, for a file that contains a scenario among other tables.
+    pub fn to_table(&self) -> tree::Table {
+        root::write(self)
+    }
+
     /// Returns the scenario as TOML text that reads back equal, with all defaults written out and all quantities in SI.
     ///
     /// Paths are unchanged.

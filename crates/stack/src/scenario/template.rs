@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use super::error::{Place, Problem, ScenarioError};
-use super::field::Field;
+use super::field::{Field, Section};
 use super::load::{self, Access};
 use super::reader::Reader;
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
 use super::{MotionSpec, Scenario, Written, merge, renamed, root};
+
+pub use super::load::Language;
 
 /// A scenario that is read repeatedly with different values.
 ///
@@ -85,7 +87,7 @@ impl Opened {
             }
             _ => (Table::default(), Origin::Whole(0)),
         };
-        let mut table = load::extend(&mut sources, table, 0, self.access)?;
+        let mut table = load::extend(&mut sources, table, 0, self.access, &load::SCENARIO)?;
         let warnings = renamed::renew(&mut table, &sources)?;
         let plain =
             |key: &str, value| Entry { key: key.to_owned(), origin, node: Node { origin, value } };
@@ -97,6 +99,114 @@ impl Opened {
             table.set(plain("motion", Value::Table(Table { entries: vec![none] })));
         }
         Ok(Template { sources, table, title: fallback_title.to_owned(), warnings })
+    }
+}
+
+/// A file of another kind that has the tables of a scenario with a stack among tables of its own, such as a cellar.
+///
+/// Values carry the place where they were written, so that an error can name this place.
+#[derive(Clone, Debug)]
+pub struct Host {
+    sources: Sources,
+    table: Table,
+}
+
+impl Host {
+    /// Reads a file and the files that it extends, and applies overrides as for a scenario ([`Scenario::parse`]).
+    ///
+    /// # Errors
+    /// Returns the first problem found, with its place in the text.
+    pub fn load(
+        path: &Path,
+        overrides: &[String],
+        language: &Language,
+    ) -> Result<Self, ScenarioError> {
+        let name = path.display().to_string();
+        let bytes = load::read_file(path, Place::Whole { file: name.clone() })?;
+        let (sources, table) = load::merged(&name, &bytes, overrides, Access::Files, language)?;
+        Ok(Self { sources, table })
+    }
+
+    /// Reads a text like [`Host::load`]; the text may extend built-in files only.
+    ///
+    /// # Errors
+    /// As for [`Host::load`]; also if the bytes are not UTF-8.
+    pub fn parse(
+        name: &str,
+        bytes: &[u8],
+        overrides: &[String],
+        language: &Language,
+    ) -> Result<Self, ScenarioError> {
+        let (sources, table) = load::merged(name, bytes, overrides, Access::BuiltinOnly, language)?;
+        Ok(Self { sources, table })
+    }
+
+    /// Reads a built-in file.
+    ///
+    /// # Errors
+    /// If there is no file with this name, or an override is invalid.
+    pub fn builtin(
+        name: &str,
+        overrides: &[String],
+        language: &Language,
+    ) -> Result<Self, ScenarioError> {
+        let Some(text) = (language.builtin)(name) else {
+            let place = Place::Whole { file: name.to_owned() };
+            return Err(ScenarioError::new(load::unknown_builtin("kind", name, language), place));
+        };
+        Self::parse(&format!("{name}.toml"), text.as_bytes(), overrides, language)
+    }
+
+    /// Opens the whole file for reading.
+    ///
+    /// # Errors
+    /// If the file has a key that `section` does not have.
+    pub fn reader(&self, section: &'static Section) -> Result<Reader<'_>, ScenarioError> {
+        Reader::open(&self.sources, section, String::new(), Some(&self.table), Origin::Whole(0))
+    }
+
+    /// Returns the name of the file without its extension.
+    pub fn stem(&self) -> String {
+        load::stem(&self.sources.files[0].name)
+    }
+
+    /// Returns the value at a path such as `block.2.levels`; items of lists are identified by their name or number.
+    pub fn node(&self, path: &str) -> Option<&Node> {
+        merge::node_at(&self.table, &path.split('.').collect::<Vec<_>>())
+    }
+
+    /// Returns an error about the value at the first of some paths that was written; if none was, the place is the file.
+    pub fn error(&self, paths: &[&str], message: String) -> ScenarioError {
+        let written = paths.iter().find_map(|path| self.node(path)).map(|node| node.origin);
+        self.sources.error(written.unwrap_or(Origin::Whole(0)), Problem::Inconsistent { message })
+    }
+
+    /// Returns the scenario of the stack, in space and without the file's `own` fields, with the given values set at the
+    /// given paths.
+    ///
+    /// # Errors
+    /// Returns the first problem found, with the place where the value was written.
+    pub fn stack(&self, own: &[&str], changes: &[(&str, Node)]) -> Result<Scenario, ScenarioError> {
+        let mut table = self.table.clone();
+        own.iter().for_each(|key| table.remove(key));
+        let view = self.node("stack.view");
+        let stated = view.filter(|view| {
+            matches!(view.origin, Origin::File { file: 0, .. } | Origin::Override(_))
+                && view.value != Value::Text("spatial".to_owned())
+        });
+        if stated.is_some() {
+            let message = "the stacks of a room are in space: leave `stack.view` out".to_owned();
+            return Err(self.error(&["stack.view"], message));
+        }
+        let origin = self.node("stack").map_or(Origin::Whole(0), |stack| stack.origin);
+        let spatial = ("stack.view", Node { origin, value: Value::Text("spatial".to_owned()) });
+        for (path, node) in std::iter::once(&spatial).chain(changes) {
+            let keys: Vec<&str> = path.split('.').collect();
+            merge::set(&mut table, Some(&root::ROOT), &keys, node.clone()).map_err(|message| {
+                self.sources.error(node.origin, Problem::Inconsistent { message })
+            })?;
+        }
+        load::finished(self.sources.clone(), table, Vec::new())
     }
 }
 

@@ -1,0 +1,86 @@
+//! The answer for a cellar: all its variants, and the run that is shown.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+
+use barrelstack::Progress;
+use barrelstack::summary::Unfinished;
+use barrelstack::variants::{Advance, RunChoice};
+
+use crate::result::RoomRun;
+use crate::sample::{Case, CellarFailure, Prepared};
+use crate::scenario::Cellar;
+use crate::summary::{self, CellarSummary};
+
+/// Results of a cellar.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The cellar with its plan.
+    pub prepared: Prepared,
+    /// Results of the room as stated and of its variants, in order; those that were interrupted are left out.
+    pub cases: Vec<Case>,
+    /// Result of the run that is shown.
+    pub case: Case,
+    /// The run that is shown, with its frames.
+    pub shown: RoomRun,
+    /// Summary of all variants and of the run that is shown.
+    pub summary: CellarSummary,
+}
+
+/// Runs all variants of a cellar on all cores, and then the run that is shown.
+///
+/// Results do not depend on the number of cores. The observer receives the progress and may stop the work; the results
+/// until then are returned.
+///
+/// # Errors
+/// If the plan is wrong, or a stack cannot be built or does not stand.
+pub fn answer(
+    cellar: &Cellar,
+    choice: RunChoice,
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> Result<Answer, CellarFailure> {
+    let prepared = Prepared::new(cellar)?;
+    let numbers: Vec<u32> = match choice {
+        RunChoice::Alone(_) => Vec::new(),
+        RunChoice::Typical | RunChoice::Number(_) if prepared.count() == 0 => Vec::new(),
+        RunChoice::Typical | RunChoice::Number(_) => (0..=prepared.count()).collect(),
+    };
+    let observer = Mutex::new(observer);
+    let report = |reached: Advance| match observer.lock() {
+        Ok(mut observer) => observer(reached),
+        // Another thread has panicked; this work is no longer needed.
+        Err(_) => ControlFlow::Break(()),
+    };
+    let of = numbers.len();
+    let found = prepared.cases(&numbers, &|done| report(Advance::Variants { done, of }))?;
+    let mut cases: Vec<Case> = found.into_iter().flatten().collect();
+    let done = cases.len();
+    let number = match choice {
+        RunChoice::Number(number) | RunChoice::Alone(number) => number,
+        RunChoice::Typical => summary::typical(&cases).unwrap_or(0),
+    };
+    let shown = prepared.run(number, 0, &mut |now| {
+        report(Advance::Run(Progress { time: now.time, end_time: now.end_time }))
+    })?;
+    let case = prepared.case(number, &shown);
+    // A run that is repeated to be shown is counted once.
+    if cases.is_empty() && !shown.interrupted {
+        cases.push(case.clone());
+    }
+    let mut summary = summary::of(&prepared, &cases, (&case, &shown));
+    summary.unfinished = (done < of).then_some(Unfinished { done, of });
+    summary.warnings.extend(summary.unfinished.as_ref().map(Unfinished::warning));
+    Ok(Answer { prepared, cases, case, shown, summary })
+}
+
+impl Answer {
+    /// `true` if any part of the work was interrupted.
+    pub fn is_stopped(&self) -> bool {
+        self.shown.interrupted || self.summary.unfinished.is_some()
+    }
+
+    /// `true` if the computation of the run that is shown failed.
+    pub fn is_invalid(&self) -> bool {
+        !self.case.valid
+    }
+}

@@ -1,0 +1,691 @@
+//! An island: stacks that advance together, since their bodies may meet.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use barrelstack::run::Work;
+use barrelstack::watch::Ending;
+use barrelstack_dynamics::join::{Carry, Frame, Party, Running, Source, carry, joined};
+use barrelstack_dynamics::{
+    BodyId, Drive as _, EnergySummary, Model, ModelError, Pose, RunError, Simulation, Space as _,
+    Spatial, Twist, Vec3,
+};
+use barrelstack_space::fate::Fates;
+use barrelstack_space::rest::Rest;
+use barrelstack_space::{Ground, Stack};
+
+use crate::result::RoomFrames;
+use crate::world::World;
+
+/// A body of a stack: index of the stack, and ID of the body within its stack.
+pub(crate) type Whose = (usize, BodyId);
+
+/// Owner of a body of the model of an island.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Owner {
+    /// A body of a stack.
+    Stack(Whose),
+    /// An obstacle.
+    Obstacle(usize),
+}
+
+/// A stack of an island.
+#[derive(Clone, Debug)]
+pub(crate) struct Member {
+    /// Index of the stack in the room.
+    pub(crate) stack: usize,
+    /// Its bodies in the model of the island.
+    pub(crate) bodies: Range<BodyId>,
+    /// Its elements in the model of the island.
+    elements: Range<usize>,
+    /// Placement of its own frame in that of the island.
+    pub(crate) frame: Frame,
+}
+
+/// Everything of an island that does not change until it is merged.
+#[derive(Debug)]
+pub(crate) struct Fixed {
+    pub(crate) members: Vec<Member>,
+    /// Indices of obstacles in the model.
+    pub(crate) obstacles: Vec<usize>,
+    /// The owners of the bodies of the model.
+    pub(crate) owners: Vec<Owner>,
+    pub(crate) model: Arc<Model<Spatial>>,
+    drive: Ground,
+    /// Placement of the frame of the island in the room, that of its first stack.
+    pub(crate) frame: Frame,
+    pub(crate) simulation: Simulation,
+}
+
+/// A record of the contact of two parties.
+#[derive(Clone, Debug)]
+pub(crate) struct Contact {
+    pub(crate) time: f64,
+    /// The bodies of the first contact.
+    pub(crate) bodies: [Owner; 2],
+    /// Force (N) in the frame of the island at the last step.
+    last: Vec3,
+    now: Vec3,
+    /// Sum of magnitudes (N·s).
+    pub(crate) impulse: f64,
+    pub(crate) peak: f64,
+}
+
+/// Observers of a stack.
+#[derive(Clone, Debug)]
+pub(crate) struct Watch {
+    pub(crate) fates: Fates,
+    rest: Rest,
+    /// First contact with a body of another stack: time, own body, other body.
+    pub(crate) touched: Option<(f64, BodyId, Whose)>,
+    pub(crate) touched_obstacle: Option<(f64, usize)>,
+    /// Impulse (N·s) of other stacks until the first loss of seat.
+    pub(crate) impulse: f64,
+}
+
+/// The part of an island that moves; a copy of it is a point to which the island can return.
+#[derive(Clone, Debug)]
+pub(crate) struct Live {
+    pub(crate) running: Running,
+    pub(crate) watches: Vec<Watch>,
+    pub(crate) contacts: BTreeMap<[Side; 2], Contact>,
+    pub(crate) ending: Option<Ending>,
+    pub(crate) failure: Option<RunError>,
+    /// Lengths of the logs.
+    kept: Vec<usize>,
+    /// For every body, the largest distance (m) from its pose at the start of the window.
+    pub(crate) travels: Vec<f64>,
+    /// The body that would have left its tube in the next step.
+    pub(crate) stopped_by: Option<BodyId>,
+    /// Time (s) before which the island does not come to rest, since a barrel rolls toward another stack.
+    pub(crate) not_before: f64,
+}
+
+/// A party of a contact: a stack or an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Side {
+    Stack(usize),
+    Obstacle(usize),
+}
+
+impl Owner {
+    fn party(self) -> Side {
+        match self {
+            Self::Stack((stack, _)) => Side::Stack(stack),
+            Self::Obstacle(obstacle) => Side::Obstacle(obstacle),
+        }
+    }
+}
+
+/// Records that only grow.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Logs {
+    /// Frames of every member.
+    pub(crate) frames: Vec<RoomFrames>,
+    /// Forces (N) on every obstacle of the island, along the axes of the room.
+    pub(crate) forces: Vec<Vec<(f64, [f64; 3])>>,
+}
+
+/// Stacks that advance together.
+#[derive(Debug)]
+pub(crate) struct Island {
+    pub(crate) fixed: Fixed,
+    pub(crate) live: Live,
+    pub(crate) logs: Logs,
+    /// Energies and work of the islands from which this one was merged.
+    pub(crate) banked: EnergySummary,
+    pub(crate) work: Work,
+    /// Time (s) between frames; `None` for no frames.
+    every: Option<f64>,
+    /// For every body, the distance (m) that it may move in the current window.
+    pub(crate) tubes: Vec<f64>,
+    /// Poses relative to the ground at the start of the window.
+    from: Vec<Pose<Spatial>>,
+    /// The state at the start of the window.
+    start: Option<Box<Live>>,
+}
+
+impl Island {
+    /// Creates the island of a stack alone.
+    pub(crate) fn alone(world: &World<'_>, stack: usize, every: Option<f64>) -> Self {
+        let of = &world.stacks[stack];
+        let Running { state, mut scratch, stepper } = of.running.clone();
+        scratch.keeps_contacts = false;
+        let count = of.stack.parts.len();
+        let fates = Fates::new(Arc::clone(&of.stack), &of.at_rest, of.thresholds);
+        let rest = Rest::new(of.scenario, Arc::clone(&of.stack), &world.room.ground);
+        let watch = Watch { fates, rest, touched: None, touched_obstacle: None, impulse: 0.0 };
+        let mut island = Self {
+            fixed: Fixed {
+                members: vec![Member {
+                    stack,
+                    bodies: 0..count,
+                    elements: 0..of.stack.model.elements().len(),
+                    frame: Frame::default(),
+                }],
+                obstacles: Vec::new(),
+                owners: (0..count).map(|body| Owner::Stack((stack, body))).collect(),
+                model: Arc::new(of.stack.model.clone()),
+                drive: world.room.ground.clone().turned(of.frame.azimuth),
+                frame: of.frame,
+                simulation: of.simulation,
+            },
+            live: Live {
+                running: Running { state, scratch, stepper },
+                watches: vec![watch],
+                contacts: BTreeMap::new(),
+                ending: None,
+                failure: None,
+                kept: Vec::new(),
+                travels: vec![0.0; count],
+                stopped_by: None,
+                not_before: 0.0,
+            },
+            logs: Logs { frames: vec![RoomFrames::default()], forces: Vec::new() },
+            banked: EnergySummary::default(),
+            work: Work::default(),
+            every,
+            tubes: vec![f64::INFINITY; count],
+            from: Vec::new(),
+            start: None,
+        };
+        island.observe(0.0);
+        island
+    }
+
+    pub(crate) fn time(&self) -> f64 {
+        self.live.running.state.time
+    }
+
+    pub(crate) fn is_awake(&self) -> bool {
+        self.live.ending.is_none()
+    }
+
+    /// Returns the poses and twists of a member in its own frame.
+    fn own(&self, member: usize) -> (Vec<Pose<Spatial>>, Vec<Twist<Spatial>>) {
+        let Member { bodies, frame, .. } = &self.fixed.members[member];
+        let (state, back) = (&self.live.running.state, frame.back());
+        let poses = state.poses[bodies.clone()].iter().map(|pose| back.pose(*pose)).collect();
+        let twists = state.twists[bodies.clone()].iter().map(|twist| back.twist(*twist)).collect();
+        (poses, twists)
+    }
+
+    /// Returns the pose of a body in the room, relative to the ground.
+    pub(crate) fn in_room(&self, body: BodyId) -> Pose<Spatial> {
+        self.fixed.frame.pose(self.seen(body))
+    }
+
+    /// Returns the velocity of a body in the room, relative to the ground.
+    pub(crate) fn velocity(&self, body: BodyId) -> Vec3 {
+        let twists = &self.live.running.state.twists;
+        self.fixed.frame.vector(twists[body].linear - twists[Stack::GROUND].linear)
+    }
+
+    /// Returns the pose of a body in the island, relative to the ground.
+    fn seen(&self, body: BodyId) -> Pose<Spatial> {
+        let poses = &self.live.running.state.poses;
+        let Pose { position, orientation } = poses[body];
+        Pose { position: position - poses[Stack::GROUND].position, orientation }
+    }
+
+    /// Returns an upper bound of the speed (m/s) of any point of a body, relative to the ground.
+    pub(crate) fn speed(&self, world: &World<'_>, body: BodyId) -> f64 {
+        let Owner::Stack((stack, own)) = self.fixed.owners[body] else { return 0.0 };
+        let twists = &self.live.running.state.twists;
+        let Twist { linear, angular } = twists[body];
+        let velocity = linear - twists[Stack::GROUND].linear;
+        velocity.length() + angular.length() * world.stacks[stack].reach[own]
+    }
+
+    /// Returns the bodies that move fast although their stack rests: barrels that roll away from it.
+    pub(crate) fn rolling(&self) -> Vec<BodyId> {
+        let mut all = Vec::new();
+        for (number, watch) in self.live.watches.iter().enumerate() {
+            let (poses, twists) = self.own(number);
+            let first = self.fixed.members[number].bodies.start;
+            all.extend(watch.rest.moving((&poses, &twists)).map(|body| first + body));
+        }
+        all
+    }
+
+    /// Starts a window in which bodies may move as far as their tubes; `keeps` is `true` if the island may have to
+    /// return to its start.
+    pub(crate) fn open(&mut self, keeps: bool) {
+        self.from = (0..self.fixed.owners.len()).map(|body| self.seen(body)).collect();
+        self.live.travels.fill(0.0);
+        self.live.stopped_by = None;
+        self.live.kept = self.logs.lengths();
+        self.start = keeps.then(|| Box::new(self.live.clone()));
+    }
+
+    /// Returns to the start of the window.
+    pub(crate) fn go_back(&mut self) {
+        if let Some(start) = &self.start {
+            self.live = (**start).clone();
+            self.logs.cut(&self.live.kept);
+        }
+    }
+
+    /// Advances to the last step that ends by a time (s), or until a body would leave its tube.
+    pub(crate) fn advance(&mut self, world: &World<'_>, until: f64) {
+        let Simulation { time_step: step, end_time, .. } = self.fixed.simulation;
+        let latest = until + 1e-9 * step;
+        self.live.stopped_by = None;
+        while self.is_awake() && (self.time() + step <= latest || latest >= end_time) {
+            if let Some(body) = self.leaves(world, step) {
+                self.live.stopped_by = Some(body);
+                return;
+            }
+            self.step(None);
+        }
+        let _ = self.leaves(world, 0.0);
+    }
+
+    /// Advances to a time (s) exactly; the last step is cut short.
+    pub(crate) fn advance_to(&mut self, world: &World<'_>, time: f64) {
+        let sliver = 1e-9 * self.fixed.simulation.time_step;
+        self.live.stopped_by = None;
+        while self.is_awake() && self.time() < time - sliver {
+            self.step(Some(time));
+            let _ = self.leaves(world, 0.0);
+        }
+        if self.live.failure.is_none() {
+            self.wait_until(time);
+        }
+    }
+
+    /// Carries bodies at rest along with the ground to a later time (s).
+    fn wait_until(&mut self, time: f64) {
+        let state = &mut self.live.running.state;
+        if time <= state.time {
+            return;
+        }
+        let [(before, fast), (after, slow)] = [state.time, time].map(|at| self.fixed.drive.at(at));
+        for (pose, twist) in state.poses.iter_mut().zip(&mut state.twists) {
+            pose.position += after - before;
+            twist.linear += slow - fast;
+        }
+        state.time = time;
+    }
+
+    /// Updates the distances from the start of the window; returns a body that would leave its tube within a time (s).
+    fn leaves(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
+        if self.from.is_empty() {
+            return None;
+        }
+        let state = &self.live.running.state;
+        let ground = (state.poses[Stack::GROUND].position, state.twists[Stack::GROUND].linear);
+        let mut first = None;
+        for (body, owner) in self.fixed.owners.iter().enumerate() {
+            let Owner::Stack((stack, own)) = *owner else { continue };
+            if own == Stack::GROUND {
+                continue;
+            }
+            let reach = world.stacks[stack].reach[own];
+            let (pose, twist, from) = (state.poses[body], state.twists[body], self.from[body]);
+            let moved = (pose.position - ground.0 - from.position).length();
+            let turned = Spatial::angle_between(pose.orientation, from.orientation);
+            let travel = moved + turned * reach;
+            self.live.travels[body] = self.live.travels[body].max(travel);
+            let speed = (twist.linear - ground.1).length() + twist.angular.length() * reach;
+            // Velocities change within a step.
+            if travel + 1.5 * ahead * speed > self.tubes[body] && first.is_none() {
+                first = Some(body);
+            }
+        }
+        first
+    }
+
+    fn step(&mut self, until: Option<f64>) {
+        let Running { state, scratch, stepper } = &mut self.live.running;
+        let Fixed { model, drive, .. } = &self.fixed;
+        let before = state.time;
+        let result = match until {
+            Some(until) => stepper.step_until(model, drive, state, scratch, until),
+            None => stepper.step(model, drive, state, scratch),
+        };
+        if let Err(error) = result {
+            (self.live.failure, self.live.ending) = (Some(error), Some(Ending::Broken));
+            return;
+        }
+        self.observe(self.time() - before);
+    }
+
+    /// Observes an accepted state after a step (s).
+    fn observe(&mut self, step: f64) {
+        let rests = self.watch();
+        self.meet(step);
+        self.record();
+        if self.live.ending.is_none() {
+            if rests && self.live.not_before <= self.time() {
+                self.live.ending = Some(Ending::Rest);
+            } else if self.live.running.stepper.is_at_end(&self.live.running.state) {
+                self.live.ending = Some(Ending::Patience);
+            }
+        }
+    }
+
+    /// Updates fates and rest; returns `true` if all members rest.
+    fn watch(&mut self) -> bool {
+        let time = self.time();
+        let mut rests = true;
+        for (number, Member { bodies, frame, .. }) in self.fixed.members.iter().enumerate() {
+            let placed = *frame != Frame::default();
+            let (poses, twists) = if placed { self.own(number) } else { Default::default() };
+            let Running { state, scratch, .. } = &self.live.running;
+            let (poses, twists) = if placed {
+                (&poses[..], &twists[..])
+            } else {
+                (&state.poses[bodies.clone()], &state.twists[bodies.clone()])
+            };
+            let watch = &mut self.live.watches[number];
+            watch.fates.observe_bodies(time, poses, &scratch.wrenches[bodies.clone()]);
+            let collapsed = watch.fates.collapse().is_some();
+            rests &= watch.rest.observe_bodies(time, (poses, twists), collapsed);
+        }
+        rests
+    }
+
+    /// Records contacts between parties.
+    fn meet(&mut self, step: f64) {
+        let Live { running, watches, contacts, .. } = &mut self.live;
+        let forces = &running.scratch.pair_forces;
+        let first = forces.partition_point(|f| f.pair < self.fixed.model.first_foreign_pair());
+        let time = running.state.time;
+        for contact in contacts.values_mut() {
+            contact.now = Vec3::default();
+        }
+        for force in &forces[first..] {
+            let (mut bodies, mut on) =
+                ([force.contactor, force.target].map(|body| self.fixed.owners[body]), force.force);
+            if bodies[1] < bodies[0] {
+                bodies.reverse();
+                on = -on;
+            }
+            let contact = contacts.entry(bodies.map(Owner::party)).or_insert(Contact {
+                time,
+                bodies,
+                last: Vec3::default(),
+                now: Vec3::default(),
+                impulse: 0.0,
+                peak: 0.0,
+            });
+            contact.now += on;
+        }
+        for (parties, contact) in contacts.iter_mut() {
+            let (now, last) = (contact.now.length(), contact.last.length());
+            let impulse = 0.5 * step * (now + last);
+            contact.impulse += impulse;
+            contact.peak = contact.peak.max(now);
+            for (side, party) in parties.iter().enumerate() {
+                let Side::Stack(stack) = *party else { continue };
+                let Some(at) = self.fixed.members.iter().position(|of| of.stack == stack) else {
+                    continue;
+                };
+                let watch = &mut watches[at];
+                match (contact.bodies[side], contact.bodies[1 - side]) {
+                    (Owner::Stack((_, own)), Owner::Stack(other)) => {
+                        if now > 0.0 && watch.touched.is_none() {
+                            watch.touched = Some((time, own, other));
+                        }
+                        if watch.fates.collapse().is_none_or(|(at, _)| at >= time) {
+                            watch.impulse += impulse;
+                        }
+                    }
+                    (Owner::Stack(_), Owner::Obstacle(obstacle)) => {
+                        if now > 0.0 && watch.touched_obstacle.is_none() {
+                            watch.touched_obstacle = Some((time, obstacle));
+                        }
+                    }
+                    (Owner::Obstacle(_), _) => {}
+                }
+            }
+            contact.last = contact.now;
+        }
+        for (number, obstacle) in self.fixed.obstacles.iter().enumerate() {
+            let of = |(parties, contact): (&[Side; 2], &Contact)| {
+                (parties[1] == Side::Obstacle(*obstacle)).then_some(-contact.now)
+            };
+            let touching = contacts.iter().filter_map(of);
+            let total = touching.fold(Vec3::default(), |sum, force| sum + force);
+            let Vec3 { x, y, z } = self.fixed.frame.vector(total);
+            let log = &mut self.logs.forces[number];
+            let (none, now) = ([0.0; 3], [x, y, z]);
+            if now != none {
+                if log.last().is_none_or(|(_, last)| *last == none) {
+                    log.push((time - step, none));
+                }
+                log.push((time, now));
+            } else if log.last().is_some_and(|(_, last)| *last != none) {
+                log.push((time, none));
+            }
+        }
+    }
+
+    /// Records a frame when it is due.
+    fn record(&mut self) {
+        let Some(every) = self.every else { return };
+        for (number, Member { bodies, .. }) in self.fixed.members.iter().enumerate() {
+            let time = self.time();
+            if time < self.logs.frames[number].times.len() as f64 * every {
+                continue;
+            }
+            let bodies = bodies.clone().skip(1);
+            let poses = bodies.clone().map(|body| numbers(self.in_room(body))).collect();
+            let speeds = bodies.map(|body| self.velocity(body).length()).collect();
+            let frames = &mut self.logs.frames[number];
+            frames.times.push(time);
+            frames.poses.push(poses);
+            frames.speeds.push(speeds);
+        }
+    }
+
+    /// Returns the energy balance since the start, including the islands from which this one was merged.
+    pub(crate) fn energy(&self) -> EnergySummary {
+        plus(self.live.running.stepper.energy.summary(0), &self.banked)
+    }
+
+    /// Returns the numbers of steps and evaluations since the start.
+    pub(crate) fn work(&self) -> Work {
+        let Running { scratch, stepper, .. } = &self.live.running;
+        Work {
+            steps: self.work.steps + stepper.steps,
+            evaluations: self.work.evaluations + scratch.evaluations,
+            contact_evaluations: self.work.contact_evaluations + scratch.contact_evaluations,
+        }
+    }
+
+    /// Merges islands that have reached the same time, and obstacles.
+    ///
+    /// # Errors
+    /// If names of bodies repeat.
+    pub(crate) fn merged(
+        world: &World<'_>,
+        islands: Vec<Self>,
+        obstacles: &[usize],
+    ) -> Result<Self, ModelError> {
+        let mut members: Vec<(usize, usize)> = Vec::new();
+        let mut walls: Vec<usize> = obstacles.to_vec();
+        for (source, island) in islands.iter().enumerate() {
+            members.extend((0..island.fixed.members.len()).map(|member| (source, member)));
+            walls.extend(&island.fixed.obstacles);
+        }
+        let stack_of =
+            |(source, member): (usize, usize)| islands[source].fixed.members[member].stack;
+        members.sort_by_key(|place| world.stacks[stack_of(*place)].rank);
+        walls.sort_unstable();
+        walls.dedup();
+        let frame = world.stacks[stack_of(members[0])].frame;
+        let mut parties = Vec::new();
+        for place in &members {
+            let of = &world.stacks[stack_of(*place)];
+            parties.push(Party {
+                name: of.name,
+                model: &of.stack.model,
+                sorts: &of.sorts,
+                rank: of.rank,
+                frame: of.frame.within(frame),
+                step: of.simulation.time_step,
+            });
+        }
+        for wall in &walls {
+            let of = &world.obstacles[*wall];
+            parties.push(Party {
+                name: "",
+                model: &of.model,
+                sorts: &of.sorts,
+                rank: of.rank,
+                frame: Frame::default().within(frame),
+                step: of.step,
+            });
+        }
+        let (model, step) = joined(&parties, &world.crossing)?;
+        let mut of_members = Vec::new();
+        let (mut owners, mut carries, mut elements) = (Vec::new(), Vec::new(), 0);
+        for (place, party) in members.iter().zip(&parties) {
+            let (source, stack) = (place.0, stack_of(*place));
+            let old = &islands[source].fixed.members[place.1];
+            let (first, count) = (owners.len(), old.bodies.len());
+            owners.extend((0..count).map(|body| Owner::Stack((stack, body))));
+            carries.push(Carry {
+                source,
+                bodies: old.bodies.clone(),
+                to: first,
+                elements: old.elements.clone(),
+            });
+            of_members.push(Member {
+                stack,
+                bodies: first..first + count,
+                elements: elements..elements + old.elements.len(),
+                frame: party.frame,
+            });
+            elements += old.elements.len();
+        }
+        owners.extend(walls.iter().map(|wall| Owner::Obstacle(*wall)));
+        let drive = world.room.ground.clone().turned(frame.azimuth);
+        let simulation = Simulation { time_step: step, ..islands[0].fixed.simulation };
+        let sources: Vec<Source<'_>> = islands
+            .iter()
+            .map(|island| Source {
+                model: &island.fixed.model,
+                state: &island.live.running.state,
+                scratch: &island.live.running.scratch,
+                stepper: &island.live.running.stepper,
+                frame: island.fixed.frame.within(frame),
+            })
+            .collect();
+        let running = carry(&model, &drive, &sources, &carries, &simulation);
+        let time = running.state.time;
+        let mut banked = EnergySummary::default();
+        let mut work = Work::default();
+        for island in &islands {
+            // What is stored now is stored in the merged island.
+            let own = EnergySummary { kinetic: 0.0, elastic: 0.0, stick: 0.0, ..island.energy() };
+            banked = plus(banked, &own);
+            let own = island.work();
+            work.steps += own.steps;
+            work.evaluations += own.evaluations;
+            work.contact_evaluations += own.contact_evaluations;
+        }
+        let every = islands[0].every;
+        let mut logs = Logs::default();
+        logs.forces.resize(walls.len(), Vec::new());
+        let (mut watches, mut contacts) = (vec![None; members.len()], BTreeMap::new());
+        let mut frames = vec![RoomFrames::default(); members.len()];
+        for (source, island) in islands.into_iter().enumerate() {
+            let turn = island.fixed.frame.within(frame);
+            let slept = !island.is_awake();
+            for (parties, mut contact) in island.live.contacts {
+                contact.last = turn.vector(contact.last);
+                contacts.insert(parties, contact);
+            }
+            let own = island.live.watches.into_iter().zip(island.logs.frames);
+            for (member, (mut watch, kept)) in own.enumerate() {
+                if slept {
+                    watch.rest.wake(time);
+                }
+                let at = members.iter().position(|place| *place == (source, member));
+                let at = at.unwrap_or_default();
+                (watches[at], frames[at]) = (Some(watch), kept);
+            }
+            for (wall, log) in island.fixed.obstacles.iter().zip(island.logs.forces) {
+                let at = walls.binary_search(wall).unwrap_or_default();
+                logs.forces[at] = crate::run::summed(&logs.forces[at], &log);
+            }
+        }
+        logs.frames = frames;
+        let count = owners.len();
+        Ok(Self {
+            fixed: Fixed {
+                members: of_members,
+                obstacles: walls,
+                owners,
+                model: Arc::new(model),
+                drive,
+                frame,
+                simulation,
+            },
+            live: Live {
+                running,
+                watches: watches.into_iter().flatten().collect(),
+                contacts,
+                ending: None,
+                failure: None,
+                kept: Vec::new(),
+                travels: vec![0.0; count],
+                stopped_by: None,
+                not_before: 0.0,
+            },
+            logs,
+            banked,
+            work,
+            every,
+            tubes: vec![f64::INFINITY; count],
+            from: Vec::new(),
+            start: None,
+        })
+    }
+}
+
+impl Logs {
+    fn lengths(&self) -> Vec<usize> {
+        let frames = self.frames.iter().map(|frames| frames.times.len());
+        frames.chain(self.forces.iter().map(Vec::len)).collect()
+    }
+
+    fn cut(&mut self, lengths: &[usize]) {
+        let (frames, forces) = lengths.split_at(self.frames.len());
+        for (of, length) in self.frames.iter_mut().zip(frames) {
+            of.times.truncate(*length);
+            of.poses.truncate(*length);
+            of.speeds.truncate(*length);
+        }
+        for (of, length) in self.forces.iter_mut().zip(forces) {
+            of.truncate(*length);
+        }
+    }
+}
+
+/// Returns the sums of two energy balances.
+pub(crate) fn plus(one: EnergySummary, other: &EnergySummary) -> EnergySummary {
+    EnergySummary {
+        kinetic: one.kinetic + other.kinetic,
+        potential: one.potential + other.potential,
+        elastic: one.elastic + other.elastic,
+        stick: one.stick + other.stick,
+        damped: one.damped + other.damped,
+        friction: one.friction + other.friction,
+        viscous: one.viscous + other.viscous,
+        ground_work: one.ground_work + other.ground_work,
+        applied_work: one.applied_work + other.applied_work,
+        residual: one.residual + other.residual,
+        throughput: one.throughput + other.throughput,
+    }
+}
+
+/// Returns the numbers of a pose: position (m), and quaternion.
+pub(crate) fn numbers(pose: Pose<Spatial>) -> [f64; 7] {
+    let (p, q) = (pose.position, pose.orientation);
+    [p.x, p.y, p.z, q.w, q.v.x, q.v.y, q.v.z]
+}

@@ -1,0 +1,46 @@
+//! Rooms: many stacks, walls and columns on one ground, and what knocks over what.
+//!
+//! ```text
+//! Room { stacks, obstacles, ground } ─ run ─▶ islands: one for each stack, advanced in parallel
+//!                                                │ bodies of two islands could meet
+//!                                                ▼
+//!                                             one island ─▶ RoomRun { bodies, stacks, obstacles, meetings }
+//! ```
+//!
+//! Coordinates of a room: `x` and `y` horizontal, `z` up from the floor. Poses in results are relative to the ground,
+//! so they are those that a person in the room sees.
+
+// Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
+// (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod answer;
+pub mod geometry;
+mod island;
+mod nearby;
+pub mod plan;
+pub mod report;
+pub mod result;
+pub mod room;
+mod run;
+pub mod sample;
+pub mod scenario;
+mod sorts;
+pub mod summary;
+pub mod words;
+mod world;
+
+pub use answer::{Answer, answer};
+pub use plan::Plan;
+pub use result::{
+    BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
+};
+pub use room::{Obstacle, Placed, Room, RoomFailure, Settings};
+pub use run::{Advance, run};
+pub use sample::{CellarFailure, Prepared};
+pub use scenario::Cellar;
+
+/// The example of the README, which is compiled and run with the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,342 @@
+//! Bodies of different islands that are near each other, and how far each may move before two of them can touch.
+//!
+//! The gap of two bodies is measured when it may have become small. From then on it shrinks by no more than the ways of
+//! the two bodies, which are summed window by window, so it is measured anew only when these have used it up.
+
+use barrelstack_dynamics::join::gap_between;
+use barrelstack_dynamics::space::Linear as _;
+use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
+
+use crate::island::{Island, Owner, Whose};
+use crate::world::World;
+
+/// Distance (m) of two bodies up to which they are in the list.
+const MARGIN: f64 = 0.4;
+
+/// Way (m) of a body after which the list is made anew.
+const STALE: f64 = 0.1;
+
+/// Distance (m) that a body that is near no other may move in a window; it corresponds to 45 m/s.
+pub(crate) const FREE: f64 = 0.09;
+
+/// Gap (m) that remains when two islands are merged: their next step must not be affected, and impacts must be
+/// foreseen.
+const SLACK: f64 = 2e-3;
+
+/// Way (m) of a body in a window for which there is always room.
+const LEAST: f64 = 1e-3;
+
+/// Gap (m) up to which gaps are exact, and not only bounded from below.
+const EXACT: f64 = 0.1;
+
+/// Two bodies of different parties, the second of which may be an obstacle.
+struct Couple {
+    bodies: [Owner; 2],
+    /// Gap (m) when it was measured, or a lower bound of it.
+    gap: f64,
+    /// Ways (m) of the two bodies until then.
+    since: [f64; 2],
+    /// Ways (m) of the two bodies that must not be exceeded in this window.
+    limits: [f64; 2],
+}
+
+/// Bodies that are near each other.
+pub(crate) struct Nearby {
+    couples: Vec<Couple>,
+    /// For every body, its couples.
+    of_body: Vec<Vec<u32>>,
+    /// Way (m) of every body since the start; it grows while the body is in the list.
+    ways: Vec<f64>,
+    /// Positions (m) in the room for which the list was made.
+    made_for: Vec<Vec3>,
+}
+
+/// Island of every stack, and the number of the first body of the stack in the model of the island.
+pub(crate) type Places = Vec<(usize, BodyId)>;
+
+impl Nearby {
+    pub(crate) fn new(world: &World<'_>) -> Self {
+        let count = world.count + world.obstacles.len();
+        Self {
+            couples: Vec::new(),
+            of_body: vec![Vec::new(); count],
+            ways: vec![0.0; count],
+            made_for: Vec::new(),
+        }
+    }
+
+    /// Makes the list anew if a body has moved far.
+    pub(crate) fn refresh(&mut self, world: &World<'_>, islands: &[Option<Island>]) {
+        let moved = |(place, made): (&Vec3, &Vec3)| {
+            let way = *place - *made;
+            way.dot(way) > STALE * STALE
+        };
+        let mut places = self.made_for.clone();
+        places.resize(world.count, Vec3::default());
+        for island in islands.iter().flatten() {
+            if !island.is_awake() && !self.made_for.is_empty() {
+                continue;
+            }
+            for (body, owner) in island.fixed.owners.iter().enumerate() {
+                if let Owner::Stack(_) = owner {
+                    places[world.number(*owner)] = island.in_room(body).position;
+                }
+            }
+        }
+        if self.made_for.is_empty() || places.iter().zip(&self.made_for).any(moved) {
+            self.make(world, islands, places);
+        }
+    }
+
+    fn make(&mut self, world: &World<'_>, islands: &[Option<Island>], places: Vec<Vec3>) {
+        let mut island_of = vec![0; world.stacks.len()];
+        for (number, island) in islands.iter().enumerate() {
+            for member in island.iter().flat_map(|island| &island.fixed.members) {
+                island_of[member.stack] = number;
+            }
+        }
+        let rules = &world.crossing.rules;
+        let mut balls: Vec<(f64, f64, Whose)> = Vec::new();
+        for (stack, of) in world.stacks.iter().enumerate() {
+            for body in 0..of.sorts.len() {
+                let meets = rules[of.sorts[body]].iter().any(Option::is_some);
+                if meets {
+                    let half = of.reach[body] + 0.5 * MARGIN;
+                    let x = places[of.first + body].x;
+                    balls.push((x - half, x + half, (stack, body)));
+                }
+            }
+        }
+        balls.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+        let place = |(stack, body): Whose| places[world.stacks[stack].first + body];
+        let reach = |(stack, body): Whose| world.stacks[stack].reach[body];
+        let sort = |(stack, body): Whose| world.stacks[stack].sorts[body];
+        let mut found: Vec<([Owner; 2], f64)> = Vec::new();
+        let mut open: Vec<(f64, Whose)> = Vec::new();
+        for (from, to, body) in balls {
+            open.retain(|(end, _)| from <= *end);
+            for (_, other) in &open {
+                let bodies = [body.min(*other), body.max(*other)];
+                let [one, two] = bodies;
+                if island_of[one.0] == island_of[two.0] || rules[sort(one)][sort(two)].is_none() {
+                    continue;
+                }
+                let gap = (place(one) - place(two)).length() - reach(one) - reach(two);
+                if gap < MARGIN {
+                    found.push((bodies.map(Owner::Stack), gap));
+                }
+            }
+            open.push((to, body));
+        }
+        for (number, obstacle) in world.obstacles.iter().enumerate() {
+            let block = &obstacle.model.bodies()[0];
+            for (stack, of) in world.stacks.iter().enumerate() {
+                let inside = |island: &Island| island.fixed.obstacles.contains(&number);
+                if islands[island_of[stack]].as_ref().is_some_and(inside) {
+                    continue;
+                }
+                for (body, of_body) in of.stack.model.bodies().iter().enumerate() {
+                    if of_body.motion == Motion::Prescribed
+                        || rules[of.sorts[body]][obstacle.sorts[0]].is_none()
+                    {
+                        continue;
+                    }
+                    let arm = place((stack, body)) - block.pose.position;
+                    let at = block.pose.orientation.matrix().unapply(arm);
+                    let half = world.room.obstacles[number].half;
+                    let past = Vec3::new(
+                        (at.x.abs() - half[0]).max(0.0),
+                        (at.y.abs() - half[1]).max(0.0),
+                        (at.z.abs() - half[2]).max(0.0),
+                    );
+                    let gap = past.length() - of.reach[body];
+                    if gap < MARGIN {
+                        found.push(([Owner::Stack((stack, body)), Owner::Obstacle(number)], gap));
+                    }
+                }
+            }
+        }
+        found.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+        // Gaps that were measured are kept.
+        let old = std::mem::take(&mut self.couples);
+        for couples in &mut self.of_body {
+            couples.clear();
+        }
+        for (bodies, gap) in found {
+            let numbers = bodies.map(|owner| world.number(owner));
+            let since = numbers.map(|number| self.ways[number]);
+            let known = old.binary_search_by(|couple| couple.bodies.cmp(&bodies)).ok();
+            let known = known.map(|at| (old[at].bound(&self.ways, numbers), &old[at]));
+            let (gap, since) = match known {
+                Some((bound, couple)) if bound > gap => (couple.gap, couple.since),
+                _ => (gap, since),
+            };
+            let number = u32::try_from(self.couples.len()).unwrap_or(u32::MAX);
+            for body in numbers {
+                self.of_body[body].push(number);
+            }
+            self.couples.push(Couple { bodies, gap, since, limits: [f64::INFINITY; 2] });
+        }
+        self.made_for = places;
+    }
+
+    /// Returns groups of islands and obstacles that may meet within a time (s), and states for all other couples how
+    /// far their bodies may move.
+    pub(crate) fn meetings(
+        &mut self,
+        world: &World<'_>,
+        islands: &[Option<Island>],
+        places: &Places,
+        ahead: f64,
+    ) -> Vec<[Owner; 2]> {
+        let mut meetings = Vec::new();
+        for couple in &mut self.couples {
+            let located = couple.bodies.map(|owner| locate(islands, places, owner));
+            let [Some((first, _)), second] = located else { continue };
+            let second_island = second.map(|(island, _)| island);
+            let inside = |obstacle| first.fixed.obstacles.contains(&obstacle);
+            let together = match couple.bodies[1] {
+                Owner::Stack((stack, _)) => {
+                    let Owner::Stack((own, _)) = couple.bodies[0] else { continue };
+                    places[stack].0 == places[own].0
+                }
+                Owner::Obstacle(obstacle) => inside(obstacle),
+            };
+            let moves = |island: Option<&Island>| island.is_some_and(Island::is_awake);
+            if together || !(moves(Some(first)) || moves(second_island)) {
+                couple.limits = [f64::INFINITY; 2];
+                continue;
+            }
+            let needs = located.map(|located| match located {
+                Some((island, body)) if island.is_awake() => {
+                    let step = island.fixed.simulation.time_step;
+                    LEAST + 1.5 * island.speed(world, body) * (ahead + 2.0 * step)
+                }
+                Some(_) | None => 0.0,
+            });
+            let need = needs[0] + needs[1];
+            let numbers = couple.bodies.map(|owner| world.number(owner));
+            let mut bound = couple.bound(&self.ways, numbers);
+            if bound < need + SLACK {
+                bound = gap(world, islands, places, couple.bodies, EXACT.max(2.0 * need));
+                couple.gap = bound;
+                couple.since = numbers.map(|number| self.ways[number]);
+            }
+            if bound < need + SLACK {
+                meetings.push(couple.bodies);
+                couple.limits = [f64::INFINITY; 2];
+            } else {
+                for side in 0..2 {
+                    let share = (bound - SLACK) * needs[side] / need;
+                    couple.limits[side] = self.ways[numbers[side]] + share;
+                }
+            }
+        }
+        meetings
+    }
+
+    /// Sets how far the bodies of an island may move; returns `true` if another island or an obstacle is near.
+    pub(crate) fn limit(
+        &self,
+        world: &World<'_>,
+        islands: &[Option<Island>],
+        places: &Places,
+        island: usize,
+    ) -> (Vec<f64>, bool) {
+        let Some(of) = &islands[island] else { return (Vec::new(), false) };
+        let mut near = false;
+        let tube = |owner: &Owner| {
+            let number = world.number(*owner);
+            let mut least = FREE;
+            for couple in &self.of_body[number] {
+                let couple = &self.couples[*couple as usize];
+                if self.parted(couple, places, of) {
+                    near = true;
+                    let side = usize::from(couple.bodies[0] != *owner);
+                    least = least.min(couple.limits[side] - self.ways[number]);
+                }
+            }
+            least
+        };
+        (of.fixed.owners.iter().map(tube).collect(), near)
+    }
+
+    /// Returns `true` if the bodies of a couple, one of which belongs to an island, can be moved independently.
+    fn parted(&self, couple: &Couple, places: &Places, island: &Island) -> bool {
+        match couple.bodies {
+            [Owner::Stack((one, _)), Owner::Stack((other, _))] => places[one].0 != places[other].0,
+            [_, Owner::Obstacle(obstacle)] => !island.fixed.obstacles.contains(&obstacle),
+            [Owner::Obstacle(_), Owner::Stack(_)] => false,
+        }
+    }
+
+    /// Returns the body or obstacle that keeps a body from moving on, if there is one.
+    pub(crate) fn in_the_way(
+        &self,
+        world: &World<'_>,
+        places: &Places,
+        island: &Island,
+        body: BodyId,
+    ) -> Option<Owner> {
+        let owner = island.fixed.owners[body];
+        let couples = self.of_body[world.number(owner)].iter();
+        let parted = couples
+            .map(|couple| &self.couples[*couple as usize])
+            .filter(|couple| self.parted(couple, places, island));
+        let side = |couple: &Couple| usize::from(couple.bodies[0] != owner);
+        let nearest = parted.min_by(|a, b| a.limits[side(a)].total_cmp(&b.limits[side(b)]))?;
+        nearest.limits[side(nearest)].is_finite().then(|| nearest.bodies[1 - side(nearest)])
+    }
+
+    /// Adds the ways of the bodies of an island in a window.
+    pub(crate) fn add(&mut self, world: &World<'_>, island: &mut Island) {
+        for (owner, travel) in island.fixed.owners.iter().zip(&mut island.live.travels) {
+            self.ways[world.number(*owner)] += std::mem::take(travel);
+        }
+    }
+}
+
+impl Couple {
+    /// Returns a lower bound of the gap (m).
+    fn bound(&self, ways: &[f64], numbers: [usize; 2]) -> f64 {
+        let [one, other] = numbers.map(|number| ways[number]);
+        self.gap - (one - self.since[0]) - (other - self.since[1])
+    }
+}
+
+/// Returns the island of a body and the ID of the body in its model; `None` for an obstacle.
+pub(crate) fn locate<'a>(
+    islands: &'a [Option<Island>],
+    places: &Places,
+    owner: Owner,
+) -> Option<(&'a Island, BodyId)> {
+    let Owner::Stack((stack, body)) = owner else { return None };
+    let (island, first) = places[stack];
+    Some((islands[island].as_ref()?, first + body))
+}
+
+/// Returns the gap (m) between two bodies, or a lower bound if it exceeds `enough` (m).
+pub(crate) fn gap(
+    world: &World<'_>,
+    islands: &[Option<Island>],
+    places: &Places,
+    bodies: [Owner; 2],
+    enough: f64,
+) -> f64 {
+    let pose = |owner: Owner| -> Pose<Spatial> {
+        match locate(islands, places, owner) {
+            Some((island, body)) => island.in_room(body),
+            None => world.body(owner).0.pose,
+        }
+    };
+    let [(_, first), (_, second)] = bodies.map(|owner| world.body(owner));
+    let turned = world.crossing.rules[first][second].is_some_and(|rule| rule.turned);
+    let [contactor, target] = if turned { [bodies[1], bodies[0]] } else { bodies };
+    let sorts = &world.crossing.sorts;
+    let ((one, sort), (other, sort_of_other)) = (world.body(contactor), world.body(target));
+    gap_between(
+        (one, pose(contactor), sorts[sort].nodes),
+        (other, pose(target), sorts[sort_of_other].surfaces),
+        enough,
+    )
+}

@@ -1,0 +1,363 @@
+//! The page, the tables and the files of a cellar.
+
+use std::sync::Arc;
+
+use barrelstack::report::WORDS;
+use barrelstack::variants::Range;
+use barrelstack::variants::words::percent;
+use barrelstack_report::{
+    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Pane, Players, RegionKind, Table,
+    Verdict, described,
+};
+use barrelstack_space::drawing::{Shown, Sight, together};
+
+use crate::answer::Answer;
+use crate::plan::liters;
+use crate::sample::CELL;
+use crate::summary::{CellarSummary, Count, ShownStack, counted};
+use crate::words::{sentences, span, spans_of_shares, tone};
+
+/// Returns the plan of a cellar with the fates of the stacks in the run that is shown, and the places where barrels end
+/// in all variants.
+pub fn picture(answer: &Answer) -> FloorPlan {
+    let Answer { prepared, cases, summary, .. } = answer;
+    let kind = |at: usize| match summary.shown.stacks[at].fate {
+        "falls-by-itself" => RegionKind::Falls,
+        "knocked-over" => RegionKind::Knocked,
+        _ => RegionKind::Stands,
+    };
+    let counted = counted(cases);
+    let grid = prepared.map();
+    let share = |cell: usize| {
+        let covered = counted.iter().filter(|case| case.map[cell]).count();
+        covered as f64 / counted.len().max(1) as f64
+    };
+    let heat = Heat {
+        cell: grid.cell,
+        columns: grid.columns,
+        shares: (0..grid.cells().len()).map(share).collect(),
+        label: "barrels".to_owned(),
+    };
+    let heat = Some(heat).filter(|heat| heat.shares.iter().any(|share| *share > 0.0));
+    FloorPlan { heat, ..prepared.plan.drawn(&prepared.cellar, &kind) }
+}
+
+/// Largest number of poses in the animation of a page.
+const MOST_POSES: f64 = 60_000.0;
+
+/// Largest frame rate (1/s) of the animation of a page.
+const RATE: f64 = 20.0;
+
+/// Returns the animation of the run that is shown; `None` without frames, or for a room of so many bodies that a page
+/// could not show them smoothly.
+fn players(answer: &Answer) -> Option<Block> {
+    let Answer { prepared, shown, summary, .. } = answer;
+    let end = shown.end_time;
+    let bodies = shown.bodies.len() as f64;
+    let rate = RATE.min(MOST_POSES / (bodies * end.max(1.0)));
+    if shown.frames.is_empty() || rate < 2.0 {
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded")]
+    let times: Vec<f64> = (0..=(end * rate) as usize).map(|at| at as f64 / rate).collect();
+    let mut all = Vec::new();
+    for (at, (frames, end)) in shown.frames.iter().zip(&shown.stacks).enumerate() {
+        let model = &prepared.plan.models[prepared.plan.stacks[at].model].stack;
+        // A stack at rest has no further frames.
+        let frame = |time: &f64| frames.times.partition_point(|t| *t <= *time).max(1) - 1;
+        let chosen: Vec<usize> = times.iter().map(frame).collect();
+        for (index, body) in end.bodies.clone().enumerate() {
+            all.push(Shown {
+                name: format!("{} {}", end.name, shown.bodies[body].name),
+                part: &model.parts[index + 1],
+                body: &model.model.bodies()[index + 1],
+                path: chosen.iter().map(|frame| frames.poses[*frame][index]).collect(),
+                leaves_at: shown.bodies[body].fate.left_seat.map(|(time, ..)| time),
+            });
+        }
+    }
+    let pane = |sight: Sight, mark: &str, name: &str| Pane {
+        mark: mark.to_owned(),
+        name: name.to_owned(),
+        verdict: String::new(),
+        tone: tone(summary),
+        scene: Arc::new(together(&all, &times, sight)),
+        traces: Vec::new(),
+    };
+    Some(Block::Players(Players {
+        id: "players".into(),
+        caption: "One run, the most typical, in a view that can be turned, or from the front and from above.".into(),
+        panes: vec![pane(Sight::Across, "X", "From the front"), pane(Sight::Above, "Z", "From above")],
+        overlay: None,
+        ground: Vec::new(),
+    }))
+}
+
+/// Returns the report on a cellar as a document that does not depend on the output format.
+pub fn document(answer: &Answer) -> Document {
+    let summary = &answer.summary;
+    let heading = |text: &str| Block::heading(2, text);
+    let caption = format!(
+        "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades (barrels): share \
+         of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
+        if summary.shown.variant == 0 {
+            "the room as stated".to_owned()
+        } else {
+            format!("variant {}, the most typical", summary.shown.variant)
+        }
+    );
+    let mut blocks = vec![
+        heading("Where barrels end"),
+        Block::Figure(Figure::new("plan", caption, picture(answer))),
+    ];
+    blocks.extend(players(answer));
+    if !summary.aisles.is_empty() || !summary.places.is_empty() {
+        blocks.push(heading("Aisles and paths to the doors"));
+    }
+    if !summary.aisles.is_empty() {
+        blocks.push(Block::Table(aisles(summary)));
+    }
+    if !summary.places.is_empty() {
+        blocks.push(Block::Table(places(summary)));
+    }
+    let touched: Vec<&ShownStack> =
+        summary.shown.stacks.iter().filter(|one| one.touched_at.is_some()).collect();
+    if !touched.is_empty() {
+        blocks.push(heading("What strikes what"));
+        blocks.push(Block::Table(contacts(&touched)));
+    }
+    blocks.push(heading("Stack by stack"));
+    blocks.push(Block::Table(stacks(summary)));
+    if summary.plan.rows > 1 {
+        blocks.push(Block::Table(rows(summary)));
+    }
+    if summary.obstacles.iter().any(|one| one.peak.is_some()) {
+        blocks.push(heading("Walls and columns"));
+        blocks.push(Block::Table(obstacles(summary)));
+    }
+    blocks.push(heading("The plan before the shaking"));
+    blocks.push(Block::List(
+        summary
+            .plan
+            .sentences()
+            .into_iter()
+            .chain(summary.plan.findings.iter().map(sentence))
+            .collect(),
+    ));
+    let fell = summary.room.some_fall.of_variants;
+    Document {
+        title: summary.title.clone(),
+        verdict: Verdict {
+            headline: summary.headline.clone(),
+            dots: vec![Dots {
+                direction: String::new(),
+                fell,
+                stood: summary.counted - fell,
+                open: u32::try_from(summary.broken.len()).unwrap_or(u32::MAX),
+            }],
+            sentences: sentences(summary),
+            tone: tone(summary),
+            ..Verdict::default()
+        },
+        blocks,
+        provenance: provenance(answer),
+        words: WORDS.to_vec(),
+        warnings: summary.warnings.clone(),
+    }
+}
+
+/// Returns a finding as a sentence.
+fn sentence(finding: &String) -> String {
+    format!("{}.", barrelstack_report::capital(finding))
+}
+
+fn provenance(answer: &Answer) -> Vec<(String, String)> {
+    let summary = &answer.summary;
+    let mut rows = vec![
+        ("program".to_owned(), format!("{} {}", summary.program, summary.version)),
+        ("cellar".to_owned(), summary.plan.cellar_hash.clone()),
+        ("variants".to_owned(), summary.counted.to_string()),
+    ];
+    rows.extend(summary.provenance.iter().map(|step| ("motion".to_owned(), step.clone())));
+    rows
+}
+
+fn times(range: Option<&Range>) -> Cell {
+    Cell::maybe(range.map(|range| span(range, 1, "s")))
+}
+
+fn count(count: &Count) -> Cell {
+    Cell::text(match count.share {
+        Some(share) => {
+            let [low, high] = count.interval.map(percent);
+            format!("{} ({low} to {high})", percent(share))
+        }
+        None => "–".to_owned(),
+    })
+}
+
+fn aisles(summary: &CellarSummary) -> Table {
+    Table::of(
+        "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which it happens; \
+         shares of variants have their 95 % interval. An aisle is blocked if no path of 0.6 m leads through it.",
+        &summary.aisles,
+        &[
+            ("aisle", "", &|aisle| Cell::text(&aisle.name)),
+            ("a barrel comes in", "", &|aisle| count(&aisle.entered)),
+            ("first barrel", "", &|aisle| times(aisle.first_barrel.as_ref())),
+            ("blocked at the end", "", &|aisle| count(&aisle.blocked)),
+            ("blocked after", "", &|aisle| times(aisle.blocked_at.as_ref())),
+            ("area covered", "", &|aisle| Cell::text(spans_of_shares(&aisle.covered))),
+            ("fastest barrel", "m/s", &|aisle| {
+                Cell::measured(aisle.fastest.map(|fast| fast.most), 1)
+            }),
+        ],
+    )
+}
+
+fn places(summary: &CellarSummary) -> Table {
+    Table::of(
+        "Share of the variants in which a path of 0.6 m leads from a place to a door at the end, with its 95 % interval.",
+        &summary.places,
+        &[
+            ("place", "", &|place| Cell::text(&place.name)),
+            ("a path to a door is left", "", &|place| {
+                place.leads_out.as_ref().map_or(Cell::Missing, count)
+            }),
+        ],
+    )
+}
+
+fn contacts(touched: &[&ShownStack]) -> Table {
+    let time = |at: Option<f64>| Cell::measured(at, 2);
+    let fate = |one: &&&ShownStack| {
+        Cell::text(match one.fate {
+            "stands" => "stands",
+            "knocked-over" => "is knocked over",
+            _ => "falls by itself",
+        })
+    };
+    let body = |one: &&&ShownStack, which: usize| {
+        Cell::maybe(one.bodies.as_ref().map(|bodies| bodies[which].clone()))
+    };
+    Table::of(
+        "First contacts with another stack in the run that is shown. A stack is knocked over if the contact comes before \
+         its first loss of seat.",
+        touched,
+        &[
+            ("stack", "", &|one| Cell::text(&one.name)),
+            ("its body", "", &|one| body(one, 0)),
+            ("struck by stack", "", &|one| Cell::maybe(one.touched_by.clone())),
+            ("with body", "", &|one| body(one, 1)),
+            ("at", "s", &|one| time(one.touched_at)),
+            ("impulse", "N s", &|one| Cell::number(one.impulse, 2)),
+            ("first loss of seat", "s", &|one| time(one.falls_at)),
+            ("outcome", "", &fate),
+        ],
+    )
+}
+
+/// Returns the table of all stacks.
+pub fn stacks(summary: &CellarSummary) -> Table {
+    Table::of(
+        format!(
+            "All stacks, {}. Shares have their 95 % interval; times are counted from the start of the shaking. \
+             Movement is the largest of a body that did not fall, as the median of the variants in which the stack \
+             stands: inspect the largest first.",
+            crate::words::counted(summary.counted, "variant")
+        ),
+        &summary.stacks,
+        &[
+            ("stack", "", &|stack| Cell::text(&stack.name)),
+            ("falls", "", &|stack| count(&stack.falls)),
+            ("by itself", "", &|stack| Cell::maybe(stack.by_itself.share.map(percent))),
+            ("knocked over", "", &|stack| Cell::maybe(stack.knocked_over.share.map(percent))),
+            ("struck first by", "", &|stack| Cell::maybe(stack.touched_by.clone())),
+            ("falls after", "", &|stack| times(stack.falls_at.as_ref())),
+            ("barrels fallen", "", &|stack| Cell::Measured(stack.barrels_fallen, 1)),
+            ("wine lost", "", &|stack| Cell::text(liters(stack.wine_lost))),
+            ("movement", "cm", &|stack| {
+                Cell::measured(stack.moved.map(|moved| 100.0 * moved.p50), 1)
+            }),
+        ],
+    )
+}
+
+fn rows(summary: &CellarSummary) -> Table {
+    Table::of(
+        "Rows: the share of variants in which the first stack that falls is in the row, and the mean number of stacks.",
+        &summary.rows,
+        &[
+            ("row", "", &|row| Cell::text(row.row.to_string())),
+            ("stacks", "", &|row| Cell::text(row.stacks.to_string())),
+            ("starts it", "", &|row| count(&row.starts)),
+            ("fall by themselves", "", &|row| Cell::Measured(row.by_themselves, 1)),
+            ("knocked over", "", &|row| Cell::Measured(row.knocked_over, 1)),
+        ],
+    )
+}
+
+fn obstacles(summary: &CellarSummary) -> Table {
+    let most =
+        |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.most), 2);
+    let median =
+        |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.p50), 2);
+    Table::of(
+        "Forces on walls and columns, in the variants in which a body strikes them: for design, the largest force of all \
+         variants.",
+        &summary.obstacles,
+        &[
+            ("wall or column", "", &|one| Cell::text(&one.name)),
+            ("struck", "", &|one| count(&one.struck)),
+            ("largest force", "kN", &|one| most(one.peak, 1e-3)),
+            ("median", "kN", &|one| median(one.peak, 1e-3)),
+            ("largest impulse", "N s", &|one| most(one.impulse, 1.0)),
+        ],
+    )
+}
+
+impl Answer {
+    /// Returns the output files by name.
+    ///
+    /// # Errors
+    /// If the summary cannot be written as JSON.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
+        let document = document(self);
+        let page = barrelstack_report::html(&document);
+        let plan = Figure::new("plan", "The room from above.", picture(self));
+        Ok(vec![
+            ("report.html".to_owned(), page.into_bytes()),
+            ("cellar.json".to_owned(), (described::to_json(&self.summary)? + "\n").into_bytes()),
+            ("stacks.csv".to_owned(), stacks_csv(&self.summary).to_csv().into_bytes()),
+            ("plan.svg".to_owned(), plan.to_svg().into_bytes()),
+            ("cellar.toml".to_owned(), self.prepared.cellar.to_resolved_toml().into_bytes()),
+        ])
+    }
+}
+
+/// Returns the table of all stacks with one number in each cell, for programs.
+fn stacks_csv(summary: &CellarSummary) -> Table {
+    let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::Number(value, 6));
+    let low_high = |count: &Count, which: usize| Cell::Number(count.interval[which], 6);
+    Table::of(
+        "",
+        &summary.stacks,
+        &[
+            ("stack", "", &|one| Cell::text(&one.name)),
+            ("row", "", &|one| Cell::Number(f64::from(one.row), 6)),
+            ("x", "m", &|one| Cell::Number(one.at[0], 6)),
+            ("y", "m", &|one| Cell::Number(one.at[1], 6)),
+            ("falls", "variants", &|one| Cell::Number(f64::from(one.falls.of_variants), 6)),
+            ("share that falls", "1", &|one| number(one.falls.share)),
+            ("interval low", "1", &|one| low_high(&one.falls, 0)),
+            ("interval high", "1", &|one| low_high(&one.falls, 1)),
+            ("share by itself", "1", &|one| number(one.by_itself.share)),
+            ("share knocked over", "1", &|one| number(one.knocked_over.share)),
+            ("median time of fall", "s", &|one| number(one.falls_at.map(|range| range.p50))),
+            ("struck first by", "", &|one| Cell::maybe(one.touched_by.clone())),
+            ("barrels fallen", "1", &|one| Cell::Number(one.barrels_fallen, 6)),
+            ("wine lost", "m3", &|one| Cell::Number(one.wine_lost, 6)),
+            ("median movement", "m", &|one| number(one.moved.map(|range| range.p50))),
+        ],
+    )
+}

@@ -1,0 +1,151 @@
+//! Result of a room: fates of bodies and stacks, meetings, and forces on obstacles.
+
+use barrelstack::assemble::PartKind;
+use barrelstack::outcome::Outcome;
+use barrelstack::run::Work;
+use barrelstack::watch::Ending;
+use barrelstack_dynamics::EnergySummary;
+use barrelstack_space::Fate;
+
+/// Index of a stack in [`Room::stacks`](crate::Room::stacks).
+pub type StackRef = usize;
+
+/// A body at the end of a run.
+#[derive(Clone, Debug)]
+pub struct BodyEnd {
+    /// Index of its stack.
+    pub stack: StackRef,
+    /// Name within its stack, such as `B2.1`.
+    pub name: String,
+    /// Kind of the body.
+    pub kind: PartKind,
+    /// Level, 1 at the bottom.
+    pub level: u32,
+    /// Volume (m³) of the wine in a barrel.
+    pub wine: f64,
+    /// Fate, along the axes of its stack.
+    pub fate: Fate,
+    /// Pose at rest before the shaking, in the room: position (m) and quaternion `w`, `x`, `y`, `z`.
+    pub from: [f64; 7],
+    /// Pose at the end, in the room.
+    pub to: [f64; 7],
+    /// Pose at the end in the frame of its stack, from which another run may start.
+    pub own: [f64; 7],
+}
+
+/// Another party of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Toucher {
+    /// A body, by its index in [`RoomRun::bodies`].
+    Body(usize),
+    /// An obstacle, by its index in [`Room::obstacles`](crate::Room::obstacles).
+    Obstacle(usize),
+}
+
+/// The first contact of a stack with a body of another stack.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Time (s).
+    pub time: f64,
+    /// The body of the stack, by its index in [`RoomRun::bodies`].
+    pub body: usize,
+    /// The body of another stack.
+    pub by: usize,
+    /// Impulse (N·s), the sum of magnitudes, of all bodies of other stacks on the stack until its first loss of seat,
+    /// or over the whole run if it keeps its seats.
+    pub impulse: f64,
+}
+
+/// A stack at the end of a run.
+#[derive(Clone, Debug)]
+pub struct StackEnd {
+    /// Name of the stack.
+    pub name: String,
+    /// Outcome, as for a stack alone.
+    pub outcome: Outcome,
+    /// Time (s) of the first loss of seat, and the body by its index in [`RoomRun::bodies`].
+    pub lost_seat: Option<(f64, usize)>,
+    /// Time (s) at which the first barrel counted as fallen.
+    pub first_fall: Option<f64>,
+    /// First contact with a body of another stack.
+    pub touched: Option<Touch>,
+    /// Time (s) of the first contact with an obstacle, and the obstacle.
+    pub touched_obstacle: Option<(f64, usize)>,
+    /// `true` if a body of another stack touched the stack before it lost its first seat.
+    pub knocked_over: bool,
+    /// Indices of its bodies in [`RoomRun::bodies`].
+    pub bodies: std::ops::Range<usize>,
+    /// Reason for its end.
+    pub ending: Ending,
+    /// Time (s) of its end: when its bodies came to rest, or the end of the run.
+    pub end_time: f64,
+}
+
+/// A meeting of two stacks: their bodies have touched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meeting {
+    /// The two stacks, the lower index first.
+    pub stacks: [StackRef; 2],
+    /// Time (s) of the first contact.
+    pub time: f64,
+    /// The bodies of the first contact, in the order of the stacks, by their indices in [`RoomRun::bodies`].
+    pub bodies: [usize; 2],
+    /// Impulse (N·s), the sum of magnitudes, over the whole run.
+    pub impulse: f64,
+    /// Largest force (N) between the two stacks.
+    pub peak: f64,
+}
+
+/// Forces on an obstacle.
+#[derive(Clone, Debug, Default)]
+pub struct ObstacleEnd {
+    /// Name of the obstacle.
+    pub name: String,
+    /// Time (s) of the first contact, and the body by its index in [`RoomRun::bodies`].
+    pub first: Option<(f64, usize)>,
+    /// Largest total force (N).
+    pub peak: f64,
+    /// Impulse (N·s) along the axes of the room.
+    pub impulse: [f64; 3],
+    /// Times (s) and total forces (N) along the axes of the room, at every accepted step with a contact, and at the
+    /// step before and after it, at which the force is zero.
+    pub history: Vec<(f64, [f64; 3])>,
+}
+
+/// Frames of one stack, without the ground.
+#[derive(Clone, Debug, Default)]
+pub struct RoomFrames {
+    /// Times (s). A stack at rest has no further frames: its bodies stay where they are.
+    pub times: Vec<f64>,
+    /// For every frame and body of the stack, position (m) and quaternion in the room, relative to the ground.
+    pub poses: Vec<Vec<[f64; 7]>>,
+    /// For every frame and body of the stack, speed (m/s) relative to the ground.
+    pub speeds: Vec<Vec<f64>>,
+}
+
+/// Result of a room.
+#[derive(Clone, Debug)]
+pub struct RoomRun {
+    /// All bodies except the ground, stack by stack.
+    pub bodies: Vec<BodyEnd>,
+    /// The stacks, in the order of the room.
+    pub stacks: Vec<StackEnd>,
+    /// All stacks that have touched each other, in the order of the first contacts.
+    pub meetings: Vec<Meeting>,
+    /// The obstacles, in the order of the room.
+    pub obstacles: Vec<ObstacleEnd>,
+    /// Frames of every stack; empty unless requested.
+    pub frames: Vec<RoomFrames>,
+    /// Energy balance of all islands; `None` if numbers are no longer finite.
+    pub energy: Option<EnergySummary>,
+    /// Sums of steps and evaluations over all islands.
+    pub work: Work,
+    /// Number of times that islands were merged.
+    pub merges: usize,
+    /// Time (s) at which the last stack ended.
+    pub end_time: f64,
+    /// `true` if the observer stopped the run.
+    pub interrupted: bool,
+    /// Warnings, one sentence each.
+    pub warnings: Vec<String>,
+}

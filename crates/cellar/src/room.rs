@@ -1,0 +1,141 @@
+//! A room: stacks in their places, and obstacles.
+
+use barrelstack::{RunFailure, Scenario};
+use barrelstack_dynamics::{Interface, ModelError, Spatial};
+use barrelstack_space::Ground;
+
+/// A stack in its place in a room.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// Name of the stack; unique in its room.
+    pub name: String,
+    /// Scenario of the stack in space, with all draws already applied. Its motion and the azimuth of its stack are
+    /// ignored.
+    pub scenario: Scenario,
+    /// Position (m) of the middle of the footprint in the room.
+    pub at: [f64; 2],
+    /// Angle (rad), counterclockwise from the `x` axis of the room to the `x` axis of the stack.
+    pub azimuth: f64,
+    /// Poses from which the stack starts, by the order of its bodies, without the ground: position of the center of
+    /// mass (m), and quaternion `w`, `x`, `y`, `z`, in the frame of the stack, relative to the ground; such as
+    /// [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest; losses of seats still count from the places as
+    /// built, so a seat that was lost before is lost at time zero. `None` to start as built.
+    pub start: Option<Vec<[f64; 7]>>,
+}
+
+impl Placed {
+    /// Creates a stack whose axes are those of the room, at a position (m).
+    pub fn new(name: &str, scenario: Scenario, at: [f64; 2]) -> Self {
+        Self { name: name.to_owned(), scenario, at, azimuth: 0.0, start: None }
+    }
+}
+
+/// A block that is fixed to the ground, such as a wall or a column.
+#[derive(Clone, Debug)]
+pub struct Obstacle {
+    /// Name of the obstacle; unique in its room.
+    pub name: String,
+    /// Middle (m) of the block.
+    pub center: [f64; 3],
+    /// Half the sides (m) of the block.
+    pub half: [f64; 3],
+    /// Angle (rad) by which the block is turned counterclockwise about the vertical.
+    pub azimuth: f64,
+    /// Contact laws between the block and every body.
+    pub interface: Interface<Spatial>,
+}
+
+/// Stacks and obstacles on one ground.
+#[derive(Clone, Debug)]
+pub struct Room {
+    /// The stacks. Their order does not affect any result but its order.
+    pub stacks: Vec<Placed>,
+    /// Walls and columns.
+    pub obstacles: Vec<Obstacle>,
+    /// Ground motion along the axes of the room.
+    pub ground: Ground,
+}
+
+/// Settings of a run, none of which affects its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Number of threads; zero for all cores.
+    pub threads: usize,
+    /// `true` to record frames, at the frame rate of the first scenario.
+    pub frames: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { threads: 0, frames: false }
+    }
+}
+
+/// Error of a room.
+#[derive(Debug, thiserror::Error)]
+pub enum RoomFailure {
+    /// There is no stack.
+    #[error("the room has no stack: place at least one")]
+    Empty,
+    /// Two stacks or obstacles have the same name.
+    #[error("two stacks or obstacles are named \"{name}\": give each its own name")]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// A stack cannot be built, or does not stand.
+    #[error("stack \"{name}\": {failure}")]
+    Stack {
+        /// Name of the stack.
+        name: String,
+        /// The error.
+        failure: RunFailure,
+    },
+    /// A stack starts from poses of other bodies.
+    #[error(
+        "stack \"{name}\" starts from {found} poses, but has {expected} bodies: state one pose for each body"
+    )]
+    Start {
+        /// Name of the stack.
+        name: String,
+        /// Number of poses.
+        found: usize,
+        /// Number of bodies.
+        expected: usize,
+    },
+    /// A pose from which a stack starts is invalid.
+    #[error(
+        "stack \"{name}\": the pose of body {body} is not finite, or its quaternion is not of length one: state position \
+         (m) and unit quaternion"
+    )]
+    Pose {
+        /// Name of the stack.
+        name: String,
+        /// Number of the body, counted from 1.
+        body: usize,
+    },
+    /// Bodies of two stacks, or a body and an obstacle, overlap from the start.
+    #[error(
+        "\"{first}\" and \"{second}\" overlap by {:.1} mm before the ground moves: move them apart",
+        1e3 * depth
+    )]
+    Overlap {
+        /// The body that comes first, with its stack.
+        first: String,
+        /// The other body or the obstacle.
+        second: String,
+        /// Depth (m) of the overlap.
+        depth: f64,
+    },
+    /// An obstacle is not a block.
+    #[error("obstacle \"{name}\" has a side of {side} m: give it three positive sides")]
+    Side {
+        /// Name of the obstacle.
+        name: String,
+        /// The side (m).
+        side: f64,
+    },
+    /// The bodies of stacks cannot be combined.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}

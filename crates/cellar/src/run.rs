@@ -1,0 +1,527 @@
+//! Run of a room: windows of time, in which islands advance in parallel, and merges between them.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use barrelstack::outcome::Outcome;
+use barrelstack::overlap::ALLOWED;
+use barrelstack::pool;
+use barrelstack::run::{Ended, Verdict, Work};
+use barrelstack::watch::Ending;
+use barrelstack_dynamics::space::Linear as _;
+use barrelstack_dynamics::{BodyId, EnergySummary, Vec3};
+use barrelstack_space::run::judge;
+
+use crate::island::{Contact, Island, Owner, Side, numbers, plus};
+use crate::nearby::{Nearby, Places, gap, locate};
+use crate::result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, Touch};
+use crate::room::{Room, RoomFailure, Settings};
+use crate::world::World;
+
+/// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
+const WINDOW: f64 = 2e-3;
+
+/// Time (s) for which an island goes on at least, while a barrel of it rolls toward another stack.
+const ROLLS: f64 = 0.25;
+
+/// Time between two calls of the observer.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Progress of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Advance {
+    /// Simulated time (s) that all stacks have reached or at which they rest.
+    pub time: f64,
+    /// Simulated time (s) at which the run ends at the latest.
+    pub end_time: f64,
+    /// Number of stacks that move.
+    pub moving: usize,
+    /// Stacks that have come to rest since the last call, by their indices. A stack that is hit later moves again.
+    pub rested: Vec<usize>,
+}
+
+/// Runs a room to rest.
+///
+/// The observer receives the progress at least every second, and may stop the run; the results until then are returned.
+///
+/// # Errors
+/// If a stack cannot be built or does not stand, or stacks or obstacles overlap.
+pub fn run(
+    room: &Room,
+    settings: &Settings,
+    observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
+) -> Result<RoomRun, RoomFailure> {
+    let world = World::of(room, settings.threads)?;
+    let rate = room.stacks[0].scenario.record.frame_rate;
+    let every = settings.frames.then_some(1.0 / rate);
+    let alone = |stack| Some(Island::alone(&world, stack, every));
+    let islands: Vec<Option<Island>> = (0..world.stacks.len()).map(alone).collect();
+    let places = (0..islands.len()).map(|stack| (stack, 0)).collect();
+    let nearby = Nearby::new(&world);
+    let mut run = Running { world: &world, islands, places, nearby, merges: 0 };
+    run.check_overlaps()?;
+    let interrupted = run.to_rest(settings.threads, observer)?;
+    Ok(run.result(interrupted))
+}
+
+struct Running<'a> {
+    world: &'a World<'a>,
+    /// The islands, each at the index of one of its stacks.
+    islands: Vec<Option<Island>>,
+    places: Places,
+    nearby: Nearby,
+    merges: usize,
+}
+
+impl Running<'_> {
+    /// Rejects a room whose bodies overlap.
+    fn check_overlaps(&mut self) -> Result<(), RoomFailure> {
+        let Self { world, islands, places, nearby, .. } = self;
+        nearby.refresh(world, islands);
+        let meetings = nearby.meetings(world, islands, places, WINDOW);
+        let depth = |bodies: &[Owner; 2]| -gap(world, islands, places, *bodies, ALLOWED);
+        let deepest = meetings.iter().map(|bodies| (depth(bodies), bodies));
+        match deepest.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((depth, bodies)) if depth > ALLOWED => {
+                let [first, second] = bodies.map(|owner| world.name(owner));
+                Err(RoomFailure::Overlap { first, second, depth })
+            }
+            Some(_) | None => Ok(()),
+        }
+    }
+
+    /// Advances all islands until they rest; returns `true` if the observer stopped the run.
+    fn to_rest(
+        &mut self,
+        threads: usize,
+        observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
+    ) -> Result<bool, RoomFailure> {
+        let mut asked: Option<Instant> = None;
+        let mut told = vec![false; self.world.stacks.len()];
+        let mut windows = 0_u32;
+        loop {
+            self.keep_rolling();
+            let awake = || self.islands.iter().flatten().filter(|island| island.is_awake());
+            let done = awake().next().is_none();
+            if done || asked.is_none_or(|at| at.elapsed() >= PATIENCE) {
+                asked = Some(Instant::now());
+                let end_time = self.world.end_time;
+                let mut now = Advance {
+                    time: awake().map(Island::time).fold(end_time, f64::min),
+                    end_time,
+                    moving: awake().map(|island| island.fixed.members.len()).sum(),
+                    rested: Vec::new(),
+                };
+                for island in self.islands.iter().flatten() {
+                    for member in &island.fixed.members {
+                        let rests = !island.is_awake();
+                        if rests && !std::mem::replace(&mut told[member.stack], rests) {
+                            now.rested.push(member.stack);
+                        }
+                    }
+                }
+                if observer(&now).is_break() {
+                    return Ok(true);
+                }
+            }
+            if done {
+                return Ok(false);
+            }
+            windows += 1;
+            self.window(f64::from(windows) * WINDOW, threads)?;
+        }
+    }
+
+    /// Advances all islands to a time (s).
+    fn window(&mut self, until: f64, threads: usize) -> Result<(), RoomFailure> {
+        let world = self.world;
+        self.nearby.refresh(world, &self.islands);
+        let meetings = self.nearby.meetings(world, &self.islands, &self.places, WINDOW);
+        if !meetings.is_empty() {
+            self.merge_all(&meetings)?;
+        }
+        for number in 0..self.islands.len() {
+            self.open(number);
+        }
+        let mut tasks: Vec<Mutex<&mut Island>> = self
+            .islands
+            .iter_mut()
+            .flatten()
+            .filter(|island| island.is_awake())
+            .map(Mutex::new)
+            .collect();
+        // The largest first, since threads take them in order.
+        tasks.sort_by_key(|task| {
+            task.lock().map_or(0, |island| usize::MAX - island.fixed.owners.len())
+        });
+        let advance = |task: &Mutex<&mut Island>| {
+            if let Ok(mut island) = task.lock() {
+                island.advance(world, until);
+            }
+        };
+        pool::map_on(threads, &tasks, advance, &|_| ());
+        drop(tasks);
+        self.repair(until)?;
+        for island in self.islands.iter_mut().flatten() {
+            self.nearby.add(world, island);
+        }
+        Ok(())
+    }
+
+    /// Starts the window of an island.
+    fn open(&mut self, number: usize) {
+        let (tubes, near) = self.nearby.limit(self.world, &self.islands, &self.places, number);
+        if let Some(island) = &mut self.islands[number] {
+            island.tubes = tubes;
+            let keeps = near && island.is_awake();
+            island.open(keeps);
+        }
+    }
+
+    /// Merges islands whose bodies would have left their tubes with those that are in their way, in the order of time.
+    fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
+        let world = self.world;
+        loop {
+            let stopped = self.islands.iter().enumerate().filter_map(|(number, island)| {
+                let island = island.as_ref()?;
+                let rank = world.stacks[island.fixed.members[0].stack].rank;
+                Some((island.time(), rank, number, island.live.stopped_by?))
+            });
+            let first = stopped.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let Some((time, _, number, body)) = first else { return Ok(()) };
+            let Some(island) = &self.islands[number] else { return Ok(()) };
+            let Some(other) = self.nearby.in_the_way(world, &self.places, island, body) else {
+                if let Some(island) = &mut self.islands[number] {
+                    island.live.stopped_by = None;
+                    island.live.ending = Some(Ending::Broken);
+                }
+                continue;
+            };
+            let own = island.fixed.owners[body];
+            let partner = owner_island(&self.places, other);
+            if let Some(partner) = partner.and_then(|at| self.islands[at].as_mut()) {
+                partner.go_back();
+                partner.advance_to(world, time);
+            }
+            let merged = self.merge_all(&[[own, other]])?;
+            for number in merged {
+                self.open(number);
+                if let Some(island) = &mut self.islands[number] {
+                    island.advance(world, until);
+                }
+            }
+        }
+    }
+
+    /// Merges the islands and obstacles of all meetings; returns the merged islands.
+    fn merge_all(&mut self, meetings: &[[Owner; 2]]) -> Result<Vec<usize>, RoomFailure> {
+        // Every island points to an island of its group, the first of the group to itself.
+        let mut group: Vec<usize> = (0..self.islands.len()).collect();
+        fn root(group: &[usize], mut at: usize) -> usize {
+            while group[at] != at {
+                at = group[at];
+            }
+            at
+        }
+        let mut obstacles: Vec<(usize, usize)> = Vec::new();
+        for [one, other] in meetings {
+            let Some(first) = owner_island(&self.places, *one) else { continue };
+            match (*other, owner_island(&self.places, *other)) {
+                (_, Some(second)) => {
+                    let (a, b) = (root(&group, first), root(&group, second));
+                    group[a.max(b)] = a.min(b);
+                }
+                (Owner::Obstacle(obstacle), None) => obstacles.push((first, obstacle)),
+                (Owner::Stack(_), None) => {}
+            }
+        }
+        let mut merged = Vec::new();
+        for first in 0..self.islands.len() {
+            if group[first] != first || self.islands[first].is_none() {
+                continue;
+            }
+            let of_group = |at: usize| root(&group, at) == first;
+            let numbers: Vec<usize> = (first..group.len())
+                .filter(|at| of_group(*at) && self.islands[*at].is_some())
+                .collect();
+            let own: Vec<usize> =
+                obstacles.iter().filter(|(at, _)| of_group(*at)).map(|(_, of)| *of).collect();
+            if numbers.len() == 1 && own.is_empty() {
+                continue;
+            }
+            let mut islands: Vec<Island> =
+                numbers.iter().filter_map(|at| self.islands[*at].take()).collect();
+            let time = islands.iter().map(Island::time).fold(0.0, f64::max);
+            for island in &mut islands {
+                island.advance_to(self.world, time);
+                self.nearby.add(self.world, island);
+            }
+            let island = Island::merged(self.world, islands, &own)?;
+            for member in &island.fixed.members {
+                self.places[member.stack] = (first, member.bodies.start);
+            }
+            self.islands[first] = Some(island);
+            self.merges += 1;
+            merged.push(first);
+        }
+        Ok(merged)
+    }
+
+    /// Lets islands go on that rest but for a barrel that rolls toward another stack or an obstacle.
+    fn keep_rolling(&mut self) {
+        let mut goes_on = Vec::new();
+        for (number, island) in self.islands.iter().enumerate() {
+            let Some(island) = island else { continue };
+            if island.live.ending != Some(Ending::Rest) {
+                continue;
+            }
+            if island.rolling().into_iter().any(|body| self.will_meet(island, body)) {
+                goes_on.push(number);
+            }
+        }
+        for number in goes_on {
+            if let Some(island) = &mut self.islands[number] {
+                island.live.ending = None;
+                island.live.not_before = island.time() + ROLLS;
+            }
+        }
+    }
+
+    /// Returns `true` if a body on its course comes near a body of another stack or an obstacle.
+    fn will_meet(&self, island: &Island, body: BodyId) -> bool {
+        let world = self.world;
+        let Owner::Stack((own, of)) = island.fixed.owners[body] else { return false };
+        let level = |v: Vec3| Vec3::new(v.x, v.y, 0.0);
+        let (place, velocity) = (island.in_room(body).position, level(island.velocity(body)));
+        let reach = world.stacks[own].reach[of];
+        let ahead = |other: Vec3, radius: f64| {
+            let apart = level(other - place);
+            let along = apart.dot(velocity);
+            let aside = apart.cross(velocity).length();
+            along > 0.0 && aside < (reach + radius) * velocity.length()
+        };
+        let stacks = (0..world.stacks.len()).filter(|stack| *stack != own);
+        let meets_stack = stacks.clone().any(|stack| {
+            (1..world.stacks[stack].stack.parts.len()).any(|body| {
+                let other = Owner::Stack((stack, body));
+                locate(&self.islands, &self.places, other).is_some_and(|(island, at)| {
+                    ahead(island.in_room(at).position, world.stacks[stack].reach[body])
+                })
+            })
+        });
+        meets_stack
+            || world.room.obstacles.iter().any(|obstacle| {
+                let [x, y, _] = obstacle.center;
+                let [a, b, _] = obstacle.half;
+                ahead(Vec3::new(x, y, 0.0), Vec3::new(a, b, 0.0).length())
+            })
+    }
+
+    fn result(self, interrupted: bool) -> RoomRun {
+        let Self { world, islands, places, merges, .. } = self;
+        let mut run = RoomRun {
+            bodies: Vec::new(),
+            stacks: Vec::new(),
+            meetings: Vec::new(),
+            obstacles: Vec::new(),
+            frames: Vec::new(),
+            energy: None,
+            work: Work::default(),
+            merges,
+            end_time: 0.0,
+            interrupted,
+            warnings: world.room.ground.warnings.clone(),
+        };
+        let body_of = |owner: Owner| match owner {
+            // Bodies of results are without the grounds of the stacks before.
+            Owner::Stack((stack, body)) => world.stacks[stack].first + body - stack - 1,
+            Owner::Obstacle(obstacle) => obstacle,
+        };
+        let mut energy = Some(EnergySummary::default());
+        for island in islands.iter().flatten() {
+            let own = island.live.failure.is_none().then(|| island.energy());
+            energy = energy.zip(own).map(|(all, own)| plus(all, &own));
+            let work = island.work();
+            run.work.steps += work.steps;
+            run.work.evaluations += work.evaluations;
+            run.work.contact_evaluations += work.contact_evaluations;
+            for ([_, side], contact) in &island.live.contacts {
+                if let Side::Stack(_) = side {
+                    run.meetings.push(meeting(contact, &body_of));
+                }
+            }
+        }
+        run.energy = energy;
+        run.meetings.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.stacks.cmp(&b.stacks)));
+        for (number, of) in world.stacks.iter().enumerate() {
+            let Some(island) = &islands[places[number].0] else { continue };
+            let Some(at) = island.fixed.members.iter().position(|of| of.stack == number) else {
+                continue;
+            };
+            let (member, watch) = (&island.fixed.members[at], &island.live.watches[at]);
+            let time = island.time();
+            let ending = match island.live.ending {
+                Some(Ending::Patience) => Ending::of_time(of.scenario),
+                Some(ending) => ending,
+                None => Ending::Interrupted,
+            };
+            let ended = match &island.live.failure {
+                Some(error) => Err(error.clone()),
+                None => Ok(Ended { energy: island.energy(), steps: island.work().steps }),
+            };
+            let judge = || judge(&of.stack, &watch.fates);
+            let end = world.room.ground.end();
+            let Verdict { outcome, warnings, ending, .. } =
+                Verdict::of(ended, judge, time, end, ending);
+            let outcome = if ending == Ending::Broken && island.live.failure.is_none() {
+                Outcome::Invalid { reason: "a body moves faster than 45 m/s".to_owned() }
+            } else {
+                outcome
+            };
+            for warning in warnings {
+                let warning = format!("{}: {warning}", of.name);
+                if !run.warnings.contains(&warning) {
+                    run.warnings.push(warning);
+                }
+            }
+            let first = run.bodies.len();
+            let placed = member.frame;
+            let mut own_state = island.live.running.state.clone();
+            own_state.poses = own_state.poses[member.bodies.clone()]
+                .iter()
+                .map(|pose| placed.back().pose(*pose))
+                .collect();
+            let ground = own_state.poses[0].position;
+            let fates = watch.fates.clone().at_end(&own_state);
+            for (body, part) in of.stack.parts.iter().enumerate().skip(1) {
+                let mut own = own_state.poses[body];
+                own.position = own.position - ground;
+                let mut from = of.at_rest.poses[body];
+                from.position = from.position - of.at_rest.poses[0].position;
+                run.bodies.push(BodyEnd {
+                    stack: number,
+                    name: part.name.clone(),
+                    kind: part.kind,
+                    level: part.level,
+                    wine: part.wine,
+                    fate: fates[body],
+                    from: numbers(of.frame.pose(from)),
+                    to: numbers(of.frame.pose(own)),
+                    own: numbers(own),
+                });
+            }
+            let lost_seat = watch.fates.collapse().map(|(time, body)| (time, first + body - 1));
+            let touched = watch.touched.map(|(time, own, by)| Touch {
+                time,
+                body: first + own - 1,
+                by: body_of(Owner::Stack(by)),
+                impulse: watch.impulse,
+            });
+            run.stacks.push(StackEnd {
+                name: of.name.to_owned(),
+                outcome,
+                lost_seat,
+                first_fall: watch.fates.first_fall(),
+                touched,
+                touched_obstacle: watch.touched_obstacle,
+                knocked_over: lost_seat
+                    .zip(touched)
+                    .is_some_and(|((lost, _), touch)| touch.time <= lost),
+                bodies: first..run.bodies.len(),
+                ending,
+                end_time: time,
+            });
+            run.end_time = run.end_time.max(time);
+        }
+        for (number, obstacle) in world.room.obstacles.iter().enumerate() {
+            run.obstacles.push(obstacle_end(&islands, number, &obstacle.name, &body_of));
+        }
+        let mut frames = vec![RoomFrames::default(); world.stacks.len()];
+        for island in islands.into_iter().flatten() {
+            for (member, own) in island.fixed.members.iter().zip(island.logs.frames) {
+                frames[member.stack] = own;
+            }
+        }
+        if frames.iter().any(|own| !own.times.is_empty()) {
+            run.frames = frames;
+        }
+        run
+    }
+}
+
+fn meeting(contact: &Contact, body_of: &dyn Fn(Owner) -> usize) -> Meeting {
+    let stack = |owner: Owner| match owner {
+        Owner::Stack((stack, _)) => stack,
+        Owner::Obstacle(obstacle) => obstacle,
+    };
+    Meeting {
+        stacks: contact.bodies.map(stack),
+        time: contact.time,
+        bodies: contact.bodies.map(body_of),
+        impulse: contact.impulse,
+        peak: contact.peak,
+    }
+}
+
+/// Returns the forces on an obstacle from all islands.
+fn obstacle_end(
+    islands: &[Option<Island>],
+    number: usize,
+    name: &str,
+    body_of: &dyn Fn(Owner) -> usize,
+) -> ObstacleEnd {
+    let mut end = ObstacleEnd { name: name.to_owned(), ..ObstacleEnd::default() };
+    for island in islands.iter().flatten() {
+        let Some(at) = island.fixed.obstacles.iter().position(|of| *of == number) else { continue };
+        end.history = summed(&end.history, &island.logs.forces[at]);
+        for ([_, side], contact) in &island.live.contacts {
+            let first = end.first.is_none_or(|(time, _)| contact.time < time);
+            if *side == Side::Obstacle(number) && first {
+                end.first = Some((contact.time, body_of(contact.bodies[0])));
+            }
+        }
+    }
+    for two in end.history.windows(2) {
+        let [(before, old), (after, new)] = [two[0], two[1]];
+        for axis in 0..3 {
+            end.impulse[axis] += 0.5 * (after - before) * (old[axis] + new[axis]);
+        }
+    }
+    let size = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z).length();
+    end.peak = end.history.iter().map(|(_, force)| size(*force)).fold(0.0, f64::max);
+    end
+}
+
+/// Returns the sum of two histories of a force, each of which is zero outside of its samples and linear between them.
+pub(crate) fn summed(one: &[(f64, [f64; 3])], other: &[(f64, [f64; 3])]) -> Vec<(f64, [f64; 3])> {
+    if one.is_empty() || other.is_empty() {
+        return if one.is_empty() { other.to_vec() } else { one.to_vec() };
+    }
+    let at = |all: &[(f64, [f64; 3])], time: f64| -> [f64; 3] {
+        let next = all.partition_point(|(at, _)| *at < time);
+        match (next.checked_sub(1).map(|before| all[before]), all.get(next)) {
+            (_, Some((at, force))) if *at == time => *force,
+            (Some((from, old)), Some((to, new))) => {
+                let share = (time - from) / (to - from);
+                std::array::from_fn(|axis| old[axis] + share * (new[axis] - old[axis]))
+            }
+            (_, _) => [0.0; 3],
+        }
+    };
+    let mut times: Vec<f64> = one.iter().chain(other).map(|(time, _)| *time).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let sum = |time: f64| {
+        let (a, b) = (at(one, time), at(other, time));
+        (time, std::array::from_fn(|axis| a[axis] + b[axis]))
+    };
+    times.into_iter().map(sum).collect()
+}
+
+fn owner_island(places: &Places, owner: Owner) -> Option<usize> {
+    match owner {
+        Owner::Stack((stack, _)) => Some(places[stack].0),
+        Owner::Obstacle(_) => None,
+    }
+}

@@ -1,0 +1,500 @@
+//! Variants of a room: every stack draws its own imperfections, and all share the motion and the unknown constants.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use barrelstack::assemble::{PartKind, law_in_space};
+use barrelstack::ground::GroundError;
+use barrelstack::outcome::Outcome;
+use barrelstack::scenario::{Friction, Interface, NormalLaw, Scene};
+use barrelstack::variants::planes;
+use barrelstack::{RunFailure, Scenario, pool};
+use barrelstack_campaign::decision::Breakage;
+use barrelstack_dynamics::{Drive, Spatial};
+use barrelstack_input::fnv1a;
+use barrelstack_space::Ground;
+
+use crate::geometry::{Convex, Grid};
+use crate::plan::{Obstacles, Plan, moved, seen_from_above};
+use crate::result::{RoomRun, StackEnd};
+use crate::room::{Obstacle, Placed, Room, RoomFailure, Settings};
+use crate::run::{Advance, run};
+use crate::scenario::{Cellar, Standing};
+
+/// Error of a cellar that is to be run.
+#[derive(Debug, thiserror::Error)]
+pub enum CellarFailure {
+    /// The plan is wrong.
+    #[error(transparent)]
+    Plan(#[from] barrelstack::scenario::ScenarioError),
+    /// A stack cannot be built, does not stand, or would run too long.
+    #[error(transparent)]
+    Stack(#[from] RunFailure),
+    /// The room cannot be run.
+    #[error(transparent)]
+    Room(#[from] RoomFailure),
+}
+
+impl From<GroundError> for CellarFailure {
+    fn from(error: GroundError) -> Self {
+        Self::Stack(error.into())
+    }
+}
+
+/// A cellar that is ready to run.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The cellar, with its records in memory.
+    pub cellar: Cellar,
+    /// Its plan.
+    pub plan: Plan,
+    /// The ground motion along the axes of the room.
+    pub ground: Ground,
+    /// Time (s) at which the shaking starts: the first at which the horizontal acceleration exceeds 0.02 g.
+    pub onset: f64,
+    obstacles: Vec<Obstacle>,
+}
+
+/// Horizontal acceleration (m/s²) at which the shaking starts.
+const ONSET: f64 = 0.02 * barrelstack::motion::STANDARD_GRAVITY;
+
+/// Time (s) between two samples of the ground.
+const SAMPLE: f64 = 0.005;
+
+/// Thickness (m) of walls.
+const WALL: f64 = 0.3;
+
+/// Side (m) of a cell of the map of fallen barrels.
+pub const CELL: f64 = 0.25;
+
+impl Prepared {
+    /// Lays out a cellar and reads its motion.
+    ///
+    /// # Errors
+    /// If the plan is wrong, a stack cannot be built, or the motion cannot be read.
+    pub fn new(cellar: &Cellar) -> Result<Self, CellarFailure> {
+        let cellar = cellar.with_records()?;
+        let plan = Plan::of(&cellar)?;
+        if let Some((error, _)) = plan.problems.into_iter().next() {
+            return Err(error.into());
+        }
+        let plan = Plan { problems: Vec::new(), ..plan };
+        let mut ground = Ground::of_spec(&cellar.stated().motion, 1.0)?;
+        ground.warnings.splice(0..0, cellar.stated().warnings().iter().cloned());
+        let onset = onset(&ground);
+        let obstacles = obstacles(&cellar)?;
+        Ok(Self { cellar, plan, ground, onset, obstacles })
+    }
+
+    /// Returns the number of variants, without the room as stated.
+    pub fn count(&self) -> u32 {
+        self.cellar.stated().imperfections().map_or(0, |imperfections| imperfections.variants)
+    }
+
+    /// Returns the room of a variant; number 0 is the room as stated.
+    ///
+    /// # Errors
+    /// If the motion cannot be read.
+    pub fn room(&self, variant: u32) -> Result<Room, CellarFailure> {
+        let stacks = self.plan.stacks.iter().map(|standing| {
+            Ok(Placed {
+                name: standing.name.clone(),
+                scenario: self.drawn(standing, variant)?,
+                at: standing.at,
+                azimuth: standing.azimuth,
+                start: None,
+            })
+        });
+        Ok(Room {
+            stacks: stacks.collect::<Result<_, CellarFailure>>()?,
+            obstacles: self.obstacles.clone(),
+            ground: self.ground.clone(),
+        })
+    }
+
+    /// Returns a stack as drawn for a variant. Its constants are those of the variant, and its imperfections those of
+    /// the variant and the stack.
+    fn drawn(&self, standing: &Standing, variant: u32) -> Result<Scenario, CellarFailure> {
+        let stated = &self.cellar.models[standing.model];
+        if variant == 0 {
+            return Ok(stated.clone());
+        }
+        let mut shared = stated.clone();
+        let own = match &mut shared.scene {
+            Scene::Stack { imperfections, .. } => {
+                let own = imperfections.clone();
+                imperfections.drawn = false;
+                imperfections.sign = false;
+                own
+            }
+            Scene::Free(_) | Scene::Spatial(_) => return Ok(shared),
+        };
+        let mut stack = drawn(&shared, variant)?;
+        if let Scene::Stack { imperfections, unknowns, .. } = &mut stack.scene {
+            let seed = fnv1a(format!("{} {}", own.seed, standing.name).as_bytes());
+            let [high, low] = [seed >> 32, seed & u64::from(u32::MAX)];
+            *imperfections = own;
+            imperfections.seed = u32::try_from(high ^ low).unwrap_or(u32::MAX);
+            unknowns.drawn = false;
+        }
+        drawn(&stack, variant)
+    }
+
+    /// Runs a variant with frames.
+    ///
+    /// # Errors
+    /// If a stack cannot be built or does not stand.
+    pub fn run(
+        &self,
+        variant: u32,
+        threads: usize,
+        observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
+    ) -> Result<RoomRun, CellarFailure> {
+        let settings = Settings { threads, frames: true };
+        Ok(run(&self.room(variant)?, &settings, observer)?)
+    }
+
+    /// Runs variants, several at a time; `None` for one that was interrupted.
+    ///
+    /// The observer receives the number of finished variants, from several threads, and may stop the work.
+    ///
+    /// # Errors
+    /// If a variant cannot be run.
+    pub fn cases(
+        &self,
+        numbers: &[u32],
+        observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+    ) -> Result<Vec<Option<Case>>, CellarFailure> {
+        let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+        // A single room takes all cores by itself.
+        let threads = usize::from(numbers.len() > 1);
+        let work = |number: &u32| -> Result<Option<Case>, CellarFailure> {
+            let report = |done: usize| {
+                if observer(done).is_break() {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+                if stopped.load(Ordering::Relaxed) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            if report(done.load(Ordering::Relaxed)).is_break() {
+                return Ok(None);
+            }
+            let mut look = |_: &Advance| report(done.load(Ordering::Relaxed));
+            let run = self.run(*number, threads, &mut look)?;
+            if run.interrupted {
+                return Ok(None);
+            }
+            let case = self.case(*number, &run);
+            let _ = report(done.fetch_add(1, Ordering::Relaxed) + 1);
+            Ok(Some(case))
+        };
+        pool::map(numbers, work, &|_| ()).into_iter().collect()
+    }
+
+    /// Returns the result of a run of a variant.
+    pub fn case(&self, variant: u32, run: &RoomRun) -> Case {
+        let outlines = self.outlines(run);
+        let stacks: Vec<StackCase> = run.stacks.iter().map(|end| stack_case(run, end)).collect();
+        let taken = Obstacles { cellar: &self.cellar, taken: outlines.iter().collect() };
+        let aisles =
+            self.cellar.aisles.iter().map(|aisle| self.aisle(aisle.from, aisle.to, run, &taken));
+        let fallen = run.bodies.iter().zip(&outlines);
+        let fallen =
+            fallen.filter(|(body, _)| body.kind == PartKind::Barrel && body.fate.fell_at.is_some());
+        let mut map = self.map();
+        fallen.for_each(|(_, outline)| map.take(outline, 0.0));
+        Case {
+            variant,
+            valid: stacks.iter().all(|stack| stack.valid),
+            aisles: aisles.collect(),
+            ways_out: taken.ways_out(),
+            obstacles: run
+                .obstacles
+                .iter()
+                .map(|end| {
+                    let [x, y, z] = end.impulse;
+                    let impulse = (x * x + y * y + z * z).sqrt();
+                    ObstacleCase { struck: end.first.is_some(), peak: end.peak, impulse }
+                })
+                .collect(),
+            map: map.cells().to_vec(),
+            end_time: run.end_time,
+            stacks,
+            warnings: run.warnings.clone(),
+        }
+    }
+
+    /// Returns an empty map of fallen barrels.
+    pub(crate) fn map(&self) -> Grid {
+        Grid::new([0.0; 2], [self.cellar.room.length, self.cellar.room.width], CELL)
+    }
+
+    /// Returns the bodies at the end of a run, from above.
+    fn outlines(&self, run: &RoomRun) -> Vec<Convex> {
+        let of = |(at, end): (usize, &StackEnd)| {
+            let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;
+            let bodies = &run.bodies[end.bodies.clone()];
+            bodies.iter().zip(surfaces).map(|(body, points)| seen_from_above(points, &body.to))
+        };
+        run.stacks.iter().enumerate().flat_map(|stack| of(stack).collect::<Vec<_>>()).collect()
+    }
+
+    /// Returns what happens in an aisle.
+    fn aisle(&self, from: [f64; 2], to: [f64; 2], run: &RoomRun, end: &Obstacles<'_>) -> AisleCase {
+        let inside = |pose: &[f64; 7]| {
+            (from[0]..=to[0]).contains(&pose[0]) && (from[1]..=to[1]).contains(&pose[1])
+        };
+        let (mut first, mut fastest) = (None::<f64>, None::<f64>);
+        for (frames, stack) in run.frames.iter().zip(&run.stacks) {
+            for (at, body) in run.bodies[stack.bodies.clone()].iter().enumerate() {
+                if body.kind != PartKind::Barrel || inside(&body.from) {
+                    continue;
+                }
+                for (frame, time) in frames.times.iter().enumerate() {
+                    if inside(&frames.poses[frame][at]) {
+                        first = Some(first.map_or(*time, |first| first.min(*time)));
+                        let speed = frames.speeds[frame][at];
+                        fastest = Some(fastest.map_or(speed, |fastest| fastest.max(speed)));
+                    }
+                }
+            }
+        }
+        AisleCase {
+            first: first.map(|time| time - self.onset),
+            fastest,
+            covered: end.covered(from, to),
+            blocked_at: self.blocked_at(from, to, run, end).map(|time| time - self.onset),
+        }
+    }
+
+    /// Returns the time (s) from which on an aisle is blocked until the end; `None` if it is passable at the end, or
+    /// never was.
+    fn blocked_at(
+        &self,
+        from: [f64; 2],
+        to: [f64; 2],
+        run: &RoomRun,
+        end: &Obstacles<'_>,
+    ) -> Option<f64> {
+        let standing =
+            Obstacles { cellar: &self.cellar, taken: self.plan.footprints.iter().collect() };
+        if end.is_passable(from, to) || !standing.is_passable(from, to) {
+            return None;
+        }
+        // Bodies whose middle is farther than a barrel is long cannot reach into the aisle.
+        const REACH: f64 = 2.0;
+        let near = |pose: &[f64; 7]| {
+            [0, 1]
+                .into_iter()
+                .all(|axis| (from[axis] - REACH..=to[axis] + REACH).contains(&pose[axis]))
+        };
+        let passable = |time: f64| {
+            let mut outlines = Vec::new();
+            for (at, frames) in run.frames.iter().enumerate() {
+                let Some(frame) = frames.times.iter().rposition(|t| *t <= time) else { continue };
+                let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;
+                for (pose, points) in frames.poses[frame].iter().zip(surfaces) {
+                    if near(pose) {
+                        outlines.push(seen_from_above(points, pose));
+                    }
+                }
+            }
+            Obstacles { cellar: &self.cellar, taken: outlines.iter().collect() }
+                .is_passable(from, to)
+        };
+        let mut blocked = run.end_time;
+        while blocked > BLOCKED && !passable(blocked - BLOCKED) {
+            blocked -= BLOCKED;
+        }
+        Some(blocked)
+    }
+}
+
+/// Resolution (s) of the time from which on an aisle is blocked.
+const BLOCKED: f64 = 0.25;
+
+fn drawn(scenario: &Scenario, variant: u32) -> Result<Scenario, CellarFailure> {
+    let mut all = planes(scenario)?;
+    Ok(all.swap_remove(0).variant(variant))
+}
+
+/// Returns the time (s) at which the shaking starts; zero without motion.
+fn onset(ground: &Ground) -> f64 {
+    let velocity = |time: f64| Drive::<Spatial>::at(ground, time).1;
+    let mut time = 0.0;
+    let mut before = velocity(time);
+    while time < ground.end() {
+        let after = velocity(time + SAMPLE);
+        let [x, y] = [after.x - before.x, after.y - before.y];
+        if (x * x + y * y).sqrt() > ONSET * SAMPLE {
+            return time;
+        }
+        (time, before) = (time + SAMPLE, after);
+    }
+    0.0
+}
+
+/// Returns walls and columns.
+fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
+    let room = &cellar.room;
+    let stated = cellar.stated().stack().map(|stack| stack.interfaces.barrel_ground);
+    let Some(mut law) = stated else { return Ok(Vec::new()) };
+    if room.stiffness.is_some() || room.restitution.is_some() {
+        let NormalLaw::Rebound { stiffness, restitution, .. } = &mut law.normal else {
+            let message = "the stiffness and restitution of walls are those of a rebound law: set `law = \"rebound\"` in \
+                           interface.barrel-ground, or leave them out"
+                .to_owned();
+            return Err(cellar.host.error(&["room.stiffness", "room.restitution"], message).into());
+        };
+        *stiffness = room.stiffness.unwrap_or(*stiffness);
+        *restitution = room.restitution.unwrap_or(*restitution);
+    }
+    if let Some(wanted) = room.friction {
+        rub(&mut law, wanted);
+    }
+    let interface = law_in_space("obstacle", &law);
+    let block = |name: &str, lower: [f64; 2], upper: [f64; 2]| Obstacle {
+        name: name.to_owned(),
+        center: [0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), 0.5 * room.height],
+        half: [0.5 * (upper[0] - lower[0]), 0.5 * (upper[1] - lower[1]), 0.5 * room.height],
+        azimuth: 0.0,
+        interface: interface.clone(),
+    };
+    let (l, w) = (room.length, room.width);
+    let mut all = Vec::new();
+    if room.walls {
+        all.extend([
+            block("left wall", [-WALL, -WALL], [0.0, w + WALL]),
+            block("right wall", [l, -WALL], [l + WALL, w + WALL]),
+            block("near wall", [0.0, -WALL], [l, 0.0]),
+            block("far wall", [0.0, w], [l, w + WALL]),
+        ]);
+    }
+    all.extend(cellar.columns.iter().map(|column| {
+        let [lower, upper] = [-0.5, 0.5]
+            .map(|s| [column.at[0] + s * column.size[0], column.at[1] + s * column.size[1]]);
+        block(&column.name, lower, upper)
+    }));
+    Ok(all)
+}
+
+/// Sets the coefficient of the friction of a law.
+fn rub(law: &mut Interface, wanted: f64) {
+    match &mut law.friction {
+        Friction::Coulomb { coefficient, static_coefficient, .. } => {
+            let ratio = if *coefficient > 0.0 { *static_coefficient / *coefficient } else { 1.0 };
+            (*coefficient, *static_coefficient) = (wanted, wanted * ratio);
+        }
+        Friction::Regularized { coefficient, .. } => *coefficient = wanted,
+        Friction::None => {}
+    }
+}
+
+/// Result of one variant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Number of the variant; 0 is the room as stated.
+    pub variant: u32,
+    /// `false` if the computation of a stack failed.
+    pub valid: bool,
+    /// The stacks, in the order of the plan.
+    pub stacks: Vec<StackCase>,
+    /// The aisles.
+    pub aisles: Vec<AisleCase>,
+    /// For each place of people, whether a path to a door is left; `None` without doors.
+    pub ways_out: Vec<Option<bool>>,
+    /// Walls and columns.
+    pub obstacles: Vec<ObstacleCase>,
+    /// Cells of the map that fallen barrels cover at the end.
+    pub map: Vec<bool>,
+    /// Time (s) at which the last body came to rest.
+    pub end_time: f64,
+    /// Warnings, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A stack in one variant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StackCase {
+    /// `false` if its computation failed.
+    pub valid: bool,
+    /// Time (s) of the first loss of seat, if the stack falls.
+    pub fell_at: Option<f64>,
+    /// `true` if it falls after a body of another stack touched it.
+    pub knocked: bool,
+    /// Time (s), index of the other stack, and impulse (N·s) of the first contact with another stack.
+    pub touched: Option<(f64, usize, f64)>,
+    /// Names of the two bodies of the first contact: its own, and that of the other stack.
+    pub touching: Option<[String; 2]>,
+    /// Number of barrels that fell.
+    pub barrels: usize,
+    /// Expected number of barrels that burst, under the assumptions of [`Breakage::RANGE`].
+    pub burst: [f64; 3],
+    /// Expected loss of wine (m³), under the same assumptions.
+    pub wine: [f64; 3],
+    /// Largest horizontal displacement (m) at the end of a body that did not fall.
+    pub moved: f64,
+}
+
+impl StackCase {
+    /// `true` if the stack falls by itself.
+    pub fn by_itself(&self) -> bool {
+        self.fell_at.is_some() && !self.knocked
+    }
+}
+
+/// An aisle in one variant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AisleCase {
+    /// Time (s) from the start of the shaking to the first barrel whose middle is above the aisle.
+    pub first: Option<f64>,
+    /// Largest speed (m/s) of a barrel while its middle is above the aisle.
+    pub fastest: Option<f64>,
+    /// Share of the area that is covered at the end.
+    pub covered: f64,
+    /// Time (s) from the start of the shaking from which on no path of the width of a person leads through.
+    pub blocked_at: Option<f64>,
+}
+
+/// A wall or column in one variant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObstacleCase {
+    /// `true` if a body struck it.
+    pub struck: bool,
+    /// Largest force (N).
+    pub peak: f64,
+    /// Magnitude of the impulse (N·s).
+    pub impulse: f64,
+}
+
+fn stack_case(run: &RoomRun, end: &StackEnd) -> StackCase {
+    let bodies = &run.bodies[end.bodies.clone()];
+    let falls = matches!(end.outcome, Outcome::Collapse { .. });
+    let fallen: Vec<_> = bodies
+        .iter()
+        .filter(|body| body.kind == PartKind::Barrel && body.fate.fell_at.is_some())
+        .collect();
+    let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+        fallen.iter().map(|body| of(body.fate.drop, body.wine)).sum()
+    };
+    StackCase {
+        valid: !matches!(end.outcome, Outcome::Invalid { .. }),
+        fell_at: end.lost_seat.map(|(time, _)| time).filter(|_| falls),
+        knocked: falls && end.knocked_over,
+        touched: end.touched.map(|touch| (touch.time, run.bodies[touch.by].stack, touch.impulse)),
+        touching: end
+            .touched
+            .map(|touch| [touch.body, touch.by].map(|body| run.bodies[body].name.clone())),
+        barrels: fallen.len(),
+        burst: Breakage::RANGE.map(|breakage| sum(&|drop, _| breakage.probability(drop))),
+        wine: Breakage::RANGE.map(|breakage| sum(&|drop, wine| wine * breakage.probability(drop))),
+        moved: bodies
+            .iter()
+            .filter(|body| body.fate.fell_at.is_none())
+            .map(|body| moved(&body.from, &body.to))
+            .fold(0.0, f64::max),
+    }
+}

@@ -1,0 +1,704 @@
+//! A cellar as stated in a file: a room with columns, doors, aisles and places of people, and blocks of stacks, each of
+//! which is the stack that the same file describes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use barrelstack::ground::{GroundError, from_disk};
+use barrelstack::scenario::error::ScenarioError;
+use barrelstack::scenario::field::{Default, Kind, Range, names};
+use barrelstack::scenario::imperfections::IMPERFECTIONS;
+use barrelstack::scenario::motion::MOTION;
+use barrelstack::scenario::pair::INTERFACES;
+use barrelstack::scenario::reader::Reader;
+use barrelstack::scenario::run::{OUTCOME, RECORD, RUN};
+use barrelstack::scenario::stack::STACK;
+use barrelstack::scenario::template::{Host, Language};
+use barrelstack::scenario::tree::{Entry, Node, Origin, Table, Value};
+use barrelstack::scenario::unknowns::UNKNOWNS;
+use barrelstack::scenario::{Dimension, Scenario, Until};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::writer::{Writer, to_toml};
+use barrelstack_input::{fnv1a, named, section, table};
+
+/// A length of at most a kilometer.
+const LENGTH: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1000.0));
+/// A free distance.
+const APART: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1000.0));
+
+named! {
+    /// A side of the room, for a viewer who looks along `y` with `x` to the right.
+    pub enum Side {
+        /// The side at `x = 0`.
+        Left = "left",
+        /// The side at the length of the room.
+        Right = "right",
+        /// The side at `y = 0`.
+        Near = "near",
+        /// The side at the width of the room.
+        Far = "far",
+    }
+}
+
+section! {
+    /// The room.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct RoomSpec;
+    /// The room: a rectangle with its near left corner at the origin, `x` to the right and `y` away from the viewer.
+    pub static ROOM = "room";
+    /// Length along x.
+    length: f64 = LENGTH, Default::Required;
+    /// Width along y.
+    width: f64 = LENGTH, Default::Required;
+    /// True if the room has walls on its four sides; doors are closed during the shaking. False for an open floor.
+    walls: bool = Kind::Flag, Default::Value("true");
+    /// Height of walls and columns.
+    height: f64 = LENGTH, Default::Value("\"6 m\"");
+    /// Stiffness k of walls and columns where a body strikes them.
+    stiffness: Option<f64> = Kind::Quantity(&[Dimension::HERTZ_STIFFNESS], Range::POSITIVE),
+        Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
+    /// Ratio of the speeds after and before a strike on a wall or column.
+    restitution: Option<f64> = Kind::Number(Range::up_to(1.0)),
+        Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
+    /// Friction coefficient of bodies on walls and columns.
+    friction: Option<f64> = Kind::Number(Range::between(0.0, 2.0)),
+        Default::Derived("that of a barrel on the ground, `interface.barrel-ground`");
+}
+
+section! {
+    /// A column.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Column;
+    /// A column: a block that reaches from the floor to the height of the walls.
+    pub static COLUMN = "column";
+    /// Unique name.
+    name: String = Kind::Text, Default::Required;
+    /// Position of its middle, along x and y.
+    at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
+    /// Sides along x and y.
+    size: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Value("[\"0.4 m\", \"0.4 m\"]");
+}
+
+section! {
+    /// A door.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Door;
+    /// A door in a side of the room.
+    pub static DOOR = "door";
+    /// Unique name.
+    name: String = Kind::Text, Default::Required;
+    /// Side of the room.
+    side: Side = Kind::Choice(names::<Side>), Default::Required;
+    /// Position of the middle of the door along its side: x for the near and the far side, otherwise y.
+    position: f64 = APART, Default::Required;
+    /// Clear width.
+    width: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.6, 20.0)), Default::Value("\"1.2 m\"");
+}
+
+section! {
+    /// An aisle.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Aisle;
+    /// An aisle: a rectangle that people walk along its longer side.
+    pub static AISLE = "aisle";
+    /// Unique name.
+    name: String = Kind::Text, Default::Required;
+    /// Corner with the smaller coordinates x and y.
+    from: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
+    /// Opposite corner.
+    to: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
+}
+
+section! {
+    /// A place where people work.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Place;
+    /// A place where people work, from which a path to a door is to stay free.
+    pub static PLACE = "place";
+    /// Unique name.
+    name: String = Kind::Text, Default::Required;
+    /// Position along x and y.
+    at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
+}
+
+/// Rows of equal stacks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Name, by which changes refer to the block.
+    pub name: Option<String>,
+    /// Number of rows, which follow each other along y.
+    pub rows: u32,
+    /// Number of stacks in a row, which follow each other along x.
+    pub stacks: u32,
+    /// Position (m) of the near left corner of the first stack, as the footprint of the stack is bounded along x and y.
+    pub first: [f64; 2],
+    /// Free distance (m) between the stacks of a row.
+    pub spacing: f64,
+    /// Free distance (m) between rows that stand back to back.
+    pub between_rows: f64,
+    /// Free distance (m) between two groups of rows.
+    pub aisle: f64,
+    /// Number of rows that stand back to back before an aisle follows.
+    pub rows_together: u32,
+    /// Angle (rad) by which every stack is turned, counterclockwise from above.
+    pub azimuth: f64,
+    /// Number of levels; that of the stack if absent.
+    pub levels: Option<u32>,
+    /// Numbers of levels row by row, in place of `levels`; empty if not given.
+    pub levels_by_row: Vec<u32>,
+}
+
+table! {
+    /// Rows of stacks, each of which is the stack of this file.
+    pub static BLOCK = "block";
+    /// Name, by which a change can refer to the block.
+    name = Kind::Text, Default::Nothing;
+    /// Number of rows, which follow each other along y.
+    rows = Kind::Integer(1, 500), Default::Value("1");
+    /// Number of stacks in a row, which follow each other along x.
+    stacks = Kind::Integer(1, 500), Default::Value("1");
+    /// Position of the near left corner of the first stack.
+    first = Kind::Point(Dimension::LENGTH), Default::Required;
+    /// Free distance between the stacks of a row.
+    spacing = APART, Default::Value("\"0.1 m\"");
+    /// Free distance between rows that stand back to back.
+    between_rows = APART, Default::Value("\"0.1 m\"");
+    /// Free distance between two groups of rows.
+    aisle = APART, Default::Value("\"1.2 m\"");
+    /// Number of rows that stand back to back before an aisle follows.
+    rows_together = Kind::Integer(1, 500), Default::Value("1");
+    /// Angle by which every stack is turned, counterclockwise from above; at zero the barrels lie along y.
+    azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-7.0, 7.0)), Default::Value("\"0 deg\"");
+    /// Number of levels.
+    levels = Kind::Integer(1, 12), Default::Derived("`stack.levels`");
+    /// Numbers of levels row by row, such as [6, 6, 5].
+    levels_by_row = Kind::Values, Default::Nothing;
+    at most one of &["levels", "levels_by_row"];
+}
+
+fn kinds() -> Vec<&'static str> {
+    vec!["cellar"]
+}
+
+table! {
+    /// A cellar: stacks in rows in one room, on one ground.
+    pub static CELLAR = "cellar";
+    /// Version of the language.
+    schema = Kind::Integer(1, 1), Default::Required;
+    /// Title, in one line.
+    title = Kind::Text, Default::Derived("name of the file");
+    /// Built-in cellar, or file ending in `.toml`, whose values this cellar overrides.
+    extends = Kind::Text, Default::Nothing;
+    /// Kind of the file.
+    kind = Kind::Choice(kinds), Default::Required;
+    /// The room.
+    room = Kind::Table(&ROOM), Default::Required;
+    /// Columns.
+    column = Kind::Tables(&COLUMN), Default::Nothing;
+    /// Doors.
+    door = Kind::Tables(&DOOR), Default::Nothing;
+    /// Aisles, which are to stay free.
+    aisle = Kind::Tables(&AISLE), Default::Nothing;
+    /// Places where people work.
+    place = Kind::Tables(&PLACE), Default::Nothing;
+    /// Blocks of stacks.
+    block = Kind::Tables(&BLOCK), Default::Required;
+    /// The stack, in space; all stacks of the room are alike.
+    stack = Kind::Table(&STACK), Default::Required;
+    /// Contact laws by pair of bodies; bodies of two stacks touch as bodies that have fallen.
+    interface = Kind::Table(&INTERFACES), Default::Nothing;
+    /// The ground motion along the axes of the room.
+    motion = Kind::Table(&MOTION), Default::Required;
+    /// Settings of the run.
+    run = Kind::Table(&RUN), Default::Nothing;
+    /// Settings of the recording.
+    record = Kind::Table(&RECORD), Default::Nothing;
+    /// Thresholds that define a collapse.
+    outcome = Kind::Table(&OUTCOME), Default::Nothing;
+    /// Random differences from stack to stack, and the number of variants of the room; every stack has its own draws.
+    imperfections = Kind::Table(&IMPERFECTIONS), Default::Nothing;
+    /// Uncertainty of constants that nobody has measured; all stacks of a variant share the draws.
+    unknowns = Kind::Table(&UNKNOWNS), Default::Nothing;
+}
+
+/// Fields of a cellar that a scenario does not have.
+const OWN: [&str; 7] = ["kind", "room", "column", "door", "aisle", "place", "block"];
+
+macro_rules! cellars {
+    ($($name:literal),* $(,)?) => {
+        const BUILT_IN: &[(&str, &str)] = &[
+            $(($name, include_str!(concat!("../scenarios/", $name, ".toml")))),*
+        ];
+    };
+}
+
+cellars!["demo-cellar", "cellar-four-barrel", "cellar-two-barrel"];
+
+/// Returns the names of the built-in cellars.
+pub fn names_built_in() -> impl Iterator<Item = &'static str> {
+    BUILT_IN.iter().map(|(name, _)| *name)
+}
+
+/// Returns the text of a built-in cellar.
+pub fn built_in(name: &str) -> Option<&'static str> {
+    BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// A cellar may extend a built-in cellar, or the built-in scenario of a stack.
+const LANGUAGE: Language = Language {
+    root: &CELLAR,
+    builtin: |name| built_in(name).or_else(|| barrelstack::scenario::builtin::get(name)),
+    names: || names_built_in().chain(barrelstack::scenario::builtin::names()).collect(),
+};
+
+/// Maximum number of barrels in a room. A run keeps all bodies with their frames in memory.
+pub const MOST_BARRELS: u64 = 10_000;
+
+/// Maximum number of columns, doors, aisles and places, each.
+const MOST_ITEMS: usize = 1000;
+
+/// A stack in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Standing {
+    /// Name: row and number in the row, such as "3-5".
+    pub name: String,
+    /// Row, counted from 1 through all blocks.
+    pub row: u32,
+    /// Number in the row, from 1.
+    pub number: u32,
+    /// Index of its block.
+    pub block: usize,
+    /// Index of its model in [`Cellar::models`].
+    pub model: usize,
+    /// Position (m) of the origin of the stack.
+    pub at: [f64; 2],
+    /// Angle (rad) by which the stack is turned counterclockwise.
+    pub azimuth: f64,
+}
+
+/// A checked cellar in SI units.
+#[derive(Clone, Debug)]
+pub struct Cellar {
+    /// Title, in one line.
+    pub title: String,
+    /// The room.
+    pub room: RoomSpec,
+    /// Columns.
+    pub columns: Vec<Column>,
+    /// Doors.
+    pub doors: Vec<Door>,
+    /// Aisles.
+    pub aisles: Vec<Aisle>,
+    /// Places of people.
+    pub places: Vec<Place>,
+    /// Blocks of stacks.
+    pub blocks: Vec<Block>,
+    /// Scenarios of the stacks as stated, one for each number of levels.
+    pub models: Vec<Scenario>,
+    /// For every block and row, the index of the model.
+    pub(crate) model_of: Vec<Vec<usize>>,
+    pub(crate) host: Host,
+}
+
+impl Cellar {
+    /// Reads the file of a cellar and the files that it extends, and applies changes as for a scenario.
+    ///
+    /// # Errors
+    /// Returns the first problem found, with its place in the text.
+    pub fn load(path: &Path, changes: &[String]) -> Result<Self, ScenarioError> {
+        Self::of(Host::load(path, changes, &LANGUAGE)?)
+    }
+
+    /// Reads a cellar from text, which may extend built-in cellars and scenarios only.
+    ///
+    /// ```
+    /// use barrelstack_cellar::Cellar;
+    ///
+    /// let cellar = Cellar::parse("mine.toml", b"schema = 1\nextends = \"demo-cellar\"", &[])?;
+    /// assert_eq!(cellar.barrels(), 40);
+    /// # Ok::<(), barrelstack::scenario::ScenarioError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As for [`Cellar::load`].
+    pub fn parse(name: &str, bytes: &[u8], changes: &[String]) -> Result<Self, ScenarioError> {
+        Self::of(Host::parse(name, bytes, changes, &LANGUAGE)?)
+    }
+
+    /// Reads a built-in cellar.
+    ///
+    /// # Errors
+    /// If there is no cellar with this name, or a change is invalid.
+    pub fn builtin(name: &str, changes: &[String]) -> Result<Self, ScenarioError> {
+        Self::of(Host::builtin(name, changes, &LANGUAGE)?)
+    }
+
+    /// `true` if a text, or a text that it extends, is of the kind of a cellar. A text that cannot be read is not.
+    pub fn is_stated(path: Option<&Path>, bytes: &[u8]) -> bool {
+        stated(path, bytes, 8)
+    }
+
+    /// Returns the number of barrels.
+    pub fn barrels(&self) -> u64 {
+        let row = |(block, models): (&Block, &Vec<usize>)| -> u64 {
+            models.iter().map(|at| u64::from(block.stacks) * barrels(&self.models[*at])).sum()
+        };
+        self.blocks.iter().zip(&self.model_of).map(row).sum()
+    }
+
+    /// Returns the scenario of the stack as stated, whose motion, settings and imperfections are those of the room.
+    pub fn stated(&self) -> &Scenario {
+        &self.models[0]
+    }
+
+    /// Returns the cellar with the records of its motion in memory.
+    ///
+    /// # Errors
+    /// If a record cannot be read.
+    pub fn with_records(&self) -> Result<Self, GroundError> {
+        let mut held = self.clone();
+        for model in &mut held.models {
+            *model = model.with_records(&mut from_disk)?;
+        }
+        Ok(held)
+    }
+
+    /// Returns the same cellar with another number of variants.
+    #[must_use]
+    pub fn with_variants(mut self, count: u32) -> Self {
+        for model in &mut self.models {
+            if let barrelstack::scenario::Scene::Stack { imperfections, .. } = &mut model.scene {
+                imperfections.variants = count;
+            }
+        }
+        self
+    }
+
+    /// Returns the cellar as TOML text that reads back equal, with all defaults written out and all quantities in SI.
+    pub fn to_resolved_toml(&self) -> String {
+        to_toml(&self.write())
+    }
+
+    /// Returns the fingerprint of the cellar without its title: the 64-bit FNV-1a hash of the resolved text, in which
+    /// the bytes of a record stand for its path.
+    pub fn fingerprint(&self) -> u64 {
+        let mut own = self.write();
+        own.remove("title");
+        own.remove("motion");
+        let motion = self.stated().fingerprint();
+        fnv1a(format!("{motion:016x}\n{}", to_toml(&own)).as_bytes())
+    }
+
+    fn of(host: Host) -> Result<Self, ScenarioError> {
+        let reader = host.reader(&CELLAR)?;
+        reader.integer("schema")?;
+        let title = reader.optional_text("title")?.unwrap_or_else(|| host.stem());
+        if reader.optional_text("extends")?.is_some() {
+            let message = "`extends` cannot be overridden; write it in the file".to_owned();
+            return Err(reader.inconsistent("extends", message));
+        }
+        let kind = reader.catalog_name("kind")?;
+        debug_assert_eq!(kind, "cellar");
+        let room = RoomSpec::read(reader.section("room")?)?;
+        let columns: Vec<Column> = all(&reader, "column")?;
+        let doors: Vec<Door> = all(&reader, "door")?;
+        let aisles: Vec<Aisle> = all(&reader, "aisle")?;
+        let places: Vec<Place> = all(&reader, "place")?;
+        let readers = reader.sections("block")?;
+        if readers.is_empty() {
+            return Err(reader.missing("block"));
+        }
+        for inherited in [
+            "stack",
+            "interface",
+            "motion",
+            "run",
+            "record",
+            "outcome",
+            "imperfections",
+            "unknowns",
+        ] {
+            reader.skip(inherited);
+        }
+        reader.finish();
+        distinct(&host, "column", columns.iter().map(|one| &one.name))?;
+        distinct(&host, "door", doors.iter().map(|one| &one.name))?;
+        distinct(&host, "aisle", aisles.iter().map(|one| &one.name))?;
+        distinct(&host, "place", places.iter().map(|one| &one.name))?;
+        let stated = host.stack(&OWN, &[])?;
+        check(&host, &stated)?;
+        let mut cellar = Self {
+            title,
+            room,
+            columns,
+            doors,
+            aisles,
+            places,
+            blocks: Vec::new(),
+            models: vec![stated],
+            model_of: Vec::new(),
+            host: host.clone(),
+        };
+        cellar.check_items()?;
+        cellar.read_blocks(readers)?;
+        Ok(cellar)
+    }
+
+    fn read_blocks(&mut self, readers: Vec<Reader<'_>>) -> Result<(), ScenarioError> {
+        let own = self.models[0].stack().map_or(0, |stack| stack.levels);
+        let mut known = BTreeMap::from([(own, 0)]);
+        let mut total = 0_u64;
+        for reader in readers {
+            let block = read_block(&reader)?;
+            let by_row = reader.nodes("levels_by_row")?.unwrap_or_default();
+            let mut models = Vec::new();
+            for row in 0..block.rows as usize {
+                let (levels, path) = match block.levels_by_row.get(row) {
+                    Some(levels) => (*levels, "levels_by_row"),
+                    None => (block.levels.unwrap_or(own), "levels"),
+                };
+                // The count is checked before anything is built.
+                let each = barrels(&self.models[0]) / u64::from(own.max(1)) * u64::from(levels);
+                total += each * u64::from(block.stacks);
+                if total > MOST_BARRELS {
+                    let message = format!(
+                        "with row {} of this block the cellar has more than {MOST_BARRELS} barrels, more than a run \
+                         holds in memory: take fewer rows or stacks, or split the cellar into rooms",
+                        row + 1
+                    );
+                    return Err(reader.inconsistent("rows", message));
+                }
+                let model = if let Some(model) = known.get(&levels) {
+                    *model
+                } else {
+                    let origin = by_row.get(row).map_or(reader.origin_of(path), |node| node.origin);
+                    let node = Node { origin, value: Value::Integer(Some(i64::from(levels))) };
+                    self.models.push(self.host.stack(&OWN, &[("stack.levels", node)])?);
+                    known.insert(levels, self.models.len() - 1);
+                    self.models.len() - 1
+                };
+                models.push(model);
+            }
+            reader.finish();
+            self.blocks.push(block);
+            self.model_of.push(models);
+        }
+        Ok(())
+    }
+
+    /// Checks the room without its stacks.
+    fn check_items(&self) -> Result<(), ScenarioError> {
+        let RoomSpec { length, width, .. } = self.room;
+        let inside = |[x, y]: [f64; 2]| (0.0..=length).contains(&x) && (0.0..=width).contains(&y);
+        let outside = |path: String| {
+            let message = format!(
+                "it lies outside the room, which is {length} m long and {width} m wide: move it inside, or enlarge \
+                 the room"
+            );
+            Err(self.host.error(&[&path], message))
+        };
+        for (at, column) in (1..).zip(&self.columns) {
+            let [a, b] = column.size;
+            if a <= 0.0 || b <= 0.0 {
+                let message =
+                    format!("a column has sides of {a} m and {b} m: give it two positive sides");
+                return Err(self.host.error(&[&format!("column.{at}.size")], message));
+            }
+            let ends = [-0.5, 0.5].map(|s| [column.at[0] + s * a, column.at[1] + s * b]);
+            if !ends.into_iter().all(inside) {
+                return outside(format!("column.{at}.at"));
+            }
+        }
+        for (at, door) in (1..).zip(&self.doors) {
+            let side = match door.side {
+                Side::Near | Side::Far => length,
+                Side::Left | Side::Right => width,
+            };
+            if door.position - 0.5 * door.width < 0.0 || door.position + 0.5 * door.width > side {
+                let message = format!(
+                    "the door \"{}\" reaches from {:.2} to {:.2} m on a side of {side} m: move it, or make it narrower",
+                    door.name,
+                    door.position - 0.5 * door.width,
+                    door.position + 0.5 * door.width
+                );
+                return Err(self.host.error(&[&format!("door.{at}.position")], message));
+            }
+        }
+        for (at, aisle) in (1..).zip(&self.aisles) {
+            let sides = [0, 1].map(|axis| aisle.to[axis] - aisle.from[axis]);
+            if sides.into_iter().any(|side| side <= 0.0) {
+                let message = format!(
+                    "the aisle \"{}\" has sides of {:.2} m and {:.2} m: `to` needs larger coordinates than `from`",
+                    aisle.name, sides[0], sides[1]
+                );
+                return Err(self.host.error(&[&format!("aisle.{at}.to")], message));
+            }
+            for (end, path) in [(aisle.from, "from"), (aisle.to, "to")] {
+                if !inside(end) {
+                    return outside(format!("aisle.{at}.{path}"));
+                }
+            }
+        }
+        for (at, place) in (1..).zip(&self.places) {
+            if !inside(place.at) {
+                return outside(format!("place.{at}.at"));
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&self) -> Table {
+        let mut writer = Writer::new(&CELLAR);
+        writer.integer("schema", 1);
+        writer.text("title", &self.title);
+        writer.omit(&["extends"]);
+        writer.text("kind", "cellar");
+        writer.table("room", self.room.write());
+        writer.tables("column", self.columns.iter().map(Column::write).collect());
+        writer.tables("door", self.doors.iter().map(Door::write).collect());
+        writer.tables("aisle", self.aisles.iter().map(Aisle::write).collect());
+        writer.tables("place", self.places.iter().map(Place::write).collect());
+        writer.tables("block", self.blocks.iter().map(write_block).collect());
+        let scenario = self.stated().to_table();
+        for entry in scenario.entries {
+            let Value::Table(table) = entry.node.value else { continue };
+            if let Some(field) = CELLAR.fields.iter().find(|field| field.name == entry.key) {
+                writer.table(field.name, table);
+            }
+        }
+        writer.finish()
+    }
+}
+
+/// Returns the number of barrels of the stack of a scenario.
+pub(crate) fn barrels(scenario: &Scenario) -> u64 {
+    scenario.stack().map_or(0, |stack| {
+        let along = stack.space.map_or(1, |space| space.columns_along);
+        u64::from(stack.levels) * u64::from(stack.columns) * u64::from(along)
+    })
+}
+
+/// Checks what a stack may state alone, but not in a room.
+fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
+    if stated.stack().and_then(|stack| stack.space).is_some_and(|space| space.azimuth != 0.0) {
+        let message = "stacks are turned block by block: state `azimuth` in [[block]]".to_owned();
+        return Err(host.error(&["stack.azimuth"], message));
+    }
+    if stated.run.until != Until::Rest {
+        let message =
+            "a room is followed until its bodies rest, since stacks may fall on others late: leave `run.until` out"
+                .to_owned();
+        return Err(host.error(&["run.until"], message));
+    }
+    Ok(())
+}
+
+/// Reads a list of tables of a limited length.
+fn all<T: barrelstack_input::declared::Declared>(
+    reader: &Reader<'_>,
+    name: &'static str,
+) -> Result<Vec<T>, ScenarioError> {
+    let sections = reader.sections(name)?;
+    if sections.len() > MOST_ITEMS {
+        let message = format!("there are {}; a cellar has at most {MOST_ITEMS}", sections.len());
+        return Err(reader.inconsistent(name, message));
+    }
+    sections.into_iter().map(T::read).collect()
+}
+
+fn distinct<'a>(
+    host: &Host,
+    list: &str,
+    all: impl Iterator<Item = &'a String>,
+) -> Result<(), ScenarioError> {
+    let mut known = BTreeSet::new();
+    for (at, name) in (1..).zip(all) {
+        if !known.insert(name) {
+            let message =
+                format!("two of [[{list}]] are called \"{name}\"; give each its own name");
+            return Err(host.error(&[&format!("{list}.{at}.name")], message));
+        }
+    }
+    Ok(())
+}
+
+fn read_block(reader: &Reader<'_>) -> Result<Block, ScenarioError> {
+    let rows = reader.integer("rows")?;
+    let mut levels_by_row = Vec::new();
+    for node in reader.nodes("levels_by_row")?.unwrap_or_default() {
+        let levels = reader.read_integer("levels_by_row", &node, Kind::Integer(1, 12))?;
+        levels_by_row.push(u32::try_from(levels).unwrap_or(0));
+    }
+    if !levels_by_row.is_empty() && levels_by_row.len() != rows as usize {
+        let message = format!(
+            "there are {} numbers of levels for {rows} rows; state one for each row",
+            levels_by_row.len()
+        );
+        return Err(reader.inconsistent("levels_by_row", message));
+    }
+    Ok(Block {
+        name: reader.optional_text("name")?,
+        rows,
+        stacks: reader.integer("stacks")?,
+        first: reader.point("first")?,
+        spacing: reader.quantity("spacing")?,
+        between_rows: reader.quantity("between_rows")?,
+        aisle: reader.quantity("aisle")?,
+        rows_together: reader.integer("rows_together")?,
+        azimuth: reader.quantity("azimuth")?,
+        levels: reader.optional_integer("levels")?,
+        levels_by_row,
+    })
+}
+
+fn write_block(block: &Block) -> Table {
+    let mut writer = Writer::new(&BLOCK);
+    writer.optional_text("name", block.name.as_deref());
+    writer.integer("rows", block.rows);
+    writer.integer("stacks", block.stacks);
+    writer.point("first", block.first);
+    writer.quantity("spacing", block.spacing);
+    writer.quantity("between_rows", block.between_rows);
+    writer.quantity("aisle", block.aisle);
+    writer.integer("rows_together", block.rows_together);
+    writer.quantity("azimuth", block.azimuth);
+    match block.levels {
+        Some(levels) => writer.integer("levels", levels),
+        None => writer.omit(&["levels"]),
+    }
+    writer.omit(&["levels_by_row"]);
+    let mut table = writer.finish();
+    if !block.levels_by_row.is_empty() {
+        let node = |value| Node { origin: Origin::Default, value };
+        let levels = block.levels_by_row.iter().map(|n| node(Value::Integer(Some(i64::from(*n)))));
+        let node = node(Value::Array(levels.collect()));
+        table.set(Entry { key: "levels_by_row".to_owned(), origin: Origin::Default, node });
+    }
+    table
+}
+
+fn stated(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
+    let Ok(text) = std::str::from_utf8(bytes) else { return false };
+    let mut sources = barrelstack::scenario::tree::Sources::default();
+    sources.files.push(barrelstack::scenario::tree::SourceFile {
+        name: String::new(),
+        text: text.to_owned(),
+        folder: std::path::PathBuf::new(),
+    });
+    let Ok(table) = sources.parse(0) else { return false };
+    let text_of = |key: &str| match table.get(key).map(|entry| &entry.node.value) {
+        Some(Value::Text(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    match (text_of("kind"), text_of("extends")) {
+        (Some(kind), _) => kind == "cellar",
+        (None, Some(name)) if built_in(name).is_some() => true,
+        (None, Some(name)) if name.ends_with(".toml") && depth > 0 => {
+            let Some(folder) = path.and_then(Path::parent) else { return false };
+            let next = folder.join(name);
+            barrelstack_input::system::read(&next, 1 << 20)
+                .is_ok_and(|bytes| stated(Some(&next), &bytes, depth - 1))
+        }
+        (None, _) => false,
+    }
+}

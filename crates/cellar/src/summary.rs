@@ -1,0 +1,519 @@
+//! Results of a cellar over all its variants, as one document with the same numbers as the printed results.
+
+use std::collections::BTreeMap;
+
+use barrelstack::ground::MotionSummary;
+use barrelstack::summary::Unfinished;
+use barrelstack::variants::{LEVEL, Range};
+use barrelstack_fragility::wilson;
+use barrelstack_report::described;
+
+use crate::plan::PlanSummary;
+use crate::result::RoomRun;
+use crate::sample::{Case, Prepared, StackCase};
+
+described! {
+    /// Results of a cellar. Lengths are in m, times in s from the start of the shaking, the first time at which the
+    /// horizontal acceleration of the ground exceeds 0.02 g. A value is null where an event did not happen.
+    #[derive(Clone, Debug)]
+    pub struct CellarSummary {
+        /// Name and version of this layout.
+        pub schema: &'static str ["cellar/1"],
+        /// Title of the cellar.
+        pub title: String,
+        /// Result in one sentence.
+        pub headline: String,
+        /// The plan before the shaking.
+        pub plan: PlanSummary,
+        /// Number of variants that the statistics count; 1 if only the room as stated was run.
+        pub counted: u32,
+        /// Numbers of the variants whose computation failed, which are not counted.
+        pub broken: Vec<u32>,
+        /// Number of runs that finished; null unless the work was stopped early.
+        pub unfinished: Option<Unfinished>,
+        /// The whole room.
+        pub room: RoomAnswer,
+        /// The rows.
+        pub rows: Vec<RowAnswer>,
+        /// The stacks, row by row.
+        pub stacks: Vec<StackAnswer>,
+        /// The aisles.
+        pub aisles: Vec<AisleAnswer>,
+        /// The places of people.
+        pub places: Vec<PlaceAnswer>,
+        /// Walls and columns.
+        pub obstacles: Vec<ObstacleAnswer>,
+        /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
+        /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
+        pub inspection: Vec<String>,
+        /// The run that is shown.
+        pub shown: ShownRoom,
+        /// Ground motion.
+        pub motion: Option<MotionSummary>,
+        /// Time in the record at which the shaking starts.
+        pub onset: f64 as "s",
+        /// Warnings, one sentence each.
+        pub warnings: Vec<String>,
+        /// Name of the program.
+        pub program: &'static str,
+        /// Version of the program.
+        pub version: &'static str,
+        /// Source of the motion and its processing, one sentence each.
+        pub provenance: Vec<String>,
+        /// Wall-clock time of the work; null if not measured.
+        pub wall_seconds: Option<f64> as "s",
+    }
+
+    /// A count out of the variants, with the 95 % interval of the share in all such rooms (Wilson 1927).
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Count {
+        /// Number of variants.
+        pub of_variants: u32,
+        /// Share of the counted variants; null if there are none.
+        pub share: Option<f64> as "1",
+        /// Bounds of the interval.
+        pub interval: [f64; 2] as "1",
+    }
+
+    /// The whole room.
+    #[derive(Clone, Debug)]
+    pub struct RoomAnswer {
+        /// Variants in which at least one stack falls.
+        pub some_fall: Count,
+        /// Mean number of stacks that fall by themselves.
+        pub by_themselves: f64 as "1",
+        /// Mean number of stacks that are knocked over: a body of another stack touched them before they lost a seat.
+        pub knocked_over: f64 as "1",
+        /// Share of stacks that fall by themselves, over all stacks and variants; its interval treats a room as one draw.
+        pub share_by_themselves: Mean,
+        /// Share of stacks that are knocked over, likewise.
+        pub share_knocked_over: Mean,
+        /// How far a collapse spreads: stacks that fall, for each that falls by itself; null if none falls.
+        pub spread: Option<f64> as "1",
+        /// Distribution of the number of stacks that fall.
+        pub stacks_fallen: Range as "1",
+        /// Distribution of the number of barrels that fall.
+        pub barrels_fallen: Range as "1",
+        /// Expected number of barrels that burst, if few, as assumed, or many burst at a given height of fall.
+        pub burst: [f64; 3] as "1",
+        /// Expected loss of wine, under the same assumptions.
+        pub wine_lost: [f64; 3] as "m3",
+        /// Largest force on a wall or column in any variant; null without walls and columns.
+        pub peak_force: Option<f64> as "N",
+    }
+
+    /// A mean over the variants, with its 95 % interval from the scatter between them.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Mean {
+        /// The mean.
+        pub mean: f64 as "1",
+        /// Bounds of the interval, within 0 to 1.
+        pub interval: [f64; 2] as "1",
+    }
+
+    /// A row of stacks.
+    #[derive(Clone, Debug)]
+    pub struct RowAnswer {
+        /// Number of the row.
+        pub row: u32,
+        /// Number of its stacks.
+        pub stacks: u32,
+        /// Variants in which the first stack to fall is in this row.
+        pub starts: Count,
+        /// Mean number of its stacks that fall by themselves.
+        pub by_themselves: f64 as "1",
+        /// Mean number of its stacks that are knocked over.
+        pub knocked_over: f64 as "1",
+    }
+
+    /// A stack.
+    #[derive(Clone, Debug)]
+    pub struct StackAnswer {
+        /// Name: row and number in the row.
+        pub name: String,
+        /// Row.
+        pub row: u32,
+        /// Number in the row.
+        pub number: u32,
+        /// Position of its middle.
+        pub at: [f64; 2] as "m",
+        /// Variants in which it falls.
+        pub falls: Count,
+        /// Variants in which it falls by itself.
+        pub by_itself: Count,
+        /// Variants in which it is knocked over.
+        pub knocked_over: Count,
+        /// Distribution of the time of its first loss of seat.
+        pub falls_at: Option<Range> as "s",
+        /// The stack that touches it first in most variants; null if none does.
+        pub touched_by: Option<String>,
+        /// Distribution of the time of its first contact with another stack.
+        pub touched_at: Option<Range> as "s",
+        /// Distribution of the impulse of other stacks on it until it lost a seat, or over the whole run if it stands.
+        pub impulse: Option<Range> as "N s",
+        /// Mean number of barrels that fall from it.
+        pub barrels_fallen: f64 as "1",
+        /// Expected loss of its wine, under the central assumption.
+        pub wine_lost: f64 as "m3",
+        /// Distribution of its largest horizontal movement at the end, in the variants in which it stands.
+        pub moved: Option<Range> as "m",
+    }
+
+    /// An aisle.
+    #[derive(Clone, Debug)]
+    pub struct AisleAnswer {
+        /// Name of the aisle.
+        pub name: String,
+        /// Variants in which a barrel comes into the aisle.
+        pub entered: Count,
+        /// Distribution of the time of the first barrel in the aisle.
+        pub first_barrel: Option<Range> as "s",
+        /// Variants in which no path of 0.6 m leads through the aisle at the end.
+        pub blocked: Count,
+        /// Distribution of the time from which on the aisle is blocked.
+        pub blocked_at: Option<Range> as "s",
+        /// Distribution of the share of its area that is covered at the end.
+        pub covered: Range as "1",
+        /// Distribution of the largest speed of a barrel in the aisle.
+        pub fastest: Option<Range> as "m/s",
+    }
+
+    /// A place of people.
+    #[derive(Clone, Debug)]
+    pub struct PlaceAnswer {
+        /// Name of the place.
+        pub name: String,
+        /// Variants in which a path of 0.6 m leads from the place to a door at the end; null without doors.
+        pub leads_out: Option<Count>,
+    }
+
+    /// A wall or column.
+    #[derive(Clone, Debug)]
+    pub struct ObstacleAnswer {
+        /// Name of the wall or column.
+        pub name: String,
+        /// Variants in which a body strikes it.
+        pub struck: Count,
+        /// Distribution of the largest force, in the variants in which a body strikes it.
+        pub peak: Option<Range> as "N",
+        /// Distribution of the impulse, likewise.
+        pub impulse: Option<Range> as "N s",
+    }
+
+    /// The run that is shown.
+    #[derive(Clone, Debug)]
+    pub struct ShownRoom {
+        /// Number of the variant; 0 is the room as stated.
+        pub variant: u32,
+        /// Time in the record at which the last body came to rest.
+        pub end_time: f64 as "s",
+        /// Row of the first stack that falls.
+        pub starts: Option<u32>,
+        /// Number of stacks that fall by themselves.
+        pub by_themselves: u32,
+        /// Number of stacks that are knocked over.
+        pub knocked_over: u32,
+        /// Number of barrels that fall.
+        pub barrels_fallen: u32,
+        /// The stacks, in the order of the plan.
+        pub stacks: Vec<ShownStack>,
+        /// The aisles: the times from which on they are blocked; null for an aisle that is passable at the end.
+        pub blocked_at: Vec<Option<f64>> as "s",
+    }
+
+    /// A stack in the run that is shown.
+    #[derive(Clone, Debug)]
+    pub struct ShownStack {
+        /// Name of the stack.
+        pub name: String,
+        /// What happens to it.
+        pub fate: &'static str ["stands", "falls-by-itself", "knocked-over"],
+        /// Time of its first loss of seat.
+        pub falls_at: Option<f64> as "s",
+        /// Time of its first contact with another stack.
+        pub touched_at: Option<f64> as "s",
+        /// Name of the other stack.
+        pub touched_by: Option<String>,
+        /// Its body in this contact, and the body of the other stack.
+        pub bodies: Option<[String; 2]>,
+        /// Impulse of other stacks on it until it lost a seat, or over the whole run if it stands.
+        pub impulse: Option<f64> as "N s",
+        /// Number of barrels that fell from it.
+        pub barrels_fallen: usize,
+        /// Largest horizontal movement at the end of a body that did not fall.
+        pub moved: f64 as "m",
+    }
+}
+
+impl Count {
+    /// Counts variants.
+    pub fn of<'a>(cases: &[&'a Case], is: impl Fn(&'a Case) -> bool) -> Self {
+        let of_variants =
+            u32::try_from(cases.iter().filter(|case| is(case)).count()).unwrap_or(u32::MAX);
+        let all = u32::try_from(cases.len()).unwrap_or(u32::MAX);
+        let interval = wilson(of_variants, all, LEVEL);
+        Self {
+            of_variants,
+            share: (all > 0).then(|| f64::from(of_variants) / f64::from(all)),
+            interval: [interval.low, interval.high],
+        }
+    }
+}
+
+impl Mean {
+    /// Returns the mean of shares and its interval.
+    fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        if values.is_empty() {
+            return Self { mean: 0.0, interval: [0.0, 1.0] };
+        }
+        let weighted: Vec<(f64, f64)> = values.iter().map(|value| (*value, 1.0)).collect();
+        let interval = barrelstack_fragility::grouped_mean(&weighted, LEVEL);
+        let mean = values.iter().sum::<f64>() / n;
+        Self { mean, interval: [interval.low.max(0.0), interval.high.min(1.0)] }
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// Returns the distribution of values; zeros if there are none.
+fn range(values: impl Iterator<Item = f64>) -> Range {
+    let zero = Range { p05: 0.0, p50: 0.0, p95: 0.0, least: 0.0, most: 0.0 };
+    Range::of(values).unwrap_or(zero)
+}
+
+/// Returns the numbers of stacks of a case that fall by themselves and that are knocked over.
+pub fn fallen(case: &Case) -> [u32; 2] {
+    let count = |is: &dyn Fn(&StackCase) -> bool| {
+        u32::try_from(case.stacks.iter().filter(|stack| is(stack)).count()).unwrap_or(u32::MAX)
+    };
+    [count(&StackCase::by_itself), count(&|stack| stack.knocked)]
+}
+
+/// Returns the stack of a case that falls first.
+fn first(case: &Case) -> Option<usize> {
+    let times = case.stacks.iter().enumerate();
+    let times = times.filter_map(|(at, stack)| Some((stack.fell_at?, at)));
+    times.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
+}
+
+/// Returns the cases that statistics count: the valid variants, or the room as stated if there are no variants.
+pub fn counted(cases: &[Case]) -> Vec<&Case> {
+    let varied = cases.iter().any(|case| case.variant > 0);
+    cases.iter().filter(|case| case.valid && (case.variant > 0 || !varied)).collect()
+}
+
+/// Returns the number of the case that is most typical: its numbers of stacks that fall by themselves and that are
+/// knocked over, and of barrels that fall, are nearest to their medians.
+pub fn typical(cases: &[Case]) -> Option<u32> {
+    let counted = counted(cases);
+    let numbers = |case: &Case| {
+        let [own, knocked] = fallen(case).map(f64::from);
+        let barrels: usize = case.stacks.iter().map(|stack| stack.barrels).sum();
+        [own, knocked, 0.05 * barrels as f64]
+    };
+    let medians = [0, 1, 2].map(|which| range(counted.iter().map(|case| numbers(case)[which])).p50);
+    let far = |case: &Case| -> f64 {
+        numbers(case).iter().zip(medians).map(|(value, median)| (value - median).abs()).sum()
+    };
+    counted.iter().min_by(|a, b| far(a).total_cmp(&far(b))).map(|case| case.variant)
+}
+
+/// Summarizes the cases of a cellar and the run that is shown, whose result is `shown`.
+pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> CellarSummary {
+    let all = counted(cases);
+    let plan = &prepared.plan;
+    let share = |of: usize| {
+        let stacks = plan.stacks.len().max(1) as f64;
+        Mean::of(&all.iter().map(|case| f64::from(fallen(case)[of]) / stacks).collect::<Vec<_>>())
+    };
+    let [own, knocked] =
+        [0, 1].map(|which| mean(all.iter().map(|case| f64::from(fallen(case)[which]))));
+    let barrels = |case: &&Case| case.stacks.iter().map(|stack| stack.barrels as f64).sum();
+    let three = |of: &dyn Fn(&StackCase) -> [f64; 3]| {
+        [0, 1, 2].map(|which| {
+            mean(all.iter().map(|case| case.stacks.iter().map(|stack| of(stack)[which]).sum()))
+        })
+    };
+    let peaks = all.iter().flat_map(|case| case.obstacles.iter().map(|one| one.peak));
+    let room = RoomAnswer {
+        some_fall: Count::of(&all, |case| first(case).is_some()),
+        by_themselves: own,
+        knocked_over: knocked,
+        share_by_themselves: share(0),
+        share_knocked_over: share(1),
+        spread: (own > 0.0).then(|| (own + knocked) / own),
+        stacks_fallen: range(all.iter().map(|case| fallen(case).into_iter().map(f64::from).sum())),
+        barrels_fallen: range(all.iter().map(barrels)),
+        burst: three(&|stack| stack.burst),
+        wine_lost: three(&|stack| stack.wine),
+        peak_force: peaks.reduce(f64::max),
+    };
+    let (case, run) = shown;
+    let mut warnings = run.warnings.clone();
+    for warning in cases.iter().flat_map(|case| &case.warnings) {
+        if !warnings.contains(warning) {
+            warnings.push(warning.clone());
+        }
+    }
+    let motion = prepared.ground.first.motion.as_ref();
+    let mut summary = CellarSummary {
+        schema: "cellar/1",
+        title: prepared.cellar.title.clone(),
+        headline: String::new(),
+        plan: plan.summary.clone(),
+        counted: u32::try_from(all.len()).unwrap_or(u32::MAX),
+        broken: cases.iter().filter(|case| !case.valid).map(|case| case.variant).collect(),
+        unfinished: None,
+        room,
+        rows: rows(prepared, &all),
+        stacks: stacks(prepared, &all),
+        aisles: aisles(prepared, &all),
+        places: places(prepared, &all),
+        obstacles: obstacles(run, &all),
+        inspection: Vec::new(),
+        shown: shown_room(prepared, case, run),
+        motion: motion.map(MotionSummary::of),
+        onset: prepared.onset,
+        warnings,
+        program: "barrelstack",
+        version: env!("CARGO_PKG_VERSION"),
+        provenance: prepared.ground.provenance(),
+        wall_seconds: None,
+    };
+    summary.inspection = inspection(&summary.stacks);
+    summary.headline = crate::words::headline(&summary);
+    summary
+}
+
+fn rows(prepared: &Prepared, all: &[&Case]) -> Vec<RowAnswer> {
+    let stacks = &prepared.plan.stacks;
+    let last = stacks.last().map_or(0, |last| last.row);
+    let row = |row: u32| {
+        let own: Vec<usize> = (0..stacks.len()).filter(|at| stacks[*at].row == row).collect();
+        let many = |is: &dyn Fn(&StackCase) -> bool| {
+            mean(
+                all.iter()
+                    .map(|case| own.iter().filter(|at| is(&case.stacks[**at])).count() as f64),
+            )
+        };
+        RowAnswer {
+            row,
+            stacks: u32::try_from(own.len()).unwrap_or(u32::MAX),
+            starts: Count::of(all, |case| first(case).is_some_and(|at| stacks[at].row == row)),
+            by_themselves: many(&StackCase::by_itself),
+            knocked_over: many(&|stack| stack.knocked),
+        }
+    };
+    (1..=last).map(row).collect()
+}
+
+fn stacks(prepared: &Prepared, all: &[&Case]) -> Vec<StackAnswer> {
+    let plan = &prepared.plan;
+    let one = |(at, standing): (usize, &crate::scenario::Standing)| {
+        let own = || all.iter().map(|case| &case.stacks[at]);
+        let mut touched = BTreeMap::<usize, u32>::new();
+        for (_, by, _) in own().filter_map(|stack| stack.touched) {
+            *touched.entry(by).or_default() += 1;
+        }
+        // Of equal counts, the stack that comes first.
+        let most = touched.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0)));
+        let [lower, upper] = plan.footprints[at].bounds();
+        StackAnswer {
+            name: standing.name.clone(),
+            row: standing.row,
+            number: standing.number,
+            at: [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis])),
+            falls: Count::of(all, |case| case.stacks[at].fell_at.is_some()),
+            by_itself: Count::of(all, |case| case.stacks[at].by_itself()),
+            knocked_over: Count::of(all, |case| case.stacks[at].knocked),
+            falls_at: Range::of(own().filter_map(|one| Some(one.fell_at? - prepared.onset))),
+            touched_by: most.map(|(by, _)| plan.stacks[*by].name.clone()),
+            touched_at: Range::of(own().filter_map(|one| Some(one.touched?.0 - prepared.onset))),
+            impulse: Range::of(own().filter_map(|one| Some(one.touched?.2))),
+            barrels_fallen: mean(own().map(|one| one.barrels as f64)),
+            wine_lost: mean(own().map(|one| one.wine[1])),
+            moved: Range::of(own().filter(|one| one.fell_at.is_none()).map(|one| one.moved)),
+        }
+    };
+    plan.stacks.iter().enumerate().map(one).collect()
+}
+
+fn aisles(prepared: &Prepared, all: &[&Case]) -> Vec<AisleAnswer> {
+    let one = |(at, aisle): (usize, &crate::scenario::Aisle)| {
+        let own = || all.iter().map(|case| &case.aisles[at]);
+        AisleAnswer {
+            name: aisle.name.clone(),
+            entered: Count::of(all, |case| case.aisles[at].first.is_some()),
+            first_barrel: Range::of(own().filter_map(|one| one.first)),
+            blocked: Count::of(all, |case| case.aisles[at].blocked_at.is_some()),
+            blocked_at: Range::of(own().filter_map(|one| one.blocked_at)),
+            covered: range(own().map(|one| one.covered)),
+            fastest: Range::of(own().filter_map(|one| one.fastest)),
+        }
+    };
+    prepared.cellar.aisles.iter().enumerate().map(one).collect()
+}
+
+fn places(prepared: &Prepared, all: &[&Case]) -> Vec<PlaceAnswer> {
+    let doors = !prepared.cellar.doors.is_empty();
+    let one = |(at, place): (usize, &crate::scenario::Place)| PlaceAnswer {
+        name: place.name.clone(),
+        leads_out: doors.then(|| Count::of(all, |case| case.ways_out[at] == Some(true))),
+    };
+    prepared.cellar.places.iter().enumerate().map(one).collect()
+}
+
+fn obstacles(run: &RoomRun, all: &[&Case]) -> Vec<ObstacleAnswer> {
+    let one = |(at, end): (usize, &crate::result::ObstacleEnd)| {
+        let struck = || all.iter().map(|case| &case.obstacles[at]).filter(|one| one.struck);
+        ObstacleAnswer {
+            name: end.name.clone(),
+            struck: Count::of(all, |case| case.obstacles[at].struck),
+            peak: Range::of(struck().map(|one| one.peak)),
+            impulse: Range::of(struck().map(|one| one.impulse)),
+        }
+    };
+    run.obstacles.iter().enumerate().map(one).collect()
+}
+
+fn inspection(stacks: &[StackAnswer]) -> Vec<String> {
+    let mut standing: Vec<(f64, &str)> =
+        stacks.iter().filter_map(|one| Some((one.moved?.p50, one.name.as_str()))).collect();
+    standing.sort_by(|a, b| b.0.total_cmp(&a.0));
+    standing.into_iter().map(|(_, name)| name.to_owned()).collect()
+}
+
+fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
+    let plan = &prepared.plan;
+    let [by_themselves, knocked_over] = fallen(case);
+    let barrels: usize = case.stacks.iter().map(|stack| stack.barrels).sum();
+    let stack = |(stack, standing): (&StackCase, &crate::scenario::Standing)| ShownStack {
+        name: standing.name.clone(),
+        fate: match (stack.fell_at, stack.knocked) {
+            (None, _) => "stands",
+            (Some(_), false) => "falls-by-itself",
+            (Some(_), true) => "knocked-over",
+        },
+        falls_at: stack.fell_at.map(|time| time - prepared.onset),
+        touched_at: stack.touched.map(|(time, ..)| time - prepared.onset),
+        touched_by: stack.touched.map(|(_, by, _)| plan.stacks[by].name.clone()),
+        bodies: stack.touching.clone(),
+        impulse: stack.touched.map(|(.., impulse)| impulse),
+        barrels_fallen: stack.barrels,
+        moved: stack.moved,
+    };
+    ShownRoom {
+        variant: case.variant,
+        end_time: run.end_time,
+        starts: first(case).map(|at| plan.stacks[at].row),
+        by_themselves,
+        knocked_over,
+        barrels_fallen: u32::try_from(barrels).unwrap_or(u32::MAX),
+        stacks: case.stacks.iter().zip(&plan.stacks).map(stack).collect(),
+        blocked_at: case.aisles.iter().map(|aisle| aisle.blocked_at).collect(),
+    }
+}

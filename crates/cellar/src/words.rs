@@ -1,0 +1,195 @@
+//! Results of a cellar as sentences.
+
+use barrelstack::variants::Range;
+use barrelstack::variants::words::percent;
+use barrelstack_report::{Tone, listed};
+
+use crate::plan::liters;
+use crate::summary::{CellarSummary, Count};
+
+/// Number of variants needed for the verdict that a room stands.
+const ENOUGH: u32 = 8;
+
+/// Returns a number of things, such as "1 stack" or "3 stacks".
+pub(crate) fn counted(count: u32, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Returns a share with its interval, such as "28 of 32 variants (88 %, 95 % interval 72 % to 95 %)".
+pub(crate) fn share(count: &Count, of: u32) -> String {
+    let [low, high] = count.interval.map(percent);
+    let share = count.share.map_or_else(String::new, |share| format!("{}, ", percent(share)));
+    format!(
+        "{} of {} ({share}95 % interval {low} to {high})",
+        count.of_variants,
+        counted(of, "variant")
+    )
+}
+
+/// Returns the 5 and 95 % fractiles, such as "2.1 to 3.4 s"; one number where they are shown alike.
+pub(crate) fn span(range: &Range, decimals: usize, unit: &str) -> String {
+    let [low, high] = [range.p05, range.p95].map(|value| format!("{value:.decimals$}"));
+    if low == high { format!("{low} {unit}") } else { format!("{low} to {high} {unit}") }
+}
+
+/// Returns the result of the run that is shown, in the sentence that people repeat.
+pub fn headline(summary: &CellarSummary) -> String {
+    let shown = &summary.shown;
+    let all = summary.plan.stacks;
+    let (own, knocked) = (shown.by_themselves, shown.knocked_over);
+    if own + knocked == 0 {
+        let stand = if all == 1 {
+            "The only stack stands".to_owned()
+        } else {
+            format!("All {all} stacks stand")
+        };
+        let some = &summary.room.some_fall;
+        return if some.of_variants == 0 {
+            format!("{stand}.")
+        } else {
+            format!(
+                "{stand} in the most typical run, but at least one falls in {} of {}.",
+                some.of_variants,
+                counted(summary.counted, "variant")
+            )
+        };
+    }
+    let starts = shown.starts.filter(|_| summary.plan.rows > 1);
+    let starts = starts.map_or(String::new(), |row| format!("Row {row} starts it: "));
+    let verb = if own == 1 { "falls by itself" } else { "fall by themselves" };
+    let more = match knocked {
+        0 => "none is knocked over".to_owned(),
+        1 => "1 more is knocked over".to_owned(),
+        many => format!("{many} more are knocked over"),
+    };
+    let stacks = if all == 1 { "stack" } else { "stacks" };
+    format!("{starts}{own} of {all} {stacks} {verb}, {more}{}.", blocked(summary))
+}
+
+/// Returns a clause on the aisles that are blocked in the run that is shown.
+fn blocked(summary: &CellarSummary) -> String {
+    let times: Vec<f64> = summary.shown.blocked_at.iter().filter_map(|time| *time).collect();
+    let all = summary.aisles.len();
+    let Some(last) = times.iter().copied().reduce(f64::max) else {
+        return match all {
+            0 => String::new(),
+            1 => "; the aisle stays passable".to_owned(),
+            2 => "; both aisles stay passable".to_owned(),
+            _ => format!("; all {all} aisles stay passable"),
+        };
+    };
+    let after = format!("after {last:.0} s");
+    match (times.len(), all) {
+        (1, 1) => format!("; the aisle is blocked {after}"),
+        (2, 2) => format!("; both aisles are blocked {after}"),
+        (many, all) if many == all => format!("; all {all} aisles are blocked {after}"),
+        (1, all) => format!("; 1 of {all} aisles is blocked {after}"),
+        (many, all) => format!("; {many} of {all} aisles are blocked {after}"),
+    }
+}
+
+/// Returns the tone of the verdict.
+pub fn tone(summary: &CellarSummary) -> Tone {
+    match summary.room.some_fall.of_variants {
+        _ if summary.counted == 0 => Tone::Invalid,
+        // As for one stack, few variants that stand are no verdict.
+        0 if summary.counted < ENOUGH => Tone::Neutral,
+        0 => Tone::Stands,
+        _ => Tone::Falls,
+    }
+}
+
+/// Returns the sentences that support the headline.
+pub fn sentences(summary: &CellarSummary) -> Vec<String> {
+    let CellarSummary { room, counted: of, plan, .. } = summary;
+    let mut all = vec![match of {
+        0 => "No run has a valid result.".to_owned(),
+        1 => format!(
+            "One run of the room, {}; with variants of the room, shares have a meaning.",
+            if summary.shown.variant == 0 { "as stated" } else { "one variant" }
+        ),
+        _ => format!(
+            "At least one stack falls in {}. On average {:.1} of {} stacks fall by themselves ({}, 95 % interval {} to \
+             {}) and {:.1} are knocked over ({}, {} to {}).",
+            share(&room.some_fall, *of),
+            room.by_themselves,
+            plan.stacks,
+            percent(room.share_by_themselves.mean),
+            percent(room.share_by_themselves.interval[0]),
+            percent(room.share_by_themselves.interval[1]),
+            room.knocked_over,
+            percent(room.share_knocked_over.mean),
+            percent(room.share_knocked_over.interval[0]),
+            percent(room.share_knocked_over.interval[1]),
+        ),
+    }];
+    if let Some(spread) = room.spread {
+        all.push(format!(
+            "A collapse spreads to {spread:.1} stacks for each that falls by itself."
+        ));
+    }
+    if room.barrels_fallen.most > 0.0 {
+        let [few, central, many] = room.wine_lost.map(liters);
+        all.push(format!(
+            "Of {} barrels {} fall. About {central} of {} of wine are lost ({few} if few of the fallen barrels burst, \
+             {many} if many do).",
+            plan.barrels,
+            span(&room.barrels_fallen, 0, "").trim_end(),
+            liters(plan.wine),
+        ));
+    }
+    for aisle in &summary.aisles {
+        let Some(first) = &aisle.first_barrel else {
+            all.push(format!("No barrel comes into the aisle \"{}\".", aisle.name));
+            continue;
+        };
+        let fast =
+            aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
+        all.push(format!(
+            "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end {} of its area are \
+             covered, and it is blocked in {}.",
+            aisle.name,
+            span(first, 1, "s"),
+            spans_of_shares(&aisle.covered),
+            share(&aisle.blocked, *of),
+        ));
+    }
+    for place in &summary.places {
+        if let Some(count) = &place.leads_out {
+            all.push(format!(
+                "A path of 0.6 m leads from the place \"{}\" to a door in {}.",
+                place.name,
+                share(count, *of)
+            ));
+        }
+    }
+    let struck: Vec<_> = summary.obstacles.iter().filter(|one| one.peak.is_some()).collect();
+    if let Some(most) = struck.iter().max_by(|a, b| {
+        let peak = |one: &&&crate::summary::ObstacleAnswer| one.peak.map_or(0.0, |peak| peak.most);
+        peak(a).total_cmp(&peak(b))
+    }) && let Some(peak) = &most.peak
+    {
+        all.push(format!(
+            "The largest force on a wall or column is {:.0} kN, on the {}.",
+            1e-3 * peak.most,
+            most.name
+        ));
+    }
+    if !summary.inspection.is_empty() && room.some_fall.of_variants > 0 {
+        let first: Vec<&String> = summary.inspection.iter().take(5).collect();
+        all.push(format!("Inspect first, of those that stand: {}.", listed(first)));
+    }
+    if !summary.broken.is_empty() {
+        all.push(format!(
+            "The computation of {} failed; they are not counted.",
+            counted(u32::try_from(summary.broken.len()).unwrap_or(u32::MAX), "variant")
+        ));
+    }
+    all
+}
+
+/// Returns the 5 and 95 % fractiles of a share.
+pub(crate) fn spans_of_shares(range: &Range) -> String {
+    let [low, high] = [range.p05, range.p95].map(percent);
+    if low == high { low } else { format!("{low} to {high}") }
+}

@@ -1,0 +1,153 @@
+//! `barrelstack check` and `barrelstack run` for a cellar: the plan of the room, and the answer of all its variants.
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use anyhow::{Context as _, bail};
+use barrelstack::export::Folder;
+use barrelstack::variants::RunChoice;
+use barrelstack_cellar::{Answer, Cellar, CellarFailure, Plan, RoomFailure, report, words};
+use barrelstack_input::system;
+use barrelstack_report::{Characters, Figure};
+
+use crate::args::{CheckArgs, RunArgs, ScenarioArgs, VariantArgs};
+use crate::printer;
+use crate::progress::Progress;
+
+/// Prints the plan of a cellar, and what is wrong with it.
+pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCode> {
+    if args.table {
+        bail!("--table tabulates one stack; leave it out for a cellar");
+    }
+    let plan = Plan::of(cellar).map_err(|error| placed(error.into(), cellar, &args.scenario))?;
+    if let Some(path) = &args.plan {
+        let picture = Figure::new("plan", plan.summary.title.clone(), plan.picture(cellar));
+        write_new(path, picture.to_svg().as_bytes())?;
+    }
+    if args.json {
+        printer::document(&plan.summary)?;
+    } else {
+        let mut lines = vec![plan.summary.title.clone()];
+        lines.extend(plan.picture(cellar).lines(Characters::Unicode));
+        lines.extend(plan.summary.sentences());
+        lines.extend(plan.summary.findings.iter().map(|finding| format!("Note: {finding}.")));
+        printer::lines(lines)?;
+    }
+    let mut problems = plan.problems.into_iter().map(|(error, _)| error);
+    let Some(first) = problems.next() else {
+        if !args.json {
+            stands(cellar, &args.scenario)?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    };
+    // The first problem is the error of the command; the others are printed before it.
+    problems.for_each(|error| printer::note(&format!("error: {}", error.sentence())));
+    Err(first.into())
+}
+
+/// Prints how the stacks of a cellar rest before the motion.
+fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
+    for model in &cellar.models {
+        let found =
+            barrelstack_space::check(model).map_err(|error| placed(error.into(), cellar, args))?;
+        let heading = model.stack().filter(|_| cellar.models.len() > 1);
+        let heading = heading.map(|stack| format!("a stack of {} levels:", stack.levels));
+        printer::lines(heading.unwrap_or_else(|| "each stack:".to_owned()).lines())?;
+        printer::lines(found.lines())?;
+    }
+    Ok(())
+}
+
+/// Writes a file that must not exist.
+fn write_new(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    if path.exists() {
+        bail!("{} exists; give another name after --plan", path.display());
+    }
+    std::fs::write(path, bytes).map_err(|error| {
+        anyhow::anyhow!("cannot write {}: {}", path.display(), system::words(&error))
+    })
+}
+
+/// Runs a cellar and prints and writes the result.
+pub(crate) fn run(args: &RunArgs, cellar: Cellar) -> anyhow::Result<ExitCode> {
+    for (given, option, reason) in [
+        (
+            args.with_engine.is_some(),
+            "--with-engine",
+            "the page that contains the program runs one stack",
+        ),
+        (args.verify, "--verify", "runs are repeated for one stack only"),
+    ] {
+        if given {
+            bail!("{option}: {reason}; leave it out for a cellar");
+        }
+    }
+    let (cellar, choice) = selected(cellar, args.variants)?;
+    let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
+    let start = Instant::now();
+    let progress = Progress::new(!args.quiet);
+    let answer =
+        barrelstack_cellar::answer(&cellar, choice, &mut |reached| progress.advance(reached));
+    drop(progress);
+    let mut answer = answer.map_err(|error| placed(error, &cellar, &args.scenario))?;
+    answer.summary.wall_seconds = Some(start.elapsed().as_secs_f64());
+    crate::interrupt::finished();
+    // The verdict is printed even if the files cannot be written.
+    let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
+        crate::interrupt::writes_to(folder.path());
+        folder.write_files(&answer.files().context("cannot write the summary")?)?;
+        if args.pdf {
+            folder.write_pdf(&report::document(&answer), args.paper.into())?;
+        }
+        Ok(())
+    });
+    if args.json {
+        printer::document(&answer.summary)?;
+    } else {
+        let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
+        printed(&answer, characters)?;
+        if let (Some(folder), Ok(())) = (&folder, &written) {
+            let paper = if args.pdf { ", and report.pdf beside it" } else { "" };
+            printer::lines(["", &format!("report: {}{paper}", folder.report().display())])?;
+        }
+        answer.summary.warnings.iter().for_each(|warning| printer::warning(warning));
+    }
+    written?;
+    Ok(super::status(answer.is_invalid()))
+}
+
+fn printed(answer: &Answer, characters: Characters) -> anyhow::Result<()> {
+    let summary = &answer.summary;
+    let mut lines = vec![summary.title.clone(), format!("  {}", summary.headline)];
+    lines.extend(words::sentences(summary).into_iter().map(|sentence| format!("  {sentence}")));
+    lines.push(String::new());
+    lines.extend(report::picture(answer).lines(characters));
+    printer::lines(lines)
+}
+
+/// Returns the cellar with the requested number of variants, and the run to show.
+fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cellar, RunChoice)> {
+    let stated = cellar.stated().imperfections().map_or(0, |imperfections| imperfections.variants);
+    let count = args.variants.unwrap_or(stated);
+    let cellar = cellar.with_variants(count);
+    match args.variant {
+        Some(number) if number > count => bail!(
+            "--variant {number}: variants are numbered from 1 to {count}, and 0 is the room as stated; --variants {number} adds variants"
+        ),
+        Some(number) => Ok((cellar, RunChoice::Number(number))),
+        None => Ok((cellar, RunChoice::Typical)),
+    }
+}
+
+/// Adds to an error the position in the file.
+fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
+    match error {
+        CellarFailure::Plan(error) => error.into(),
+        CellarFailure::Stack(failure) => super::placed(failure, cellar.stated(), args),
+        CellarFailure::Room(RoomFailure::Stack { name, failure }) => {
+            super::placed(failure, cellar.stated(), args).context(format!("stack {name}"))
+        }
+        CellarFailure::Room(error) => anyhow::Error::from(error).context(args.scenario.clone()),
+    }
+}

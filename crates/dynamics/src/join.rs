@@ -1,0 +1,346 @@
+//! Runs in space that continue as one, because bodies of different runs may meet.
+//!
+//! Each run is a party with a model of its own. A joined model has the bodies, laws and elements of all parties, and
+//! contact pairs between bodies of different parties. The pairs within a party are summed in the same order as in its
+//! own model, and before all pairs between parties, so a party that meets nobody moves as alone.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::body::{Body, BodyId, Nodes};
+use crate::contact_elements::{ContactElements, Moved};
+use crate::energy::EnergyLedger;
+use crate::forces::{Losses, Scratch, evaluate};
+use crate::integrate::{Drive, place_prescribed};
+use crate::model::{ContactPair, InterfaceId, Model, ModelError, Substepping};
+use crate::pairs::{Foreign, Pairs};
+use crate::shape::{Surface as _, Whole as _};
+use crate::simulate::{Simulation, Stepper};
+use crate::space::{Pose, Quaternion, Rotation3, Space as _, Spatial, Twist, Vec3, Wrench};
+use crate::state::State;
+
+/// Placement on level ground: a position (m) and an angle (rad), counterclockwise about the vertical.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Position (m) of the origin.
+    pub at: Vec3,
+    /// Angle (rad) from the outer `x` axis to the `x` axis of the frame.
+    pub azimuth: f64,
+}
+
+impl Frame {
+    /// Returns this frame as it is placed within another one.
+    #[must_use]
+    pub fn within(self, outer: Self) -> Self {
+        let back = Self { at: Vec3::default(), azimuth: -outer.azimuth };
+        Self { at: back.vector(self.at - outer.at), azimuth: self.azimuth - outer.azimuth }
+    }
+
+    /// Returns the inverse placement.
+    #[must_use]
+    pub fn back(self) -> Self {
+        Self::default().within(self)
+    }
+
+    fn turn(self) -> Quaternion {
+        Quaternion::turn(Vec3::new(0.0, 0.0, self.azimuth))
+    }
+
+    /// Transforms a direction out of the frame.
+    pub fn vector(self, vector: Vec3) -> Vec3 {
+        self.turn().matrix().apply(vector)
+    }
+
+    /// Transforms a pose out of the frame.
+    pub fn pose(self, pose: Pose<Spatial>) -> Pose<Spatial> {
+        Pose {
+            position: self.vector(pose.position) + self.at,
+            orientation: self.turn().after(pose.orientation),
+        }
+    }
+
+    /// Transforms a twist out of the frame.
+    pub fn twist(self, twist: Twist<Spatial>) -> Twist<Spatial> {
+        Twist { linear: self.vector(twist.linear), angular: self.vector(twist.angular) }
+    }
+
+    fn wrench(self, wrench: Wrench<Spatial>) -> Wrench<Spatial> {
+        Wrench { force: self.vector(wrench.force), moment: self.vector(wrench.moment) }
+    }
+}
+
+/// Sort of a body: how many of its solids meet bodies of other parties. These come first in its lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Sort {
+    /// Number of node sets.
+    pub nodes: usize,
+    /// Number of surfaces.
+    pub surfaces: usize,
+}
+
+/// Contact between bodies of two sorts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Rule {
+    /// `true` if the body of the second sort is the contactor.
+    pub turned: bool,
+    /// Index of the law among the interfaces of the party of the first body, if it supplies the law, and of that of the
+    /// second body, if that one does.
+    pub laws: [InterfaceId; 2],
+}
+
+/// Contacts between bodies of different parties, by their sorts.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Crossing {
+    /// The sorts.
+    pub sorts: Vec<Sort>,
+    /// For every two sorts, given by the sort of the body that comes first, the rule; `None` if they never touch.
+    pub rules: Vec<Vec<Option<Rule>>>,
+}
+
+/// A party of a joined model.
+#[derive(Clone, Copy, Debug)]
+pub struct Party<'a> {
+    /// Name that precedes the names of its bodies.
+    pub name: &'a str,
+    /// Its own model.
+    pub model: &'a Model<Spatial>,
+    /// Sort of every body.
+    pub sorts: &'a [usize],
+    /// Rank: of two parties that meet, that of the lower rank supplies the law.
+    pub rank: usize,
+    /// Placement in the joined model.
+    pub frame: Frame,
+    /// Its time step (s).
+    pub step: f64,
+}
+
+/// A model joined from several parties, and its time step (s), the shortest of theirs.
+///
+/// # Errors
+/// If names of bodies repeat.
+///
+/// # Panics
+/// If a party has not one sort for each body, or there is no party.
+pub fn joined(
+    parties: &[Party<'_>],
+    crossing: &Arc<Crossing>,
+) -> Result<(Model<Spatial>, f64), ModelError> {
+    let (mut bodies, mut interfaces) = (Vec::new(), Vec::new());
+    let (mut pairs, mut elements) = (Vec::new(), Vec::new());
+    let mut depths = Vec::new();
+    let mut foreign = Foreign {
+        bodies: Vec::new(),
+        parties: Vec::new(),
+        crossing: Arc::clone(crossing),
+        most: crossing.sorts.iter().map(|sort| sort.nodes).max().unwrap_or(0)
+            * crossing.sorts.iter().map(|sort| sort.surfaces).max().unwrap_or(0),
+    };
+    for (number, party) in parties.iter().enumerate() {
+        let Party { name, model, sorts, rank, frame, .. } = *party;
+        assert_eq!(sorts.len(), model.bodies.len(), "one sort for each body");
+        let (first, law) = (bodies.len(), interfaces.len());
+        bodies.extend(model.bodies.iter().map(|body| Body {
+            name: format!("{name}/{}", body.name),
+            pose: frame.pose(body.pose),
+            twist: frame.twist(body.twist),
+            ..body.clone()
+        }));
+        interfaces.extend(model.interfaces.iter().cloned());
+        pairs.extend(model.pairs().map(|pair| ContactPair {
+            contactor: pair.contactor + first,
+            target: pair.target + first,
+            interface: pair.interface + law,
+            ..pair
+        }));
+        elements.extend(model.elements.iter().cloned().map(|mut element| {
+            for body in &mut element.link_mut().bodies {
+                *body += first;
+            }
+            element
+        }));
+        depths.extend(&model.substepping.whole_step_depth);
+        foreign.bodies.extend(sorts.iter().map(|sort| (number, *sort)));
+        foreign.parties.push((rank, law));
+    }
+    let Pairs::Listed { pairs, couples } = Pairs::listed(pairs) else { unreachable!("listed") };
+    let pairs = Pairs::Joined { pairs, couples, foreign };
+    let mut model = Model::of_pairs(bodies, interfaces, pairs, parties[0].model.gravity)?;
+    model.fasten(elements)?;
+    let all = || parties.iter().map(|party| &party.model.substepping);
+    let step = parties.iter().map(|party| party.step).fold(f64::INFINITY, f64::min);
+    let shortest = parties.iter().map(|party| party.step / party.model.substepping.substeps);
+    let shortest = shortest.fold(f64::INFINITY, f64::min);
+    model.set_substepping(Substepping {
+        substeps: (step / shortest * (1.0 - 1e-9)).ceil().max(1.0),
+        whole_step_depth: depths,
+        resting_allowance: all().map(|own| own.resting_allowance).fold(f64::INFINITY, f64::min),
+        foreseen_gap: all().map(|own| own.foreseen_gap).fold(0.0, f64::max),
+        fast: all().find_map(|own| own.fast),
+    });
+    Ok((model, step))
+}
+
+/// A run whose bodies are carried over into another model, between two steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// The model.
+    pub model: &'a Model<Spatial>,
+    /// The state.
+    pub state: &'a State<Spatial>,
+    /// The forces of the state.
+    pub scratch: &'a Scratch<Spatial>,
+    /// The run.
+    pub stepper: &'a Stepper<Spatial>,
+    /// Placement of its frame in that of the new model.
+    pub frame: Frame,
+}
+
+/// Bodies and elements that are carried over.
+#[derive(Clone, Debug)]
+pub struct Carry {
+    /// Index of the source.
+    pub source: usize,
+    /// The bodies in the source.
+    pub bodies: Range<BodyId>,
+    /// ID of the first of them in the new model.
+    pub to: BodyId,
+    /// The elements in the source, which keep their order.
+    pub elements: Range<usize>,
+}
+
+/// A run between two steps.
+#[derive(Clone, Debug)]
+pub struct Running {
+    /// The state.
+    pub state: State<Spatial>,
+    /// The forces of the state.
+    pub scratch: Scratch<Spatial>,
+    /// The run.
+    pub stepper: Stepper<Spatial>,
+}
+
+/// Continues runs that have reached the same time as one run of a new model, with their motion and the memory of their
+/// contacts and elements. No force is evaluated anew, so the next step is that of the sources.
+///
+/// Bodies that no source has must be prescribed. Sources must have no forces from outside.
+///
+/// # Panics
+/// If there is no source.
+pub fn carry(
+    model: &Model<Spatial>,
+    drive: &impl Drive<Spatial>,
+    sources: &[Source<'_>],
+    carries: &[Carry],
+    simulation: &Simulation,
+) -> Running {
+    let mut state = State::initial(model);
+    let mut scratch = Scratch::new(model);
+    state.time = sources[0].state.time;
+    (state.memory, scratch.loads) = (Vec::new(), Vec::new());
+    let damped = model.is_damped();
+    for Carry { source, bodies, to, elements } in carries {
+        let Source { state: old, scratch: before, frame, .. } = sources[*source];
+        for (at, body) in bodies.clone().enumerate() {
+            let new = to + at;
+            state.poses[new] = frame.pose(old.poses[body]);
+            state.twists[new] = frame.twist(old.twists[body]);
+            scratch.accelerations[new] = frame.twist(before.accelerations[body]);
+            scratch.wrenches[new] = frame.wrench(before.wrenches[body]);
+            let Losses { damped: lost, friction } = before.losses[body];
+            scratch.losses[new] =
+                Losses { damped: frame.wrench(lost), friction: frame.wrench(friction) };
+            if let (true, Some(viscous)) = (damped, before.viscous.get(body)) {
+                scratch.viscous[new] = frame.wrench(*viscous);
+            }
+        }
+        state.memory.extend_from_slice(&old.memory[elements.clone()]);
+        scratch.loads.extend_from_slice(&before.loads[elements.clone()]);
+    }
+    place_prescribed(model, drive, &mut state);
+    for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {
+        *rotation = pose.orientation.matrix();
+    }
+    let (mut moved, mut whole) = (Vec::new(), true);
+    for (number, source) in sources.iter().enumerate() {
+        let mut places = vec![None; source.model.bodies.len()];
+        for carry in carries.iter().filter(|carry| carry.source == number) {
+            for (at, body) in carry.bodies.clone().enumerate() {
+                places[body] = Some(carry.to + at);
+            }
+        }
+        let number_of = |number: usize| {
+            let pair = source.model.pair(number);
+            let (contactor, target) = (places[pair.contactor]?, places[pair.target]?);
+            model.pairs.number_of(&ContactPair { contactor, target, ..pair })
+        };
+        let turn = source.frame.turn().matrix();
+        let rates = &source.scratch.slip_rates;
+        moved.extend(source.state.contact_elements.moved(rates, turn, &number_of));
+        whole &= places.iter().all(Option::is_some);
+        scratch.totals.elastic += source.scratch.totals.elastic;
+        scratch.totals.stick += source.scratch.totals.stick;
+        scratch.needs_substeps |= source.scratch.needs_substeps;
+        scratch.is_hard |= source.scratch.is_hard;
+    }
+    moved.sort_by_key(Moved::pair);
+    let (elements, slip_rates) = ContactElements::of_moved(model, &moved, &state);
+    (state.contact_elements, scratch.slip_rates) = (elements, slip_rates);
+    scratch.keeps_contacts = false;
+    if !whole {
+        // The energy of the contacts that were carried over is not known by itself.
+        let mut anew = scratch.clone();
+        evaluate(model, &state, &mut anew);
+        scratch.totals = anew.totals;
+    }
+    let steppers: Vec<_> = sources.iter().map(|source| source.stepper).collect();
+    let energy = EnergyLedger::new(model, &state, &scratch);
+    let stepper = Stepper::after(&steppers, model, &state, &mut scratch, energy, simulation);
+    Running { state, scratch, stepper }
+}
+
+/// Returns the gap (m) between the solids of two bodies that meet, or a lower bound of it if the gap exceeds `enough`
+/// (m).
+pub fn gap_between(
+    (contactor, pose, nodes): (&Body<Spatial>, Pose<Spatial>, usize),
+    (target, base, surfaces): (&Body<Spatial>, Pose<Spatial>, usize),
+    enough: f64,
+) -> f64 {
+    let (turned, under) = (pose.orientation.matrix(), base.orientation.matrix());
+    let mut least = f64::INFINITY;
+    for placed in &target.surfaces[..surfaces] {
+        let rotation: Rotation3 = under.after(placed.rotation);
+        let origin = base.position + under.apply(placed.offset);
+        let place = rotation.unapply(pose.position - origin);
+        let relative = Spatial::relative(rotation, turned);
+        let distance = |point: Vec3| placed.surface.gap(place + relative.apply(point)).distance;
+        for nodes in &contactor.nodes[..nodes] {
+            match nodes {
+                Nodes::Whole(whole) => {
+                    let (center, radius) = whole.ball();
+                    let bound = distance(center) - radius;
+                    if bound >= enough.min(least) {
+                        least = least.min(bound);
+                    } else {
+                        whole.meet(&placed.surface, place, relative, |patch| {
+                            least = least.min(patch.deepest.gap.distance);
+                        });
+                    }
+                }
+                Nodes::Rolling { center, radius, .. } => {
+                    least = least.min(distance(*center) - radius);
+                }
+                Nodes::Fixed(all) => {
+                    for node in all {
+                        least = least.min(distance(node.position));
+                    }
+                }
+                Nodes::Rounds(rounds) => {
+                    for round in rounds {
+                        least = least.min(distance(round.center) - round.radius);
+                    }
+                }
+            }
+        }
+    }
+    least
+}
