@@ -25,7 +25,7 @@ mod world;
 pub use result::{
     BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
 };
-pub use room::{Obstacle, Placed, Room, RoomFailure, Settings};
+pub use room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure, Settings};
 pub use run::{Advance, run};
 
 /// The example of the README, which is compiled and run with the tests of the documentation.

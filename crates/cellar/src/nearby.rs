@@ -202,32 +202,35 @@ impl Nearby {
                 }
                 Owner::Obstacle(obstacle) => inside(obstacle),
             };
-            let moves = |island: Option<&Island>| island.is_some_and(Island::is_awake);
-            if together || !(moves(Some(first)) || moves(second_island)) {
+            if together {
                 couple.limits = [f64::INFINITY; 2];
                 continue;
             }
+            let is_awake = |island: Option<&Island>| island.is_some_and(Island::is_awake);
+            let moves = is_awake(Some(first)) || is_awake(second_island);
             let needs = located.map(|located| match located {
                 Some((island, body)) if island.is_awake() => {
                     let step = island.fixed.simulation.time_step;
                     LEAST + 1.5 * island.speed(world, body) * (ahead + 2.0 * step)
                 }
-                Some(_) | None => 0.0,
+                // It may be woken within the window.
+                Some(_) => LEAST,
+                None => 0.0,
             });
             let need = needs[0] + needs[1];
             let numbers = couple.bodies.map(|owner| world.number(owner));
             let mut bound = couple.bound(&self.ways, numbers);
-            if bound < need + SLACK {
+            if moves && bound < need + SLACK {
                 bound = gap(world, islands, places, couple.bodies, EXACT.max(2.0 * need));
                 couple.gap = bound;
                 couple.since = numbers.map(|number| self.ways[number]);
             }
-            if bound < need + SLACK {
+            if moves && bound < need + SLACK {
                 meetings.push(couple.bodies);
                 couple.limits = [f64::INFINITY; 2];
             } else {
                 for side in 0..2 {
-                    let share = (bound - SLACK) * needs[side] / need;
+                    let share = (bound - SLACK).max(0.0) * needs[side] / need;
                     couple.limits[side] = self.ways[numbers[side]] + share;
                 }
             }

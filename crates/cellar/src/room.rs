@@ -1,5 +1,6 @@
 //! A room: stacks in their places, and obstacles.
 
+use barrelstack::scenario::Scene;
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_dynamics::{Interface, ModelError, Spatial};
 use barrelstack_space::Ground;
@@ -56,6 +57,22 @@ pub struct Room {
     pub ground: Ground,
 }
 
+impl Room {
+    /// Returns the number of bodies of all stacks.
+    pub fn bodies(&self) -> u64 {
+        let of = |placed: &Placed| match &placed.scenario.scene {
+            Scene::Stack { stack, .. } => {
+                let rack = u64::from(stack.rack.barrels) * u64::from(stack.rack.barrels_deep) + 1;
+                let per_level = u64::from(stack.racks_per_level()) * u64::from(stack.racks_along());
+                u64::from(stack.levels) * per_level * rack
+            }
+            Scene::Free(scene) => scene.bodies.len() as u64,
+            Scene::Spatial(scene) => scene.bodies.len() as u64,
+        };
+        self.stacks.iter().map(of).sum()
+    }
+}
+
 /// Settings of a run, none of which affects its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -71,12 +88,24 @@ impl Default for Settings {
     }
 }
 
+/// Maximum number of bodies.
+pub const MOST_BODIES: u64 = 30_000;
+
 /// Error of a room.
 #[derive(Debug, thiserror::Error)]
 pub enum RoomFailure {
     /// There is no stack.
     #[error("the room has no stack: place at least one")]
     Empty,
+    /// There are too many bodies.
+    #[error(
+        "the room has {bodies} barrels, racks and other bodies, more than {MOST_BODIES}, whose run needs about 3 GB: divide \
+         it into rooms between which nothing can fall"
+    )]
+    Large {
+        /// Number of bodies.
+        bodies: u64,
+    },
     /// Two stacks or obstacles have the same name.
     #[error("two stacks or obstacles are named \"{name}\": give each its own name")]
     Name {

@@ -116,8 +116,8 @@ fn a_second_shock_starts_from_the_stated_displacements() {
     let ends = run.bodies.iter().zip(&first.bodies);
     let most = ends.map(|(to, from)| way((&from.own, &to.own))).fold(0.0, f64::max);
     println!("largest way on ground at rest {most:e} m");
-    // MEASURED
-    assert!(most < 5e-3, "{most:e}");
+    // measured 0.7 mm
+    assert!(most < 2e-3, "{most:e}");
 }
 
 #[test]
@@ -136,6 +136,9 @@ fn hostile_rooms_are_refused_with_a_reason() {
     short.start = Some(vec![[0.0; 7]]);
     let short = failure(&room(vec![short]));
     assert!(short.contains("1 poses"), "{short}");
+    let mut many = room(vec![stack("A", 0.0)]);
+    many.stacks.resize(20_000, stack("A", 0.0));
+    assert!(failure(&many).contains("more than 30000"));
     let mut empty = room(vec![stack("A", 0.0)]);
     empty.stacks.clear();
     assert!(failure(&empty).contains("no stack"));
