@@ -14,7 +14,10 @@
 // (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod collect;
+mod history;
 mod island;
+mod merge;
 mod nearby;
 pub mod result;
 pub mod room;

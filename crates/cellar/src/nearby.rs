@@ -3,6 +3,7 @@
 //! The gap of two bodies is measured when it may have become small. From then on it shrinks by no more than the ways of
 //! the two bodies, which are summed window by window, so it is measured anew only when these have used it up.
 
+use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;
 use barrelstack_dynamics::space::Linear as _;
 use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
@@ -156,7 +157,7 @@ impl Nearby {
                 }
             }
         }
-        found.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+        found.sort_unstable_by_key(|(bodies, _)| *bodies);
         // Gaps that were measured are kept.
         let old = std::mem::take(&mut self.couples);
         for couples in &mut self.of_body {
@@ -202,7 +203,11 @@ impl Nearby {
                 }
                 Owner::Obstacle(obstacle) => inside(obstacle),
             };
-            if together {
+            // Numbers that are no longer finite say nothing about gaps.
+            let broken = |island: Option<&Island>| {
+                island.is_some_and(|island| island.live.ending == Some(Ending::Broken))
+            };
+            if together || broken(Some(first)) || broken(second_island) {
                 couple.limits = [f64::INFINITY; 2];
                 continue;
             }
@@ -253,7 +258,7 @@ impl Nearby {
             let mut least = FREE;
             for couple in &self.of_body[number] {
                 let couple = &self.couples[*couple as usize];
-                if self.parted(couple, places, of) {
+                if Self::parted(couple, places, of) {
                     near = true;
                     let side = usize::from(couple.bodies[0] != *owner);
                     least = least.min(couple.limits[side] - self.ways[number]);
@@ -265,11 +270,9 @@ impl Nearby {
     }
 
     /// Returns `true` if the bodies of a couple, one of which belongs to an island, can be moved independently.
-    fn parted(&self, couple: &Couple, places: &Places, island: &Island) -> bool {
+    fn parted(couple: &Couple, places: &Places, island: &Island) -> bool {
         match couple.bodies {
-            [Owner::Stack((one, _)), Owner::Stack((other, _))] => {
-                places[one].0 != places[other].0
-            }
+            [Owner::Stack((one, _)), Owner::Stack((other, _))] => places[one].0 != places[other].0,
             [_, Owner::Obstacle(obstacle)] => !island.fixed.obstacles.contains(&obstacle),
             [Owner::Obstacle(_), Owner::Stack(_)] => false,
         }
@@ -287,7 +290,7 @@ impl Nearby {
         let couples = self.of_body[world.number(owner)].iter();
         let parted = couples
             .map(|couple| &self.couples[*couple as usize])
-            .filter(|couple| self.parted(couple, places, island));
+            .filter(|couple| Self::parted(couple, places, island));
         let side = |couple: &Couple| usize::from(couple.bodies[0] != owner);
         let nearest = parted.min_by(|a, b| a.limits[side(a)].total_cmp(&b.limits[side(b)]))?;
         nearest.limits[side(nearest)].is_finite().then(|| nearest.bodies[1 - side(nearest)])

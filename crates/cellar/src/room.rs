@@ -74,18 +74,12 @@ impl Room {
 }
 
 /// Settings of a run, none of which affects its motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Number of threads; zero for all cores.
     pub threads: usize,
     /// `true` to record frames, at the frame rate of the first scenario.
     pub frames: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { threads: 0, frames: false }
-    }
 }
 
 /// Maximum number of bodies.
@@ -118,10 +112,12 @@ pub enum RoomFailure {
         /// Name of the stack.
         name: String,
         /// The error.
-        failure: RunFailure,
+        failure: Box<RunFailure>,
     },
     /// A stack starts from poses of other bodies.
-    #[error("stack \"{name}\" starts from {found} poses, but has {expected} bodies: state one pose for each body")]
+    #[error(
+        "stack \"{name}\" starts from {found} poses, but has {expected} bodies: state one pose for each body"
+    )]
     Start {
         /// Name of the stack.
         name: String,

@@ -68,7 +68,10 @@ impl<'a> World<'a> {
     /// Builds and settles all stacks.
     pub(crate) fn of(room: &'a Room, threads: usize) -> Result<Self, RoomFailure> {
         check(room)?;
-        let of = |placed: &Placed, failure| RoomFailure::Stack { name: placed.name.clone(), failure };
+        let of = |placed: &Placed, failure| RoomFailure::Stack {
+            name: placed.name.clone(),
+            failure: Box::new(failure),
+        };
         let mut end = 0.0_f64;
         for placed in &room.stacks {
             let own = end_time(&placed.scenario, room.ground.motion_end(), 1.0);

@@ -73,7 +73,7 @@ fn a_stack_that_falls_on_its_neighbors_is_the_first_and_they_are_touched() {
     assert!(run.energy.unwrap().residual_ratio() < 1e-3);
     // Threads and the order of the stacks change no bit.
     assert_eq!(bits(&run), bits(&on(1, &room)));
-    let mut turned = room.clone();
+    let mut turned = room;
     turned.stacks.reverse();
     assert_eq!(bits(&run), bits(&on(2, &turned)));
 }
@@ -107,7 +107,7 @@ fn a_second_shock_starts_from_the_stated_displacements() {
     let runs = [on(1, &second), on(2, &stated)];
     assert_eq!(bits(&runs[0]), bits(&runs[1]));
     // On ground at rest nothing moves on from there, but for what a rack turns until its sticks bear again.
-    let mut still = second.clone();
+    let mut still = second;
     still.ground = still.ground.scaled(0.0);
     let run = on(2, &still);
     let way = |(from, to): (&[f64; 7], &[f64; 7])| {
@@ -148,7 +148,11 @@ fn hostile_rooms_are_refused_with_a_reason() {
 fn the_observer_may_stop_a_run() {
     let room = room(vec![Placed::new("A", demo(&["stack.levels=2"]), [0.0, 0.0])]);
     let run = run(&room, &Settings::default(), &mut |now| {
-        if now.time > 0.0 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
+        if now.time > 0.0 {
+            std::ops::ControlFlow::Break(())
+        } else {
+            std::ops::ControlFlow::Continue(())
+        }
     });
     let run = run.unwrap();
     assert!(run.interrupted && run.end_time < 60.0);

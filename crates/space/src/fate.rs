@@ -133,10 +133,7 @@ impl Fates {
     /// Creates the recorder for a stack at rest.
     pub fn new(stack: Arc<Stack>, state: &State<Spatial>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Stack::GROUND].position;
-        let fate = |pose: &Pose<Spatial>| Fate {
-            rest: pose.position - ground,
-            ..Fate::default()
-        };
+        let fate = |pose: &Pose<Spatial>| Fate { rest: pose.position - ground, ..Fate::default() };
         let upright: Vec<_> = state.poses.iter().map(|pose| pose.orientation.matrix()).collect();
         Self {
             stack,
@@ -166,11 +163,11 @@ impl Fates {
     }
 
     /// Returns the fates of all bodies at the end of a run, in the order of the parts.
-    pub fn at_end(mut self, state: &State<Spatial>) -> Vec<Fate> {
-        self.turn(&state.poses);
+    pub fn at_end(mut self, poses: &[Pose<Spatial>]) -> Vec<Fate> {
+        self.turn(poses);
         let mut slips = Vec::new();
         for i in 1..self.all.len() {
-            self.slips(&state.poses, i, &mut slips);
+            self.slips(poses, i, &mut slips);
             let Vec3 { x, y, .. } = mean(&slips);
             self.all[i].residual_slip = [x, y];
         }

@@ -6,9 +6,7 @@ use std::sync::Arc;
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::Scenario;
 use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm, quiet_from};
-use barrelstack_dynamics::{
-    BodyId, Linear as _, Pose, Space as _, Spatial, State, Twist, Vec3,
-};
+use barrelstack_dynamics::{BodyId, Linear as _, Pose, Space as _, Spatial, State, Twist, Vec3};
 
 use crate::ground::Ground;
 use crate::stack::Stack;

@@ -45,7 +45,8 @@ impl Row {
                     0.5 * spin,
                     0.5 * DOMINO * spin,
                     self.friction,
-                    0.6 + f64::from(self.count) * pitch / if self.friction > 0.0 { 2.5 } else { 4.2 },
+                    0.6 + f64::from(self.count) * pitch
+                        / if self.friction > 0.0 { 2.5 } else { 4.2 },
                 ),
                 &[],
             )
