@@ -19,8 +19,8 @@ fn shown(speed: Option<f64>) -> String {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let spacings = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
-    let fine: Vec<f64> = (4..=66).map(|at| 0.01 * f64::from(at)).collect();
+    let spacings = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
+    let fine: Vec<f64> = (8..=64).map(|at| 0.01 * f64::from(at)).collect();
     let exact = fine.iter().map(|spacing| theory(DOMINO, *spacing)).collect();
     let mut series = vec![Series::new("theory, smooth dominoes", fine, exact)];
     let mut found = vec![Vec::new(); FRICTION.len()];
