@@ -98,21 +98,22 @@ fn processor() -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let numbers: Vec<f64> = std::env::args().skip(1).filter_map(|arg| arg.parse().ok()).collect();
-    let number = |at: usize, default: f64| numbers.get(at).copied().unwrap_or(default);
-    let (rows, stacks, threads) = (number(0, 11.0), number(1, 7.0), number(2, 0.0));
-    let levels = number(4, 6.0);
+    let arguments = std::env::args().skip(1);
+    let numbers: Vec<u32> = arguments.map(|arg| arg.parse()).collect::<Result<_, _>>()?;
+    let number = |at: usize, default: u32| numbers.get(at).copied().unwrap_or(default);
+    let (rows, stacks, threads) = (number(0, 11), number(1, 7), number(2, 0));
+    let levels = number(4, 6);
     let mut changes = vec![
         "stack.view=spatial".to_owned(),
         "stack.rack=four-barrel".to_owned(),
         format!("stack.levels={levels}"),
     ];
-    if let Some(seconds) = numbers.get(3).filter(|seconds| **seconds > 0.0) {
+    if let Some(seconds) = numbers.get(3).filter(|seconds| **seconds > 0) {
         changes.push(format!("run.duration={seconds} s"));
     }
     let start = Instant::now();
-    let room = cellar(rows as u32, stacks as u32, number(5, 0.0) == 1.0, &changes)?;
-    let settings = Settings { threads: threads as usize, ..Settings::default() };
+    let room = cellar(rows, stacks, number(5, 0) == 1, &changes)?;
+    let settings = Settings { threads: usize::try_from(threads)?, ..Settings::default() };
     let (mut settled, mut shown) = (0.0, Instant::now());
     let run = run(&room, &settings, &mut |now| {
         if settled == 0.0 {

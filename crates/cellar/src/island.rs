@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use barrelstack::run::Work;
 use barrelstack::watch::Ending;
-use barrelstack_dynamics::join::{Carry, Frame, Party, Running, Source, carry, joined};
+use barrelstack_dynamics::join::{Frame, Running};
 use barrelstack_dynamics::{
-    BodyId, Drive as _, EnergySummary, Model, ModelError, Pose, RunError, Simulation, Space as _,
-    Spatial, Twist, Vec3,
+    BodyId, Drive as _, EnergySummary, Model, Pose, RunError, Simulation, Space as _, Spatial,
+    Twist, Vec3,
 };
 use barrelstack_space::fate::Fates;
 use barrelstack_space::rest::Rest;
@@ -38,7 +38,7 @@ pub(crate) struct Member {
     /// Its bodies in the model of the island.
     pub(crate) bodies: Range<BodyId>,
     /// Its elements in the model of the island.
-    elements: Range<usize>,
+    pub(crate) elements: Range<usize>,
     /// Placement of its own frame in that of the island.
     pub(crate) frame: Frame,
 }
@@ -52,7 +52,7 @@ pub(crate) struct Fixed {
     /// The owners of the bodies of the model.
     pub(crate) owners: Vec<Owner>,
     pub(crate) model: Arc<Model<Spatial>>,
-    drive: Ground,
+    pub(crate) drive: Ground,
     /// Placement of the frame of the island in the room, that of its first stack.
     pub(crate) frame: Frame,
     pub(crate) simulation: Simulation,
@@ -65,7 +65,7 @@ pub(crate) struct Contact {
     /// The bodies of the first contact.
     pub(crate) bodies: [Owner; 2],
     /// Force (N) in the frame of the island at the last step.
-    last: Vec3,
+    pub(crate) last: Vec3,
     now: Vec3,
     /// Sum of magnitudes (N·s).
     pub(crate) impulse: f64,
@@ -76,7 +76,7 @@ pub(crate) struct Contact {
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     pub(crate) fates: Fates,
-    rest: Rest,
+    pub(crate) rest: Rest,
     /// First contact with a body of another stack: time, own body, other body.
     pub(crate) touched: Option<(f64, BodyId, Whose)>,
     pub(crate) touched_obstacle: Option<(f64, usize)>,
@@ -100,6 +100,24 @@ pub(crate) struct Live {
     pub(crate) stopped_by: Option<BodyId>,
     /// Time (s) before which the island does not come to rest, since a barrel rolls toward another stack.
     pub(crate) not_before: f64,
+}
+
+impl Live {
+    /// Creates the moving part of an island.
+    pub(crate) fn of(running: Running, watches: Vec<Watch>) -> Self {
+        let travels = vec![0.0; running.state.poses.len()];
+        Self {
+            running,
+            watches,
+            contacts: BTreeMap::new(),
+            ending: None,
+            failure: None,
+            kept: Vec::new(),
+            travels,
+            stopped_by: None,
+            not_before: 0.0,
+        }
+    }
 }
 
 /// A party of a contact: a stack or an obstacle.
@@ -137,7 +155,7 @@ pub(crate) struct Island {
     pub(crate) banked: EnergySummary,
     pub(crate) work: Work,
     /// Time (s) between frames; `None` for no frames.
-    every: Option<f64>,
+    pub(crate) every: Option<f64>,
     /// For every body, the distance (m) that it may move in the current window.
     pub(crate) tubes: Vec<f64>,
     /// Poses relative to the ground at the start of the window.
@@ -156,42 +174,32 @@ impl Island {
         let fates = Fates::new(Arc::clone(&of.stack), &of.at_rest, of.thresholds);
         let rest = Rest::new(of.scenario, Arc::clone(&of.stack), &world.room.ground);
         let watch = Watch { fates, rest, touched: None, touched_obstacle: None, impulse: 0.0 };
-        let mut island = Self {
-            fixed: Fixed {
-                members: vec![Member {
-                    stack,
-                    bodies: 0..count,
-                    elements: 0..of.stack.model.elements().len(),
-                    frame: Frame::default(),
-                }],
-                obstacles: Vec::new(),
-                owners: (0..count).map(|body| Owner::Stack((stack, body))).collect(),
-                model: Arc::new(of.stack.model.clone()),
-                drive: world.room.ground.clone().turned(of.frame.azimuth),
-                frame: of.frame,
-                simulation: of.simulation,
-            },
-            live: Live {
-                running: Running { state, scratch, stepper },
-                watches: vec![watch],
-                contacts: BTreeMap::new(),
-                ending: None,
-                failure: None,
-                kept: Vec::new(),
-                travels: vec![0.0; count],
-                stopped_by: None,
-                not_before: 0.0,
-            },
-            logs: Logs { frames: vec![RoomFrames::default()], forces: Vec::new() },
-            banked: EnergySummary::default(),
-            work: Work::default(),
-            every,
-            tubes: vec![f64::INFINITY; count],
-            from: Vec::new(),
-            start: None,
+        let fixed = Fixed {
+            members: vec![Member {
+                stack,
+                bodies: 0..count,
+                elements: 0..of.stack.model.elements().len(),
+                frame: Frame::default(),
+            }],
+            obstacles: Vec::new(),
+            owners: (0..count).map(|body| Owner::Stack((stack, body))).collect(),
+            model: Arc::new(of.stack.model.clone()),
+            drive: world.room.ground.clone().turned(of.frame.azimuth),
+            frame: of.frame,
+            simulation: of.simulation,
         };
+        let live = Live::of(Running { state, scratch, stepper }, vec![watch]);
+        let logs = Logs { frames: vec![RoomFrames::default()], forces: Vec::new() };
+        let mut island = Self::of(fixed, live, logs, every);
         island.observe(0.0);
         island
+    }
+
+    /// Creates an island at the start of a window.
+    pub(crate) fn of(fixed: Fixed, live: Live, logs: Logs, every: Option<f64>) -> Self {
+        let tubes = vec![f64::INFINITY; fixed.owners.len()];
+        let (banked, work) = (EnergySummary::default(), Work::default());
+        Self { fixed, live, logs, banked, work, every, tubes, from: Vec::new(), start: None }
     }
 
     pub(crate) fn time(&self) -> f64 {
@@ -203,7 +211,7 @@ impl Island {
     }
 
     /// Returns the poses and twists of a member in its own frame.
-    fn own(&self, member: usize) -> (Vec<Pose<Spatial>>, Vec<Twist<Spatial>>) {
+    pub(crate) fn own(&self, member: usize) -> (Vec<Pose<Spatial>>, Vec<Twist<Spatial>>) {
         let Member { bodies, frame, .. } = &self.fixed.members[member];
         let (state, back) = (&self.live.running.state, frame.back());
         let poses = state.poses[bodies.clone()].iter().map(|pose| back.pose(*pose)).collect();
@@ -494,157 +502,6 @@ impl Island {
             evaluations: self.work.evaluations + scratch.evaluations,
             contact_evaluations: self.work.contact_evaluations + scratch.contact_evaluations,
         }
-    }
-
-    /// Merges islands that have reached the same time, and obstacles.
-    ///
-    /// # Errors
-    /// If names of bodies repeat.
-    pub(crate) fn merged(
-        world: &World<'_>,
-        islands: Vec<Self>,
-        obstacles: &[usize],
-    ) -> Result<Self, ModelError> {
-        let mut members: Vec<(usize, usize)> = Vec::new();
-        let mut walls: Vec<usize> = obstacles.to_vec();
-        for (source, island) in islands.iter().enumerate() {
-            members.extend((0..island.fixed.members.len()).map(|member| (source, member)));
-            walls.extend(&island.fixed.obstacles);
-        }
-        let stack_of =
-            |(source, member): (usize, usize)| islands[source].fixed.members[member].stack;
-        members.sort_by_key(|place| world.stacks[stack_of(*place)].rank);
-        walls.sort_unstable();
-        walls.dedup();
-        let frame = world.stacks[stack_of(members[0])].frame;
-        let mut parties = Vec::new();
-        for place in &members {
-            let of = &world.stacks[stack_of(*place)];
-            parties.push(Party {
-                name: of.name,
-                model: &of.stack.model,
-                sorts: &of.sorts,
-                rank: of.rank,
-                frame: of.frame.within(frame),
-                step: of.simulation.time_step,
-            });
-        }
-        for wall in &walls {
-            let of = &world.obstacles[*wall];
-            parties.push(Party {
-                name: "",
-                model: &of.model,
-                sorts: &of.sorts,
-                rank: of.rank,
-                frame: Frame::default().within(frame),
-                step: of.step,
-            });
-        }
-        let (model, step) = joined(&parties, &world.crossing)?;
-        let mut of_members = Vec::new();
-        let (mut owners, mut carries, mut elements) = (Vec::new(), Vec::new(), 0);
-        for (place, party) in members.iter().zip(&parties) {
-            let (source, stack) = (place.0, stack_of(*place));
-            let old = &islands[source].fixed.members[place.1];
-            let (first, count) = (owners.len(), old.bodies.len());
-            owners.extend((0..count).map(|body| Owner::Stack((stack, body))));
-            carries.push(Carry {
-                source,
-                bodies: old.bodies.clone(),
-                to: first,
-                elements: old.elements.clone(),
-            });
-            of_members.push(Member {
-                stack,
-                bodies: first..first + count,
-                elements: elements..elements + old.elements.len(),
-                frame: party.frame,
-            });
-            elements += old.elements.len();
-        }
-        owners.extend(walls.iter().map(|wall| Owner::Obstacle(*wall)));
-        let drive = world.room.ground.clone().turned(frame.azimuth);
-        let simulation = Simulation { time_step: step, ..islands[0].fixed.simulation };
-        let sources: Vec<Source<'_>> = islands
-            .iter()
-            .map(|island| Source {
-                model: &island.fixed.model,
-                state: &island.live.running.state,
-                scratch: &island.live.running.scratch,
-                stepper: &island.live.running.stepper,
-                frame: island.fixed.frame.within(frame),
-            })
-            .collect();
-        let running = carry(&model, &drive, &sources, &carries, &simulation);
-        let time = running.state.time;
-        let mut banked = EnergySummary::default();
-        let mut work = Work::default();
-        for island in &islands {
-            // What is stored now is stored in the merged island.
-            let own = EnergySummary { kinetic: 0.0, elastic: 0.0, stick: 0.0, ..island.energy() };
-            banked = plus(banked, &own);
-            let own = island.work();
-            work.steps += own.steps;
-            work.evaluations += own.evaluations;
-            work.contact_evaluations += own.contact_evaluations;
-        }
-        let every = islands[0].every;
-        let mut logs = Logs::default();
-        logs.forces.resize(walls.len(), Vec::new());
-        let (mut watches, mut contacts) = (vec![None; members.len()], BTreeMap::new());
-        let mut frames = vec![RoomFrames::default(); members.len()];
-        for (source, island) in islands.into_iter().enumerate() {
-            let turn = island.fixed.frame.within(frame);
-            let slept = !island.is_awake();
-            for (parties, mut contact) in island.live.contacts {
-                contact.last = turn.vector(contact.last);
-                contacts.insert(parties, contact);
-            }
-            let own = island.live.watches.into_iter().zip(island.logs.frames);
-            for (member, (mut watch, kept)) in own.enumerate() {
-                if slept {
-                    watch.rest.wake(time);
-                }
-                let at = members.iter().position(|place| *place == (source, member));
-                let at = at.unwrap_or_default();
-                (watches[at], frames[at]) = (Some(watch), kept);
-            }
-            for (wall, log) in island.fixed.obstacles.iter().zip(island.logs.forces) {
-                let at = walls.binary_search(wall).unwrap_or_default();
-                logs.forces[at] = crate::run::summed(&logs.forces[at], &log);
-            }
-        }
-        logs.frames = frames;
-        let count = owners.len();
-        Ok(Self {
-            fixed: Fixed {
-                members: of_members,
-                obstacles: walls,
-                owners,
-                model: Arc::new(model),
-                drive,
-                frame,
-                simulation,
-            },
-            live: Live {
-                running,
-                watches: watches.into_iter().flatten().collect(),
-                contacts,
-                ending: None,
-                failure: None,
-                kept: Vec::new(),
-                travels: vec![0.0; count],
-                stopped_by: None,
-                not_before: 0.0,
-            },
-            logs,
-            banked,
-            work,
-            every,
-            tubes: vec![f64::INFINITY; count],
-            from: Vec::new(),
-            start: None,
-        })
     }
 }
 

@@ -15,8 +15,11 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod answer;
+mod collect;
 pub mod geometry;
+mod history;
 mod island;
+mod merge;
 mod nearby;
 pub mod plan;
 pub mod report;
@@ -35,7 +38,7 @@ pub use plan::Plan;
 pub use result::{
     BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
 };
-pub use room::{Obstacle, Placed, Room, RoomFailure, Settings};
+pub use room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure, Settings};
 pub use run::{Advance, run};
 pub use sample::{CellarFailure, Prepared};
 pub use scenario::Cellar;

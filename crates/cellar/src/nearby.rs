@@ -3,6 +3,7 @@
 //! The gap of two bodies is measured when it may have become small. From then on it shrinks by no more than the ways of
 //! the two bodies, which are summed window by window, so it is measured anew only when these have used it up.
 
+use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;
 use barrelstack_dynamics::space::Linear as _;
 use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
@@ -156,7 +157,7 @@ impl Nearby {
                 }
             }
         }
-        found.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+        found.sort_unstable_by_key(|(bodies, _)| *bodies);
         // Gaps that were measured are kept.
         let old = std::mem::take(&mut self.couples);
         for couples in &mut self.of_body {
@@ -202,32 +203,39 @@ impl Nearby {
                 }
                 Owner::Obstacle(obstacle) => inside(obstacle),
             };
-            let moves = |island: Option<&Island>| island.is_some_and(Island::is_awake);
-            if together || !(moves(Some(first)) || moves(second_island)) {
+            // Numbers that are no longer finite say nothing about gaps.
+            let broken = |island: Option<&Island>| {
+                island.is_some_and(|island| island.live.ending == Some(Ending::Broken))
+            };
+            if together || broken(Some(first)) || broken(second_island) {
                 couple.limits = [f64::INFINITY; 2];
                 continue;
             }
+            let is_awake = |island: Option<&Island>| island.is_some_and(Island::is_awake);
+            let moves = is_awake(Some(first)) || is_awake(second_island);
             let needs = located.map(|located| match located {
                 Some((island, body)) if island.is_awake() => {
                     let step = island.fixed.simulation.time_step;
                     LEAST + 1.5 * island.speed(world, body) * (ahead + 2.0 * step)
                 }
-                Some(_) | None => 0.0,
+                // It may be woken within the window.
+                Some(_) => LEAST,
+                None => 0.0,
             });
             let need = needs[0] + needs[1];
             let numbers = couple.bodies.map(|owner| world.number(owner));
             let mut bound = couple.bound(&self.ways, numbers);
-            if bound < need + SLACK {
+            if moves && bound < need + SLACK {
                 bound = gap(world, islands, places, couple.bodies, EXACT.max(2.0 * need));
                 couple.gap = bound;
                 couple.since = numbers.map(|number| self.ways[number]);
             }
-            if bound < need + SLACK {
+            if moves && bound < need + SLACK {
                 meetings.push(couple.bodies);
                 couple.limits = [f64::INFINITY; 2];
             } else {
                 for side in 0..2 {
-                    let share = (bound - SLACK) * needs[side] / need;
+                    let share = (bound - SLACK).max(0.0) * needs[side] / need;
                     couple.limits[side] = self.ways[numbers[side]] + share;
                 }
             }
@@ -250,7 +258,7 @@ impl Nearby {
             let mut least = FREE;
             for couple in &self.of_body[number] {
                 let couple = &self.couples[*couple as usize];
-                if self.parted(couple, places, of) {
+                if Self::parted(couple, places, of) {
                     near = true;
                     let side = usize::from(couple.bodies[0] != *owner);
                     least = least.min(couple.limits[side] - self.ways[number]);
@@ -262,7 +270,7 @@ impl Nearby {
     }
 
     /// Returns `true` if the bodies of a couple, one of which belongs to an island, can be moved independently.
-    fn parted(&self, couple: &Couple, places: &Places, island: &Island) -> bool {
+    fn parted(couple: &Couple, places: &Places, island: &Island) -> bool {
         match couple.bodies {
             [Owner::Stack((one, _)), Owner::Stack((other, _))] => places[one].0 != places[other].0,
             [_, Owner::Obstacle(obstacle)] => !island.fixed.obstacles.contains(&obstacle),
@@ -282,7 +290,7 @@ impl Nearby {
         let couples = self.of_body[world.number(owner)].iter();
         let parted = couples
             .map(|couple| &self.couples[*couple as usize])
-            .filter(|couple| self.parted(couple, places, island));
+            .filter(|couple| Self::parted(couple, places, island));
         let side = |couple: &Couple| usize::from(couple.bodies[0] != owner);
         let nearest = parted.min_by(|a, b| a.limits[side(a)].total_cmp(&b.limits[side(b)]))?;
         nearest.limits[side(nearest)].is_finite().then(|| nearest.bodies[1 - side(nearest)])

@@ -1,5 +1,6 @@
 //! A room: stacks in their places, and obstacles.
 
+use barrelstack::scenario::Scene;
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_dynamics::{Interface, ModelError, Spatial};
 use barrelstack_space::Ground;
@@ -56,8 +57,24 @@ pub struct Room {
     pub ground: Ground,
 }
 
+impl Room {
+    /// Returns the number of bodies of all stacks.
+    pub fn bodies(&self) -> u64 {
+        let of = |placed: &Placed| match &placed.scenario.scene {
+            Scene::Stack { stack, .. } => {
+                let rack = u64::from(stack.rack.barrels) * u64::from(stack.rack.barrels_deep) + 1;
+                let per_level = u64::from(stack.racks_per_level()) * u64::from(stack.racks_along());
+                u64::from(stack.levels) * per_level * rack
+            }
+            Scene::Free(scene) => scene.bodies.len() as u64,
+            Scene::Spatial(scene) => scene.bodies.len() as u64,
+        };
+        self.stacks.iter().map(of).sum()
+    }
+}
+
 /// Settings of a run, none of which affects its motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Number of threads; zero for all cores.
     pub threads: usize,
@@ -65,11 +82,8 @@ pub struct Settings {
     pub frames: bool,
 }
 
-impl Default for Settings {
-    fn default() -> Self {
-        Self { threads: 0, frames: false }
-    }
-}
+/// Maximum number of bodies.
+pub const MOST_BODIES: u64 = 30_000;
 
 /// Error of a room.
 #[derive(Debug, thiserror::Error)]
@@ -77,6 +91,15 @@ pub enum RoomFailure {
     /// There is no stack.
     #[error("the room has no stack: place at least one")]
     Empty,
+    /// There are too many bodies.
+    #[error(
+        "the room has {bodies} barrels, racks and other bodies, more than {MOST_BODIES}, whose run needs about 3 GB: divide \
+         it into rooms between which nothing can fall"
+    )]
+    Large {
+        /// Number of bodies.
+        bodies: u64,
+    },
     /// Two stacks or obstacles have the same name.
     #[error("two stacks or obstacles are named \"{name}\": give each its own name")]
     Name {
@@ -89,7 +112,7 @@ pub enum RoomFailure {
         /// Name of the stack.
         name: String,
         /// The error.
-        failure: RunFailure,
+        failure: Box<RunFailure>,
     },
     /// A stack starts from poses of other bodies.
     #[error(

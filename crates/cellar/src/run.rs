@@ -4,18 +4,17 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use barrelstack::outcome::Outcome;
 use barrelstack::overlap::ALLOWED;
 use barrelstack::pool;
-use barrelstack::run::{Ended, Verdict, Work};
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::space::Linear as _;
-use barrelstack_dynamics::{BodyId, EnergySummary, Vec3};
-use barrelstack_space::run::judge;
+use barrelstack_dynamics::{BodyId, Vec3};
 
-use crate::island::{Contact, Island, Owner, Side, numbers, plus};
+use crate::collect::result;
+use crate::island::{Island, Owner};
+use crate::merge::merged;
 use crate::nearby::{Nearby, Places, gap, locate};
-use crate::result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, Touch};
+use crate::result::RoomRun;
 use crate::room::{Room, RoomFailure, Settings};
 use crate::world::World;
 
@@ -61,8 +60,9 @@ pub fn run(
     let nearby = Nearby::new(&world);
     let mut run = Running { world: &world, islands, places, nearby, merges: 0 };
     run.check_overlaps()?;
-    let interrupted = run.to_rest(settings.threads, observer)?;
-    Ok(run.result(interrupted))
+    let interrupted = run.advance(settings.threads, observer)?;
+    let Running { islands, places, merges, .. } = run;
+    Ok(result(&world, islands, &places, merges, interrupted))
 }
 
 struct Running<'a> {
@@ -92,7 +92,7 @@ impl Running<'_> {
     }
 
     /// Advances all islands until they rest; returns `true` if the observer stopped the run.
-    fn to_rest(
+    fn advance(
         &mut self,
         threads: usize,
         observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
@@ -204,8 +204,7 @@ impl Running<'_> {
                 partner.go_back();
                 partner.advance_to(world, time);
             }
-            let merged = self.merge_all(&[[own, other]])?;
-            for number in merged {
+            for number in self.merge_all(&[[own, other]])? {
                 self.open(number);
                 if let Some(island) = &mut self.islands[number] {
                     island.advance(world, until);
@@ -218,12 +217,6 @@ impl Running<'_> {
     fn merge_all(&mut self, meetings: &[[Owner; 2]]) -> Result<Vec<usize>, RoomFailure> {
         // Every island points to an island of its group, the first of the group to itself.
         let mut group: Vec<usize> = (0..self.islands.len()).collect();
-        fn root(group: &[usize], mut at: usize) -> usize {
-            while group[at] != at {
-                at = group[at];
-            }
-            at
-        }
         let mut obstacles: Vec<(usize, usize)> = Vec::new();
         for [one, other] in meetings {
             let Some(first) = owner_island(&self.places, *one) else { continue };
@@ -236,7 +229,7 @@ impl Running<'_> {
                 (Owner::Stack(_), None) => {}
             }
         }
-        let mut merged = Vec::new();
+        let mut all = Vec::new();
         for first in 0..self.islands.len() {
             if group[first] != first || self.islands[first].is_none() {
                 continue;
@@ -257,15 +250,15 @@ impl Running<'_> {
                 island.advance_to(self.world, time);
                 self.nearby.add(self.world, island);
             }
-            let island = Island::merged(self.world, islands, &own)?;
+            let island = merged(self.world, islands, &own)?;
             for member in &island.fixed.members {
                 self.places[member.stack] = (first, member.bodies.start);
             }
             self.islands[first] = Some(island);
             self.merges += 1;
-            merged.push(first);
+            all.push(first);
         }
-        Ok(merged)
+        Ok(all)
     }
 
     /// Lets islands go on that rest but for a barrel that rolls toward another stack or an obstacle.
@@ -317,208 +310,17 @@ impl Running<'_> {
                 ahead(Vec3::new(x, y, 0.0), Vec3::new(a, b, 0.0).length())
             })
     }
-
-    fn result(self, interrupted: bool) -> RoomRun {
-        let Self { world, islands, places, merges, .. } = self;
-        let mut run = RoomRun {
-            bodies: Vec::new(),
-            stacks: Vec::new(),
-            meetings: Vec::new(),
-            obstacles: Vec::new(),
-            frames: Vec::new(),
-            energy: None,
-            work: Work::default(),
-            merges,
-            end_time: 0.0,
-            interrupted,
-            warnings: world.room.ground.warnings.clone(),
-        };
-        let body_of = |owner: Owner| match owner {
-            // Bodies of results are without the grounds of the stacks before.
-            Owner::Stack((stack, body)) => world.stacks[stack].first + body - stack - 1,
-            Owner::Obstacle(obstacle) => obstacle,
-        };
-        let mut energy = Some(EnergySummary::default());
-        for island in islands.iter().flatten() {
-            let own = island.live.failure.is_none().then(|| island.energy());
-            energy = energy.zip(own).map(|(all, own)| plus(all, &own));
-            let work = island.work();
-            run.work.steps += work.steps;
-            run.work.evaluations += work.evaluations;
-            run.work.contact_evaluations += work.contact_evaluations;
-            for ([_, side], contact) in &island.live.contacts {
-                if let Side::Stack(_) = side {
-                    run.meetings.push(meeting(contact, &body_of));
-                }
-            }
-        }
-        run.energy = energy;
-        run.meetings.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.stacks.cmp(&b.stacks)));
-        for (number, of) in world.stacks.iter().enumerate() {
-            let Some(island) = &islands[places[number].0] else { continue };
-            let Some(at) = island.fixed.members.iter().position(|of| of.stack == number) else {
-                continue;
-            };
-            let (member, watch) = (&island.fixed.members[at], &island.live.watches[at]);
-            let time = island.time();
-            let ending = match island.live.ending {
-                Some(Ending::Patience) => Ending::of_time(of.scenario),
-                Some(ending) => ending,
-                None => Ending::Interrupted,
-            };
-            let ended = match &island.live.failure {
-                Some(error) => Err(error.clone()),
-                None => Ok(Ended { energy: island.energy(), steps: island.work().steps }),
-            };
-            let judge = || judge(&of.stack, &watch.fates);
-            let end = world.room.ground.end();
-            let Verdict { outcome, warnings, ending, .. } =
-                Verdict::of(ended, judge, time, end, ending);
-            let outcome = if ending == Ending::Broken && island.live.failure.is_none() {
-                Outcome::Invalid { reason: "a body moves faster than 45 m/s".to_owned() }
-            } else {
-                outcome
-            };
-            for warning in warnings {
-                let warning = format!("{}: {warning}", of.name);
-                if !run.warnings.contains(&warning) {
-                    run.warnings.push(warning);
-                }
-            }
-            let first = run.bodies.len();
-            let placed = member.frame;
-            let mut own_state = island.live.running.state.clone();
-            own_state.poses = own_state.poses[member.bodies.clone()]
-                .iter()
-                .map(|pose| placed.back().pose(*pose))
-                .collect();
-            let ground = own_state.poses[0].position;
-            let fates = watch.fates.clone().at_end(&own_state);
-            for (body, part) in of.stack.parts.iter().enumerate().skip(1) {
-                let mut own = own_state.poses[body];
-                own.position = own.position - ground;
-                let mut from = of.at_rest.poses[body];
-                from.position = from.position - of.at_rest.poses[0].position;
-                run.bodies.push(BodyEnd {
-                    stack: number,
-                    name: part.name.clone(),
-                    kind: part.kind,
-                    level: part.level,
-                    wine: part.wine,
-                    fate: fates[body],
-                    from: numbers(of.frame.pose(from)),
-                    to: numbers(of.frame.pose(own)),
-                    own: numbers(own),
-                });
-            }
-            let lost_seat = watch.fates.collapse().map(|(time, body)| (time, first + body - 1));
-            let touched = watch.touched.map(|(time, own, by)| Touch {
-                time,
-                body: first + own - 1,
-                by: body_of(Owner::Stack(by)),
-                impulse: watch.impulse,
-            });
-            run.stacks.push(StackEnd {
-                name: of.name.to_owned(),
-                outcome,
-                lost_seat,
-                first_fall: watch.fates.first_fall(),
-                touched,
-                touched_obstacle: watch.touched_obstacle,
-                knocked_over: lost_seat
-                    .zip(touched)
-                    .is_some_and(|((lost, _), touch)| touch.time <= lost),
-                bodies: first..run.bodies.len(),
-                ending,
-                end_time: time,
-            });
-            run.end_time = run.end_time.max(time);
-        }
-        for (number, obstacle) in world.room.obstacles.iter().enumerate() {
-            run.obstacles.push(obstacle_end(&islands, number, &obstacle.name, &body_of));
-        }
-        let mut frames = vec![RoomFrames::default(); world.stacks.len()];
-        for island in islands.into_iter().flatten() {
-            for (member, own) in island.fixed.members.iter().zip(island.logs.frames) {
-                frames[member.stack] = own;
-            }
-        }
-        if frames.iter().any(|own| !own.times.is_empty()) {
-            run.frames = frames;
-        }
-        run
-    }
 }
 
-fn meeting(contact: &Contact, body_of: &dyn Fn(Owner) -> usize) -> Meeting {
-    let stack = |owner: Owner| match owner {
-        Owner::Stack((stack, _)) => stack,
-        Owner::Obstacle(obstacle) => obstacle,
-    };
-    Meeting {
-        stacks: contact.bodies.map(stack),
-        time: contact.time,
-        bodies: contact.bodies.map(body_of),
-        impulse: contact.impulse,
-        peak: contact.peak,
+/// Returns the first island of the group of an island.
+fn root(group: &[usize], mut at: usize) -> usize {
+    while group[at] != at {
+        at = group[at];
     }
+    at
 }
 
-/// Returns the forces on an obstacle from all islands.
-fn obstacle_end(
-    islands: &[Option<Island>],
-    number: usize,
-    name: &str,
-    body_of: &dyn Fn(Owner) -> usize,
-) -> ObstacleEnd {
-    let mut end = ObstacleEnd { name: name.to_owned(), ..ObstacleEnd::default() };
-    for island in islands.iter().flatten() {
-        let Some(at) = island.fixed.obstacles.iter().position(|of| *of == number) else { continue };
-        end.history = summed(&end.history, &island.logs.forces[at]);
-        for ([_, side], contact) in &island.live.contacts {
-            let first = end.first.is_none_or(|(time, _)| contact.time < time);
-            if *side == Side::Obstacle(number) && first {
-                end.first = Some((contact.time, body_of(contact.bodies[0])));
-            }
-        }
-    }
-    for two in end.history.windows(2) {
-        let [(before, old), (after, new)] = [two[0], two[1]];
-        for axis in 0..3 {
-            end.impulse[axis] += 0.5 * (after - before) * (old[axis] + new[axis]);
-        }
-    }
-    let size = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z).length();
-    end.peak = end.history.iter().map(|(_, force)| size(*force)).fold(0.0, f64::max);
-    end
-}
-
-/// Returns the sum of two histories of a force, each of which is zero outside of its samples and linear between them.
-pub(crate) fn summed(one: &[(f64, [f64; 3])], other: &[(f64, [f64; 3])]) -> Vec<(f64, [f64; 3])> {
-    if one.is_empty() || other.is_empty() {
-        return if one.is_empty() { other.to_vec() } else { one.to_vec() };
-    }
-    let at = |all: &[(f64, [f64; 3])], time: f64| -> [f64; 3] {
-        let next = all.partition_point(|(at, _)| *at < time);
-        match (next.checked_sub(1).map(|before| all[before]), all.get(next)) {
-            (_, Some((at, force))) if *at == time => *force,
-            (Some((from, old)), Some((to, new))) => {
-                let share = (time - from) / (to - from);
-                std::array::from_fn(|axis| old[axis] + share * (new[axis] - old[axis]))
-            }
-            (_, _) => [0.0; 3],
-        }
-    };
-    let mut times: Vec<f64> = one.iter().chain(other).map(|(time, _)| *time).collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let sum = |time: f64| {
-        let (a, b) = (at(one, time), at(other, time));
-        (time, std::array::from_fn(|axis| a[axis] + b[axis]))
-    };
-    times.into_iter().map(sum).collect()
-}
-
+/// Returns the island of a body; `None` for an obstacle.
 fn owner_island(places: &Places, owner: Owner) -> Option<usize> {
     match owner {
         Owner::Stack((stack, _)) => Some(places[stack].0),

@@ -111,36 +111,35 @@ impl<'a> Sorts<'a> {
             (Kind::Barrel | Kind::Device, Kind::Rack) | (Kind::Device, Kind::Barrel) => {
                 turned(self.rule(second, first))
             }
-            (Kind::Free(_, _, true), Kind::Free(_, _, true) | Kind::Obstacle)
-            | (Kind::Obstacle, Kind::Free(_, _, true) | Kind::Obstacle) => None,
-            (Kind::Free(one, a, _), Kind::Free(other, b, _)) => {
+            (Kind::Free(one, a, fixed), Kind::Free(other, b, other_fixed))
+                if !(*fixed && *other_fixed) =>
+            {
                 let laws = [self.law(*one, a, b)?, self.law(*other, a, b)?];
                 Some(Rule { turned: laws[0].1, laws: laws.map(|(law, _)| law) })
             }
             // An obstacle supplies the law itself.
-            (Kind::Rack | Kind::Barrel | Kind::Device | Kind::Free(..), Kind::Obstacle) => {
-                Some(Rule { turned: false, laws: [0, 0] })
-            }
-            (Kind::Obstacle, Kind::Rack | Kind::Barrel | Kind::Device | Kind::Free(..)) => {
-                Some(Rule { turned: true, laws: [0, 0] })
-            }
-            // A free scene has no laws for stacks.
-            (Kind::Free(..), Kind::Rack | Kind::Barrel | Kind::Device)
-            | (Kind::Rack | Kind::Barrel | Kind::Device, Kind::Free(..))
-            | (Kind::Ground, _)
-            | (_, Kind::Ground) => None,
+            (
+                Kind::Rack | Kind::Barrel | Kind::Device | Kind::Free(_, _, false),
+                Kind::Obstacle,
+            ) => Some(Rule { turned: false, laws: [0, 0] }),
+            (
+                Kind::Obstacle,
+                Kind::Rack | Kind::Barrel | Kind::Device | Kind::Free(_, _, false),
+            ) => Some(Rule { turned: true, laws: [0, 0] }),
+            // What is fixed to the ground meets nothing fixed, and a free scene has no laws for stacks.
+            (Kind::Free(..) | Kind::Ground | Kind::Obstacle, _)
+            | (_, Kind::Free(..) | Kind::Ground) => None,
         }
     }
 
     /// Returns the index of the law between two kinds of a free scene, and `true` if it names the second kind first.
     fn law(&self, book: usize, a: &str, b: &str) -> Option<(usize, bool)> {
         let mut laws = self.scenes[book].interfaces.iter().enumerate();
-        let found = laws.find_map(|(at, law)| {
+        laws.find_map(|(at, law)| {
             let [one, other] = [law.between[0].as_str(), law.between[1].as_str()];
             ((one, other) == (a, b))
                 .then_some((at, false))
                 .or_else(|| ((other, one) == (a, b)).then_some((at, true)))
-        });
-        found
+        })
     }
 }

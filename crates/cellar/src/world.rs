@@ -18,7 +18,7 @@ use barrelstack_space::run::Standing;
 use barrelstack_space::step::steps_at_fixed;
 
 use crate::island::Owner;
-use crate::room::{Obstacle, Placed, Room, RoomFailure};
+use crate::room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure};
 use crate::sorts::Sorts;
 
 /// A stack of a room.
@@ -67,9 +67,11 @@ const ROUNDING: f64 = 0.01;
 impl<'a> World<'a> {
     /// Builds and settles all stacks.
     pub(crate) fn of(room: &'a Room, threads: usize) -> Result<Self, RoomFailure> {
-        check_names(room)?;
-        let of =
-            |placed: &Placed, failure| RoomFailure::Stack { name: placed.name.clone(), failure };
+        check(room)?;
+        let of = |placed: &Placed, failure| RoomFailure::Stack {
+            name: placed.name.clone(),
+            failure: Box::new(failure),
+        };
         let mut end = 0.0_f64;
         for placed in &room.stacks {
             let own = end_time(&placed.scenario, room.ground.motion_end(), 1.0);
@@ -184,9 +186,13 @@ fn start_from(
     Ok(())
 }
 
-fn check_names(room: &Room) -> Result<(), RoomFailure> {
+fn check(room: &Room) -> Result<(), RoomFailure> {
     if room.stacks.is_empty() {
         return Err(RoomFailure::Empty);
+    }
+    let bodies = room.bodies();
+    if bodies > MOST_BODIES {
+        return Err(RoomFailure::Large { bodies });
     }
     let stacks = room.stacks.iter().map(|stack| &stack.name);
     let mut names: Vec<&String> = stacks.chain(room.obstacles.iter().map(|of| &of.name)).collect();

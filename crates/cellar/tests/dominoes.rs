@@ -7,12 +7,12 @@ use row::{DOMINO, Row, theory};
 
 #[test]
 fn the_wave_of_a_row_of_dominoes_is_as_fast_as_theory_states() {
-    for (spacing, count) in [(0.2, 32), (0.3, 24), (0.4, 24), (0.5, 24)] {
+    for (spacing, count) in [(0.2, 28), (0.3, 20), (0.4, 20), (0.5, 20)] {
         let row = Row { count, spacing, friction: 0.0 };
         let (found, exact) = (row.speed().unwrap(), theory(DOMINO, spacing));
         println!("s/h {spacing}: {found:.4} against {exact:.4} of the root of g h");
-        // MEASURED
-        assert!((found / exact - 1.0).abs() < 0.04, "{found} {exact}");
+        // measured 0.7 % below theory at 0.2, and 1.1 to 1.2 % at the other distances
+        assert!((found / exact - 1.0).abs() < 0.025, "{found} {exact}");
     }
 }
 

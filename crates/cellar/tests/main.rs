@@ -1,5 +1,9 @@
 //! Tests of rooms, in one program.
-#![allow(clippy::unwrap_used, reason = "a test panics on a wrong value")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test panics on a wrong value, and shows what it measured"
+)]
 
 mod common;
 

@@ -73,7 +73,7 @@ fn a_stack_that_falls_on_its_neighbors_is_the_first_and_they_are_touched() {
     assert!(run.energy.unwrap().residual_ratio() < 1e-3);
     // Threads and the order of the stacks change no bit.
     assert_eq!(bits(&run), bits(&on(1, &room)));
-    let mut turned = room.clone();
+    let mut turned = room;
     turned.stacks.reverse();
     assert_eq!(bits(&run), bits(&on(2, &turned)));
 }
@@ -107,7 +107,7 @@ fn a_second_shock_starts_from_the_stated_displacements() {
     let runs = [on(1, &second), on(2, &stated)];
     assert_eq!(bits(&runs[0]), bits(&runs[1]));
     // On ground at rest nothing moves on from there, but for what a rack turns until its sticks bear again.
-    let mut still = second.clone();
+    let mut still = second;
     still.ground = still.ground.scaled(0.0);
     let run = on(2, &still);
     let way = |(from, to): (&[f64; 7], &[f64; 7])| {
@@ -116,8 +116,8 @@ fn a_second_shock_starts_from_the_stated_displacements() {
     let ends = run.bodies.iter().zip(&first.bodies);
     let most = ends.map(|(to, from)| way((&from.own, &to.own))).fold(0.0, f64::max);
     println!("largest way on ground at rest {most:e} m");
-    // MEASURED
-    assert!(most < 5e-3, "{most:e}");
+    // measured 0.7 mm
+    assert!(most < 2e-3, "{most:e}");
 }
 
 #[test]
@@ -136,6 +136,9 @@ fn hostile_rooms_are_refused_with_a_reason() {
     short.start = Some(vec![[0.0; 7]]);
     let short = failure(&room(vec![short]));
     assert!(short.contains("1 poses"), "{short}");
+    let mut many = room(vec![stack("A", 0.0)]);
+    many.stacks.resize(20_000, stack("A", 0.0));
+    assert!(failure(&many).contains("more than 30000"));
     let mut empty = room(vec![stack("A", 0.0)]);
     empty.stacks.clear();
     assert!(failure(&empty).contains("no stack"));

@@ -163,11 +163,11 @@ impl Fates {
     }
 
     /// Returns the fates of all bodies at the end of a run, in the order of the parts.
-    pub fn at_end(mut self, state: &State<Spatial>) -> Vec<Fate> {
-        self.turn(&state.poses);
+    pub fn at_end(mut self, poses: &[Pose<Spatial>]) -> Vec<Fate> {
+        self.turn(poses);
         let mut slips = Vec::new();
         for i in 1..self.all.len() {
-            self.slips(&state.poses, i, &mut slips);
+            self.slips(poses, i, &mut slips);
             let Vec3 { x, y, .. } = mean(&slips);
             self.all[i].residual_slip = [x, y];
         }

@@ -204,7 +204,7 @@ impl Simulation {
             outcome,
             heading: heading.map(|(.., heading)| heading),
             first_fall: fates.first_fall(),
-            fates: fates.at_end(&state),
+            fates: fates.at_end(&state.poses),
             elements: elements.0,
             seats,
             frames,

@@ -36,11 +36,14 @@ pub(crate) fn assert_near(found: f64, exact: f64, relative: f64) {
     assert!((found / exact - 1.0).abs() < relative, "{found} against {exact}");
 }
 
+/// Name of a stack, bits of its poses, of the impulse on it and of its loss of seat, and whether it was knocked over.
+type StackBits = (String, Vec<[u64; 14]>, Option<u64>, Option<u64>, bool);
+
 /// Returns everything of a run that must not depend on threads or on the order of the stacks, stack by stack in the
 /// order of their names.
-pub(crate) fn bits(run: &RoomRun) -> Vec<(String, Vec<[u64; 14]>, Option<u64>, Option<u64>, bool)> {
+pub(crate) fn bits(run: &RoomRun) -> Vec<StackBits> {
     let number = |x: f64| x.to_bits();
-    let mut all: Vec<_> = run
+    let mut all: Vec<StackBits> = run
         .stacks
         .iter()
         .map(|stack| {
