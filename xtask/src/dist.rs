@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail, ensure};
 
-use crate::extra::OLDEST;
+use crate::extra::of_oldest;
 use crate::programs;
 use crate::python::{checked, environment_at, inside, interpreter, pip};
 use crate::steps::{build_program, cargo, program, target};
@@ -307,10 +307,16 @@ fn sdist(root: &Path) -> anyhow::Result<()> {
 
 /// Packs every published crate and compiles what was packed, without publishing.
 fn crates(root: &Path) -> anyhow::Result<()> {
+    let head = Command::new("git").args(["rev-parse", "HEAD"]).current_dir(root).output()?;
+    ensure!(head.status.success(), "this folder is no clone, so there is no commit to pack");
+    // Cargo keeps the packed sources of a version by the path of the folder that they come from, so each commit has a
+    // folder of its own; otherwise crates would be compiled with the dependencies of an earlier commit.
+    let own = folder(root).join(format!("crates-{}", String::from_utf8_lossy(&head.stdout).trim()));
     let mut publish = Command::new(cargo());
     // What is packed are the committed files; uncommitted changes are an error of cargo.
-    publish.args(["publish", "--dry-run", "--workspace", "--locked"]).current_dir(root);
-    checked(&mut publish, "the packages of the crates")
+    publish.args(["publish", "--dry-run", "--workspace", "--locked", "--target-dir"]).arg(&own);
+    checked(publish.current_dir(root), "the packages of the crates")?;
+    fs::remove_dir_all(own).context("cannot remove the compiled packages")
 }
 
 /// Builds the package for Debian from the static command, which depends on no library.
@@ -414,8 +420,8 @@ fn lint(root: &Path) -> anyhow::Result<()> {
 
 /// Checks the published crates with the oldest toolchain that they state.
 fn oldest(root: &Path) -> anyhow::Result<()> {
-    let mut check = Command::new("rustup");
-    check.args(["run", OLDEST, "cargo", "check", "--locked", "--package", "barrelstack"]);
+    let mut check = of_oldest(&["cargo", "check", "--locked", "--package", "barrelstack"])
+        .map_err(anyhow::Error::msg)?;
     checked(check.current_dir(root), "the check with the oldest toolchain")
 }
 

@@ -21,7 +21,19 @@ pub(crate) struct Extra {
 }
 
 /// The oldest toolchain that builds the workspace: `rust-version` in `Cargo.toml`.
-pub(crate) const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
+const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
+
+/// Returns a command that starts a program of the oldest toolchain, which may have been installed
+/// under the name of its first release, or a message that it is missing.
+pub(crate) fn of_oldest(words: &[&str]) -> Result<Command, String> {
+    let started = |name: &str| with(Command::new("rustup"), &["run", name]);
+    for name in [OLDEST.to_owned(), format!("{OLDEST}.0")] {
+        if succeeds(started(&name).args(["rustc", "--version"])) {
+            return Ok(with(started(&name), words));
+        }
+    }
+    Err(format!("no toolchain {OLDEST}; run `rustup toolchain install {OLDEST}`"))
+}
 
 /// Returns all extra checks, the quickest first.
 pub(crate) fn all(root: &Path) -> Vec<Extra> {
@@ -39,11 +51,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
     };
     let oldest = Extra {
         name: "check with the oldest toolchain",
-        command: if succeeds(Command::new("rustup").args(["run", OLDEST, "rustc", "--version"])) {
-            Ok(with(Command::new("rustup"), &["run", OLDEST, "cargo", "check", "--workspace"]))
-        } else {
-            Err(format!("no toolchain {OLDEST}; run `rustup toolchain install {OLDEST}`"))
-        },
+        command: of_oldest(&["cargo", "check", "--workspace"]),
         remedy: "use only features of that toolchain, or raise rust-version in Cargo.toml and note it \
                  in CHANGELOG.md",
         pages: None,

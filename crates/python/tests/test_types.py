@@ -28,6 +28,56 @@ def test_the_stubs_say_what_the_module_holds() -> None:
     mypy("mypy.stubtest", "barrelstack._native", "--concise")
 
 
+def test_the_types_of_fields_are_those_of_the_schema() -> None:
+    spec = importlib.util.spec_from_file_location("fields_writer", PACKAGE / "fields.py")
+    assert spec is not None
+    assert spec.loader is not None
+    writer = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(writer)
+    written = (PACKAGE / "python" / "barrelstack" / "fields.py").read_text(encoding="utf-8")
+    assert written == writer.module(), "run `python crates/python/fields.py` with the present package installed"
+
+
+#: A script of a user, whose types are checked.
+SCRIPT = """\
+from barrelstack import Record, Scenario
+from barrelstack.fields import MotionFields, ScenarioFields
+
+motion: MotionFields = {"sine": {"amplitude": "5 cm"}}
+fields: ScenarioFields = {
+    "extends": "candia-8-barrels",
+    "stack": {"levels": 2},
+    "interface": {"rack-ground": {"friction": {"coefficient": 0.4}}},
+    "run": {"duration": "1 s"},
+}
+fields["motion"] = motion
+run = Scenario(fields).run(variants=0)
+peak = float(run.histories["B2.1_displacement_x"].max())
+print(run.outcome.kind, round(peak, 3), Record.bundled().name)
+"""
+
+
+def checked_scripts(folder: Path) -> tuple[Path, Path]:
+    """Returns a script of a user without and with a misspelled field."""
+    right, wrong = folder / "right.py", folder / "wrong.py"
+    right.write_text(SCRIPT, encoding="utf-8")
+    wrong.write_text(SCRIPT.replace('"levels"', '"level"'), encoding="utf-8")
+    return right, wrong
+
+
+def test_a_script_of_a_user_is_strictly_typed_and_its_mistakes_are_found(tmp_path: Path) -> None:
+    pytest.importorskip("mypy", reason="no mypy")
+    words = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache")]
+    right, wrong = checked_scripts(tmp_path)
+    for path, status in ((right, 0), (wrong, 1)):
+        done = subprocess.run([*words, str(path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == status, done.stdout + done.stderr
+    assert 'Extra key "level"' in done.stdout, done.stdout
+    done = subprocess.run([sys.executable, str(right)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("stable")
+
+
 def test_package_and_examples_are_strictly_typed(tmp_path: Path) -> None:
     there = importlib.util.find_spec("gymnasium") is not None
     paths = (PACKAGE / "examples").glob("*.py")
@@ -45,6 +95,11 @@ def test_another_checker_knows_every_public_type(tmp_path: Path) -> None:
     done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Type completeness score: 100%" in done.stdout, done.stdout
+    (tmp_path / "pyrightconfig.json").write_text('{"typeCheckingMode": "strict"}', encoding="utf-8")
+    for path, status in zip(checked_scripts(tmp_path), (0, 1), strict=True):
+        words = [sys.executable, "-m", "pyright", str(path)]
+        done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == status, done.stdout + done.stderr
 
 
 def test_everything_public_is_documented() -> None:

@@ -1,15 +1,16 @@
-//! Scenes as time series for ParaView: VTK `PolyData` in XML, as text.
+//! Scenes as time series for ParaView: VTK `PolyData` in XML, with compressed arrays.
 
+mod poly_data;
 mod solids;
 
 use std::fmt::Write as _;
 
+use self::poly_data::PolyData;
 pub use solids::{SolidBody, SolidTie, Solids, paraview_of_solids};
 
 use crate::{
     Attachment, Polyline, Role, Scene, csv_field,
     film::sampled,
-    number,
     scene::{Point, Pose2, place, window},
 };
 
@@ -19,11 +20,12 @@ use crate::{
 /// and `bodies.csv` lists the names of the bodies by number.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film). The plane of the scene is y = 0, z
-/// is up, and lengths are in m.
+/// is up, and lengths are in m, rounded to multiples of [`POSE_QUANTUM`](crate::POSE_QUANTUM).
 ///
 /// - Bodies: closed outlines are polygons, open outlines and marks are lines. Cells carry `body`
-///   (the index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device); points
-///   carry `displacement` (m) from the first frame. Bodies without a finite pose are left out.
+///   (the index in the scene), `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device) and
+///   `displacement` (m), that of the origin of the body from the first frame. Bodies without a
+///   finite pose are left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
@@ -37,10 +39,10 @@ pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     for (at, &frame) in frames.iter().enumerate() {
         let time = scene.frames.times[frame];
         let parts = [("bodies", bodies(scene, frame, sight)), ("forces", forces(scene, frame))];
-        for (part, (name, text)) in parts.into_iter().enumerate() {
+        for (part, (name, bytes)) in parts.into_iter().enumerate() {
             let name = format!("{name}-{at:0digits$}.vtp");
             index_entry(&mut index, time, part, &name);
-            files.push(Attachment { name, bytes: text.into_bytes() });
+            files.push(Attachment { name, bytes });
         }
     }
     let mut names = String::from("body,name,role\n");
@@ -78,7 +80,6 @@ fn closed_index(index: String) -> String {
 #[derive(Default)]
 struct Mesh {
     points: Vec<Point>,
-    displacements: Vec<Point>,
     lines: Vec<Cell>,
     polygons: Vec<Cell>,
 }
@@ -88,18 +89,20 @@ struct Cell {
     points: Vec<usize>,
     body: usize,
     role: Role,
+    displacement: Point,
 }
 
-fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> String {
+fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> Vec<u8> {
     let mut mesh = Mesh::default();
     for (at, body) in scene.bodies.iter().enumerate() {
         let Some(pose) = scene.frames.pose(frame, at) else { continue };
-        let start = scene.frames.pose(0, at);
+        let start = scene.frames.pose(0, at).unwrap_or(pose);
+        let moved = [pose[0] - start[0], pose[1] - start[1]];
         for line in body.outlines.iter().chain(&body.marks) {
             if body.role == Role::Ground && !line.closed {
-                mesh.add(&shortened(line, sight), (at, body.role), pose, start);
+                mesh.add(&shortened(line, sight), (at, body.role), pose, moved);
             } else {
-                mesh.add(line, (at, body.role), pose, start);
+                mesh.add(line, (at, body.role), pose, moved);
             }
         }
     }
@@ -132,100 +135,50 @@ impl Mesh {
         line: &Polyline,
         (body, role): (usize, Role),
         pose: Pose2,
-        start: Option<Pose2>,
+        displacement: Point,
     ) {
         let from = self.points.len();
-        for point in line.points.iter().filter(|p| p.iter().all(|v| v.is_finite())) {
-            let now = place(pose, *point);
-            let then = start.map_or(now, |start| place(start, *point));
-            self.points.push(now);
-            self.displacements.push([now[0] - then[0], now[1] - then[1]]);
-        }
-        let cell = Cell { points: (from..self.points.len()).collect(), body, role };
+        let finite = line.points.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+        self.points.extend(finite.map(|point| place(pose, *point)));
+        let cell = Cell { points: (from..self.points.len()).collect(), body, role, displacement };
         let cells = if line.closed { &mut self.polygons } else { &mut self.lines };
         if cell.points.len() > 1 {
             cells.push(cell);
         }
     }
 
-    fn write(&self) -> String {
-        let cells = [0, self.lines.len(), self.polygons.len()];
-        let mut piece = piece(self.points.len(), cells, "displacement");
-        vectors(&mut piece, "displacement", &self.displacements);
-        piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
+    fn write(&self) -> Vec<u8> {
+        let mut file = PolyData::new(self.points.len(), [0, self.lines.len(), self.polygons.len()]);
         let cells = || self.lines.iter().chain(&self.polygons);
-        whole(&mut piece, "Int32", "body", cells().map(|cell| cell.body));
-        whole(&mut piece, "Int32", "role", cells().map(|cell| cell.role as usize));
-        piece.push_str("</CellData>\n<Points>\n");
-        vectors(&mut piece, "points", &self.points);
-        piece.push_str("</Points>\n");
-        topology(&mut piece, "Lines", &self.lines);
-        topology(&mut piece, "Polys", &self.polygons);
-        poly_data("", &piece)
+        file.open("CellData Scalars=\"body\"");
+        file.whole("body", cells().map(|cell| cell.body));
+        file.whole("role", cells().map(|cell| cell.role as usize));
+        file.lengths("displacement", cells().map(|cell| in_space(&cell.displacement)));
+        file.close("CellData");
+        file.points(self.points.iter().map(in_space));
+        for (name, cells) in [("Lines", &self.lines), ("Polys", &self.polygons)] {
+            let corners = cells.iter().flat_map(|cell| cell.points.iter().copied());
+            file.cells(name, corners, cells.iter().map(|cell| cell.points.len()));
+        }
+        file.finish()
     }
 }
 
-fn forces(scene: &Scene, frame: usize) -> String {
+/// Returns a point of the plane of the scene in space.
+fn in_space([x, z]: &Point) -> [f64; 3] {
+    [*x, 0.0, *z]
+}
+
+fn forces(scene: &Scene, frame: usize) -> Vec<u8> {
     let list = scene.frames.forces.get(frame).map_or(&[][..], Vec::as_slice);
     let finite = |f: &&crate::ContactForce| [f.x, f.z, f.fx, f.fz].iter().all(|v| v.is_finite());
     let list: Vec<_> = list.iter().filter(finite).collect();
     let count = list.len();
-    let mut piece = piece(count, [count, 0, 0], "force");
-    vectors(&mut piece, "force", &list.iter().map(|f| [f.fx, f.fz]).collect::<Vec<_>>());
-    piece.push_str("</PointData>\n<Points>\n");
-    vectors(&mut piece, "points", &list.iter().map(|f| [f.x, f.z]).collect::<Vec<_>>());
-    piece.push_str("</Points>\n<Verts>\n");
-    whole(&mut piece, "Int64", "connectivity", 0..count);
-    whole(&mut piece, "Int64", "offsets", 1..=count);
-    piece.push_str("</Verts>\n");
-    poly_data("", &piece)
-}
-
-/// Returns the start of a piece, up to its vector data, for the given numbers of points, vertices,
-/// lines and polygons.
-fn piece(points: usize, [vertices, lines, polygons]: [usize; 3], vectors: &str) -> String {
-    format!(
-        "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"{vertices}\" NumberOfLines=\"{lines}\" \
-         NumberOfStrips=\"0\" NumberOfPolys=\"{polygons}\">\n<PointData Vectors=\"{vectors}\">\n"
-    )
-}
-
-/// Wraps one piece into a file, with the attributes of the array encoding.
-fn poly_data(packing: &str, piece: &str) -> String {
-    format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" \
-         byte_order=\"LittleEndian\"{packing}>\n<PolyData>\n{piece}</Piece>\n</PolyData>\n</VTKFile>\n"
-    )
-}
-
-/// Writes planar vectors as spatial vectors, at full precision.
-fn vectors(out: &mut String, name: &str, values: &[Point]) {
-    let _ = writeln!(
-        out,
-        "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"3\" format=\"ascii\">"
-    );
-    for [x, z] in values {
-        let _ = writeln!(out, "{} 0 {}", number::csv_number(*x), number::csv_number(*z));
-    }
-    out.push_str("</DataArray>\n");
-}
-
-fn whole(out: &mut String, kind: &str, name: &str, values: impl Iterator<Item = usize>) {
-    let _ = writeln!(out, "<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">");
-    for value in values {
-        let _ = write!(out, "{value} ");
-    }
-    out.push_str("\n</DataArray>\n");
-}
-
-fn topology(out: &mut String, name: &str, cells: &[Cell]) {
-    let _ = writeln!(out, "<{name}>");
-    whole(out, "Int64", "connectivity", cells.iter().flat_map(|cell| cell.points.iter().copied()));
-    let mut end = 0;
-    let ends = cells.iter().map(|cell| {
-        end += cell.points.len();
-        end
-    });
-    whole(out, "Int64", "offsets", ends);
-    let _ = writeln!(out, "</{name}>");
+    let mut file = PolyData::new(count, [count, 0, 0]);
+    file.open("PointData Vectors=\"force\"");
+    file.vectors("force", list.iter().map(|f| [f.fx, 0.0, f.fz]));
+    file.close("PointData");
+    file.points(list.iter().map(|f| [f.x, 0.0, f.z]));
+    file.cells("Verts", 0..count, std::iter::repeat_n(1, count));
+    file.finish()
 }

@@ -3,27 +3,21 @@
 use crate::common;
 use std::sync::Arc;
 
-use crate::common::scene;
-use barrelstack_report::{Attachment, Film, Role, Scene, paraview};
+use crate::common::{Vtk, scene};
+use barrelstack_report::{Attachment, Film, POSE_QUANTUM, Role, Scene, paraview};
+
+/// Largest difference (m) between a length and the length that is written: half a quantum and the
+/// rounding to single precision.
+const NEAR: f64 = 0.51 * POSE_QUANTUM;
+
+fn vtk(files: &[Attachment], name: &str) -> Vtk {
+    let file = files.iter().find(|f| f.name == name).unwrap_or_else(|| panic!("no {name}"));
+    Vtk::of(&file.bytes)
+}
 
 fn text<'a>(files: &'a [Attachment], name: &str) -> &'a str {
     let file = files.iter().find(|f| f.name == name).unwrap_or_else(|| panic!("no {name}"));
     std::str::from_utf8(&file.bytes).expect("UTF-8")
-}
-
-/// Returns the numbers of the array `name` of a VTK file.
-fn array(file: &str, name: &str) -> Vec<f64> {
-    let tree = roxmltree::Document::parse(file).expect("well-formed XML");
-    let mut found = tree.descendants().filter(|n| n.attribute("Name") == Some(name));
-    let node = found.next().unwrap_or_else(|| panic!("no array {name}"));
-    let words = node.text().unwrap_or("").split_whitespace();
-    words.map(|word| word.parse().expect("a number")).collect()
-}
-
-fn count(file: &str, what: &str) -> usize {
-    let tree = roxmltree::Document::parse(file).expect("well-formed XML");
-    let piece = tree.descendants().find(|n| n.has_tag_name("Piece")).expect("a piece");
-    piece.attribute(what).expect("a count").parse().expect("a whole number")
 }
 
 /// Computes the points of the bodies independently from the poses.
@@ -48,19 +42,22 @@ fn paraview_points_stand_where_the_poses_put_them() {
     scene.bodies[0].outlines.clear();
     let files = paraview(&scene, 60.0);
     for frame in [0, 1, 37, 60] {
-        let file = text(&files, &format!("bodies-{frame:04}.vtp"));
-        let points = array(file, "points");
-        let shifts = array(file, "displacement");
+        let file = vtk(&files, &format!("bodies-{frame:04}.vtp"));
+        let points = file.vectors("Points", "points");
+        let shifts = file.vectors("CellData", "displacement");
+        for (cell, body) in file.whole("CellData", "body").into_iter().enumerate() {
+            let [now, start] = [frame, 0].map(|frame| scene.frames.poses[frame][body]);
+            let [x, y, z] = shifts[cell].map(f64::from);
+            assert!((x - (now[0] - start[0])).abs() < NEAR && y == 0.0);
+            assert!((z - (now[1] - start[1])).abs() < NEAR);
+        }
         let wanted: Vec<[f64; 2]> = (0..4).flat_map(|b| expected(&scene, frame, b)).collect();
-        let start: Vec<[f64; 2]> = (0..4).flat_map(|b| expected(&scene, 0, b)).collect();
-        assert_eq!(points.len(), 3 * wanted.len());
-        assert_eq!(count(file, "NumberOfPoints"), wanted.len());
+        assert_eq!(points.len(), wanted.len());
+        assert_eq!(file.count("NumberOfPoints"), wanted.len());
         for (at, [x, z]) in wanted.iter().enumerate() {
-            let point = &points[3 * at..3 * at + 3];
-            // measured 0: the same formula on the same doubles
-            assert!((point[0] - x).abs() < 1e-12 && (point[2] - z).abs() < 1e-12);
-            assert_eq!(point[1], 0.0);
-            assert!((shifts[3 * at] - (x - start[at][0])).abs() < 1e-12);
+            let [px, py, pz] = points[at].map(f64::from);
+            assert!((px - x).abs() < NEAR && (pz - z).abs() < NEAR);
+            assert_eq!(py, 0.0);
         }
     }
 }
@@ -69,30 +66,23 @@ fn paraview_points_stand_where_the_poses_put_them() {
 fn paraview_cells_use_every_point_once_and_name_their_body() {
     let scene = scene(3, 5);
     let files = paraview(&scene, 60.0);
-    let file = text(&files, "bodies-0002.vtp");
-    let tree = roxmltree::Document::parse(file).expect("well-formed XML");
-    let numbers = |group: &str, name: &str| -> Vec<usize> {
-        let group = tree.descendants().find(|n| n.has_tag_name(group)).expect("a group");
-        let node = group.children().find(|n| n.attribute("Name") == Some(name)).expect("an array");
-        let words = node.text().unwrap_or("").split_whitespace();
-        words.map(|word| word.parse().expect("a whole number")).collect()
-    };
-    let mut used = numbers("Lines", "connectivity");
-    used.extend(numbers("Polys", "connectivity"));
+    let file = vtk(&files, "bodies-0002.vtp");
+    let mut used = file.whole("Lines", "connectivity");
+    used.extend(file.whole("Polys", "connectivity"));
     used.sort_unstable();
-    assert_eq!(used, (0..count(file, "NumberOfPoints")).collect::<Vec<_>>());
+    assert_eq!(used, (0..file.count("NumberOfPoints")).collect::<Vec<_>>());
     for (group, what) in [("Lines", "NumberOfLines"), ("Polys", "NumberOfPolys")] {
-        let ends = numbers(group, "offsets");
-        assert_eq!(ends.len(), count(file, what));
-        assert_eq!(ends.last().copied(), Some(numbers(group, "connectivity").len()));
+        let ends = file.whole(group, "offsets");
+        assert_eq!(ends.len(), file.count(what));
+        assert_eq!(ends.last().copied(), Some(file.whole(group, "connectivity").len()));
     }
-    let cells = count(file, "NumberOfLines") + count(file, "NumberOfPolys");
-    assert_eq!(numbers("CellData", "body").len(), cells);
+    let cells = file.count("NumberOfLines") + file.count("NumberOfPolys");
+    assert_eq!(file.whole("CellData", "body").len(), cells);
     // Lines come first: the ground and twelve marks of each barrel, then the three barrels.
     let mut bodies = vec![0];
     bodies.extend((1..=3).flat_map(|b| vec![b; 12]));
     bodies.extend([1, 2, 3]);
-    assert_eq!(numbers("CellData", "body"), bodies);
+    assert_eq!(file.whole("CellData", "body"), bodies);
     assert_eq!(text(&files, "bodies.csv").lines().nth(1), Some("0,ground,ground"));
 }
 
@@ -101,24 +91,28 @@ fn paraview_forces_are_those_of_the_frame() {
     let mut scene = scene(2, 4);
     scene.frames.forces[3].clear();
     let files = paraview(&scene, 60.0);
-    let file = text(&files, "forces-0001.vtp");
-    let force = array(file, "force");
-    let points = array(file, "points");
+    let file = vtk(&files, "forces-0001.vtp");
+    let force = file.vectors("PointData", "force");
+    let points = file.vectors("Points", "points");
+    assert_eq!(force.len(), scene.frames.forces[1].len());
     for (at, wanted) in scene.frames.forces[1].iter().enumerate() {
-        assert_eq!(force[3 * at..3 * at + 3], [wanted.fx, 0.0, wanted.fz]);
-        assert_eq!(points[3 * at..3 * at + 3], [wanted.x, 0.0, wanted.z]);
+        assert_eq!(force[at], [wanted.fx, 0.0, wanted.fz].map(|v| v as f32));
+        let [x, y, z] = points[at].map(f64::from);
+        assert!((x - wanted.x).abs() < NEAR && y == 0.0 && (z - wanted.z).abs() < NEAR);
     }
-    assert_eq!(count(text(&files, "forces-0003.vtp"), "NumberOfPoints"), 0);
+    let none = vtk(&files, "forces-0003.vtp");
+    assert_eq!(none.count("NumberOfPoints"), 0);
+    assert!(none.vectors("Points", "points").is_empty());
 }
 
 #[test]
 fn the_ground_is_drawn_around_the_bodies_and_not_for_hundreds_of_meters() {
     let scene = scene(4, 5);
     let files = paraview(&scene, 60.0);
-    let points = array(text(&files, "bodies-0000.vtp"), "points");
-    let widest = points.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let points = vtk(&files, "bodies-0000.vtp").vectors("Points", "points");
+    let widest = points.as_flattened().iter().fold(0.0_f32, |most, v| most.max(v.abs()));
     assert!(widest > 1.5 && widest < 8.0, "{widest}"); // measured 2.7
-    let ends: Vec<f64> = points.chunks(3).take(2).map(|p| p[0]).collect();
+    let ends: Vec<f32> = points.iter().take(2).map(|p| p[0]).collect();
     assert!(ends[0] < -1.0 && ends[1] > 1.5, "{ends:?}");
 }
 
@@ -132,7 +126,7 @@ fn the_index_names_every_file_at_its_time() {
     for (at, set) in sets.iter().enumerate() {
         let time: f64 = set.attribute("timestep").and_then(|t| t.parse().ok()).expect("a time");
         assert!((time - 0.1 * (at / 2) as f64).abs() < 1e-9);
-        text(&files, set.attribute("file").expect("a name"));
+        vtk(&files, set.attribute("file").expect("a name"));
     }
     assert_eq!(files.len(), 22 + 2);
 }

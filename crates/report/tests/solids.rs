@@ -1,9 +1,7 @@
 //! The series of bodies in space for ParaView, read by a parser of its own.
 
-use std::io::Read as _;
-
+use crate::common::Vtk;
 use barrelstack_report::{Role, SolidBody, SolidTie, Solids, paraview_of_solids};
-use base64::Engine as _;
 
 /// A tetrahedron of a level.
 fn tetrahedron(name: &str, level: u32) -> SolidBody {
@@ -14,42 +12,6 @@ fn tetrahedron(name: &str, level: u32) -> SolidBody {
         points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
     }
-}
-
-/// Returns the bytes of an array: one block, whose sizes are in its header.
-fn bytes(tree: &roxmltree::Document<'_>, name: &str, kind: &str) -> Vec<u8> {
-    let mut nodes = tree.descendants().filter(|node| node.attribute("Name") == Some(name));
-    // The cells of triangles come after those of lines.
-    let node = nodes.next_back().unwrap();
-    assert_eq!(node.attribute("type"), Some(kind), "{name}");
-    assert_eq!(node.attribute("format"), Some("binary"));
-    // Sixteen bytes take 24 letters.
-    let (header, data) = node.text().unwrap().trim().split_at(24);
-    let decode = |text: &str| base64::prelude::BASE64_STANDARD.decode(text).unwrap();
-    let header: Vec<usize> = decode(header)
-        .chunks(4)
-        .map(|word| u32::from_le_bytes(word.try_into().unwrap()) as usize)
-        .collect();
-    let packed = decode(data);
-    let mut unpacked = Vec::new();
-    flate2::read::ZlibDecoder::new(packed.as_slice()).read_to_end(&mut unpacked).unwrap();
-    assert_eq!(header, [1, unpacked.len(), 0, packed.len()]);
-    unpacked
-}
-
-fn vectors(tree: &roxmltree::Document<'_>, name: &str) -> Vec<[f32; 3]> {
-    let numbers: Vec<f32> = bytes(tree, name, "Float32")
-        .chunks(4)
-        .map(|word| f32::from_le_bytes(word.try_into().unwrap()))
-        .collect();
-    numbers.chunks(3).map(|vector| vector.try_into().unwrap()).collect()
-}
-
-fn whole(tree: &roxmltree::Document<'_>, name: &str) -> Vec<i32> {
-    bytes(tree, name, "Int32")
-        .chunks(4)
-        .map(|word| i32::from_le_bytes(word.try_into().unwrap()))
-        .collect()
 }
 
 #[test]
@@ -68,7 +30,7 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     };
     let mut files = Vec::new();
     paraview_of_solids::<()>(&solids, 1.0, &mut |file| {
-        files.push((file.name, String::from_utf8(file.bytes).unwrap()));
+        files.push((file.name, file.bytes));
         Ok(())
     })
     .unwrap();
@@ -76,34 +38,35 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     // The second frame is not due.
     assert_eq!(names, ["bodies-0000.vtp", "bodies-0001.vtp", "bodies.csv", "stack.pvd"]);
     assert_eq!(
-        files[2].1,
+        String::from_utf8_lossy(&files[2].1),
         "body,name,role,level\n0,\"one, \"\"quoted\"\"\",barrel,1\n1,two,barrel,2\n"
     );
-    let index = roxmltree::Document::parse(&files[3].1).unwrap();
+    let index = std::str::from_utf8(&files[3].1).unwrap();
+    let index = roxmltree::Document::parse(index).unwrap();
     let sets = index.descendants().filter(|node| node.has_tag_name("DataSet"));
     let listed: Vec<_> =
         sets.map(|set| (set.attribute("timestep"), set.attribute("file"))).collect();
     let entry = |time, file| (Some(time), Some(file));
     assert_eq!(listed, [entry("0", "bodies-0000.vtp"), entry("1", "bodies-0001.vtp")]);
 
-    let first = roxmltree::Document::parse(&files[0].1).unwrap();
-    assert_eq!(vectors(&first, "points").len(), 8);
-    assert_eq!(whole(&first, "body"), [0, 0, 0, 0, 1, 1, 1, 1]);
-    assert_eq!(whole(&first, "level"), [1, 1, 1, 1, 2, 2, 2, 2]);
-    assert_eq!(whole(&first, "connectivity")[12..15], [4, 6, 5]);
-    assert_eq!(whole(&first, "offsets"), [3, 6, 9, 12, 15, 18, 21, 24]);
+    let first = Vtk::of(&files[0].1);
+    assert_eq!(first.vectors("Points", "points").len(), 8);
+    assert_eq!(first.whole("CellData", "body"), [0, 0, 0, 0, 1, 1, 1, 1]);
+    assert_eq!(first.whole("CellData", "level"), [1, 1, 1, 1, 2, 2, 2, 2]);
+    assert_eq!(first.whole("Polys", "connectivity")[12..15], [4, 6, 5]);
+    assert_eq!(first.whole("Polys", "offsets"), [3, 6, 9, 12, 15, 18, 21, 24]);
 
     // A lost body is left out entirely.
-    let last = roxmltree::Document::parse(&files[1].1).unwrap();
-    assert_eq!(whole(&last, "body"), [0; 4]);
+    let last = Vtk::of(&files[1].1);
+    assert_eq!(last.whole("CellData", "body"), [0; 4]);
     let near = |found: &[f32; 3], exact: [f32; 3]| {
         found.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-6)
     };
     // The corner on x goes to y.
-    assert!(near(&vectors(&last, "points")[1], [2.0, 4.0, 4.0]));
-    assert!(near(&vectors(&last, "displacement")[1], [1.0, 4.0, 4.0]));
+    assert!(near(&last.vectors("Points", "points")[1], [2.0, 4.0, 4.0]));
+    assert!(near(&last.vectors("CellData", "displacement")[1], [2.0, 3.0, 4.0]));
     // Its center moves along x, and it rotates about it.
-    assert!(near(&vectors(&last, "velocity")[1], [-1.0, 0.0, 0.0]));
+    assert!(near(&last.vectors("PointData", "velocity")[1], [-1.0, 0.0, 0.0]));
 }
 
 #[test]
@@ -124,17 +87,17 @@ fn paraview_sees_straps_until_they_tear() {
     };
     let mut files = Vec::new();
     paraview_of_solids::<()>(&solids, 1.0, &mut |file| {
-        files.push(String::from_utf8(file.bytes).unwrap());
+        files.push(file.bytes);
         Ok(())
     })
     .unwrap();
-    assert!(files[2].ends_with("2,two-one left,device,0\n"), "{}", files[2]);
-    let tree = roxmltree::Document::parse(&files[0]).unwrap();
+    assert!(files[2].ends_with(b"2,two-one left,device,0\n"));
+    let tree = Vtk::of(&files[0]);
     // The line comes before the triangles, and its points before theirs.
-    assert_eq!(whole(&tree, "body"), [2, 0, 0, 0, 0, 1, 1, 1, 1]);
-    assert_eq!(whole(&tree, "role")[0], Role::Device as i32);
-    assert_eq!(vectors(&tree, "points")[..2], [[1.0, 0.0, 3.0], [1.0, 0.0, 0.5]]);
-    assert_eq!(whole(&tree, "connectivity")[..3], [2, 4, 3]);
-    let torn = roxmltree::Document::parse(&files[1]).unwrap();
-    assert_eq!(whole(&torn, "body"), [0, 0, 0, 0, 1, 1, 1, 1]);
+    assert_eq!(tree.whole("CellData", "body"), [2, 0, 0, 0, 0, 1, 1, 1, 1]);
+    assert_eq!(tree.whole("CellData", "role")[0], Role::Device as usize);
+    assert_eq!(tree.vectors("Points", "points")[..2], [[1.0, 0.0, 3.0], [1.0, 0.0, 0.5]]);
+    assert_eq!(tree.whole("Polys", "connectivity")[..3], [2, 4, 3]);
+    let torn = Vtk::of(&files[1]);
+    assert_eq!(torn.whole("CellData", "body"), [0, 0, 0, 0, 1, 1, 1, 1]);
 }

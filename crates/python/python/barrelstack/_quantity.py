@@ -5,11 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Protocol, cast, runtime_checkable
 
-__all__ = ["plain"]
+__all__ = ["AstropyQuantity", "PintQuantity", "plain"]
 
 
 @runtime_checkable
-class _Pint(Protocol):
+class PintQuantity(Protocol):
     """A quantity of Pint."""
 
     magnitude: Any
@@ -18,7 +18,7 @@ class _Pint(Protocol):
 
 
 @runtime_checkable
-class _Astropy(Protocol):
+class AstropyQuantity(Protocol):
     """A quantity of astropy."""
 
     value: Any
@@ -86,9 +86,9 @@ def plain(value: Any) -> Any:
     if isinstance(value, (str, bool, int)):
         return value
     try:
-        if isinstance(value, _Pint):
+        if isinstance(value, PintQuantity):
             return _of_pint(value)
-        if isinstance(value, _Astropy):
+        if isinstance(value, AstropyQuantity):
             return _of_astropy(value)
     except KeyError as unit:
         raise TypeError(f"no field of a scenario has the unit {unit}") from None

@@ -1,14 +1,11 @@
 //! Bodies in space as time series for ParaView.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
-
-use super::{closed_index, index_entry, opened_index, piece, poly_data};
+use super::poly_data::PolyData;
+use super::{closed_index, index_entry, opened_index};
 use crate::film::sampled_times;
-use crate::{Attachment, Role, base64, csv_field};
+use crate::{Attachment, Role, csv_field};
 
 /// The surface of a body in space, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,10 +56,11 @@ pub struct Solids {
 /// `stack.pvd` is the file to open. There is a `bodies-*.vtp` for each time, and `bodies.csv` lists
 /// the names of the bodies by number.
 ///
-/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m.
+/// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, and lengths are in m, rounded
+/// as in [`paraview`](super::paraview).
 /// Surfaces are triangles, straps and ties are lines. Cells carry `body` (the index of the body or
-/// tie), `role` (as in [`paraview`](super::paraview)) and `level` (0 for a tie); points carry
-/// `displacement` (m) from the first frame and `velocity` (m/s).
+/// tie), `role` (as in [`paraview`](super::paraview)), `level` (0 for a tie) and `displacement` (m),
+/// that of the origin of the body from the first frame (0 for a tie); points carry `velocity` (m/s).
 ///
 /// # Errors
 /// The first error of `put`.
@@ -77,7 +75,7 @@ pub fn paraview_of_solids<E>(
     for (at, &frame) in frames.iter().enumerate() {
         let name = format!("bodies-{at:0digits$}.vtp");
         index_entry(&mut index, solids.times[frame], 0, &name);
-        put(Attachment { name, bytes: file(solids, frame).into_bytes() })?;
+        put(Attachment { name, bytes: file(solids, frame) })?;
     }
     let mut names = String::from("body,name,role,level\n");
     for (at, body) in solids.bodies.iter().enumerate() {
@@ -94,19 +92,18 @@ pub fn paraview_of_solids<E>(
 }
 
 /// Writes the bodies at a frame.
-fn file(solids: &Solids, frame: usize) -> String {
+fn file(solids: &Solids, frame: usize) -> Vec<u8> {
     let Solids { bodies, ties, poses, twists, .. } = solids;
-    let (mut points, mut displacements, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut velocities) = (Vec::new(), Vec::new());
     let (mut ends, mut corners, mut of_body) = (Vec::new(), Vec::new(), Vec::new());
     // A body whose numbers are not finite is left out, with its ties.
     let lost = |at: usize| {
         poses[frame][at].iter().chain(&twists[frame][at]).any(|value| !value.is_finite())
     };
     let mut add = |at: usize, point: [f64; 3]| {
-        let (now, start, twist) = (poses[frame][at], poses[0][at], twists[frame][at]);
-        let (here, there) = (placed(now, point), placed(start, point));
+        let (now, twist) = (poses[frame][at], twists[frame][at]);
+        let here = placed(now, point);
         points.push(here);
-        displacements.push([here[0] - there[0], here[1] - there[1], here[2] - there[2]]);
         velocities.push(velocity(now, twist, here));
         points.len() - 1
     };
@@ -127,24 +124,26 @@ fn file(solids: &Solids, frame: usize) -> String {
     }
     let role = |at: usize| bodies.get(at).map_or(Role::Device, |body| body.role) as usize;
     let level = |at: usize| bodies.get(at).map_or(0, |body| body.level) as usize;
+    let moved = |at: usize| {
+        let place = |frame: usize| poses[frame].get(at);
+        let both = place(frame).zip(place(0));
+        both.map_or([0.0; 3], |(now, start)| [0, 1, 2].map(|axis| now[axis] - start[axis]))
+    };
     let triangles = of_body.len() - lines;
-    let mut piece = piece(points.len(), [0, lines, triangles], "displacement");
-    vectors(&mut piece, "displacement", &displacements);
-    vectors(&mut piece, "velocity", &velocities);
-    piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
-    whole(&mut piece, "body", of_body.iter().copied());
-    whole(&mut piece, "role", of_body.iter().map(|at| role(*at)));
-    whole(&mut piece, "level", of_body.iter().map(|at| level(*at)));
-    piece.push_str("</CellData>\n<Points>\n");
-    vectors(&mut piece, "points", &points);
-    piece.push_str("</Points>\n<Lines>\n");
-    whole(&mut piece, "connectivity", ends.iter().copied());
-    whole(&mut piece, "offsets", (1..=lines).map(|count| 2 * count));
-    piece.push_str("</Lines>\n<Polys>\n");
-    whole(&mut piece, "connectivity", corners.iter().copied());
-    whole(&mut piece, "offsets", (1..=triangles).map(|count| 3 * count));
-    piece.push_str("</Polys>\n");
-    poly_data(" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"", &piece)
+    let mut file = PolyData::new(points.len(), [0, lines, triangles]);
+    file.open("PointData Vectors=\"velocity\"");
+    file.vectors("velocity", velocities.into_iter());
+    file.close("PointData");
+    file.open("CellData Scalars=\"body\"");
+    file.whole("body", of_body.iter().copied());
+    file.whole("role", of_body.iter().map(|at| role(*at)));
+    file.whole("level", of_body.iter().map(|at| level(*at)));
+    file.lengths("displacement", of_body.iter().map(|at| moved(*at)));
+    file.close("CellData");
+    file.points(points.into_iter());
+    file.cells("Lines", ends.into_iter(), std::iter::repeat_n(2, lines));
+    file.cells("Polys", corners.into_iter(), std::iter::repeat_n(3, triangles));
+    file.finish()
 }
 
 /// Returns the position of a point of a body: `p + 2 w (v × r) + 2 v × (v × r)` for the quaternion `w, v`.
@@ -165,36 +164,4 @@ fn velocity(pose: [f64; 7], [u, v, w, a, b, c]: [f64; 6], place: [f64; 3]) -> [f
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Writes vectors in single precision, which resolves less than a micrometer at ten meters.
-#[expect(clippy::cast_possible_truncation, reason = "single precision suffices for a picture")]
-fn vectors(out: &mut String, name: &str, values: &[[f64; 3]]) {
-    let bytes: Vec<u8> =
-        values.iter().flatten().flat_map(|value| (*value as f32).to_le_bytes()).collect();
-    array(out, ("Float32", name, 3), &bytes);
-}
-
-/// Writes integers, all of which fit easily into 32 bits.
-fn whole(out: &mut String, name: &str, values: impl Iterator<Item = usize>) {
-    let number = |value| i32::try_from(value).unwrap_or(i32::MAX);
-    let bytes: Vec<u8> = values.flat_map(|value| number(value).to_le_bytes()).collect();
-    array(out, ("Int32", name, 1), &bytes);
-}
-
-/// Writes an array as one block compressed by zlib, preceded by the sizes of the block before and
-/// after compression. Written as text, the series of a collapse would take a gigabyte.
-fn array(out: &mut String, (kind, name, components): (&str, &str, u32), bytes: &[u8]) {
-    let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
-    // Writing to memory cannot fail.
-    let packed = packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default();
-    let size = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX);
-    let header = [1, size(bytes), 0, size(&packed)].map(u32::to_le_bytes).concat();
-    let _ = writeln!(
-        out,
-        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-         format=\"binary\">\n{}{}\n</DataArray>",
-        base64(&header),
-        base64(&packed)
-    );
 }

@@ -1,5 +1,6 @@
 //! Scenes and documents that the tests share, and a reader of the data of a page.
 
+use std::io::Read as _;
 use std::sync::Arc;
 
 use barrelstack_report::{
@@ -140,4 +141,67 @@ pub(crate) fn unpack(packed: &Value) -> Vec<Vec<f64>> {
         .collect();
     assert_eq!(at, bytes.len(), "the stream ends with its last value");
     channels
+}
+
+/// A VTK file, read by a parser of its own: the markup, and the block of all arrays.
+pub(crate) struct Vtk {
+    markup: String,
+    arrays: Vec<u8>,
+}
+
+impl Vtk {
+    pub(crate) fn of(file: &[u8]) -> Self {
+        let mark = b"<AppendedData encoding=\"raw\">\n_";
+        let end = b"\n</AppendedData>\n</VTKFile>\n";
+        let at = file.windows(mark.len()).position(|part| part == mark).unwrap();
+        let markup = format!("{}</VTKFile>", std::str::from_utf8(&file[..at]).unwrap());
+        let arrays = file[at + mark.len()..].strip_suffix(end).unwrap().to_vec();
+        Self { markup, arrays }
+    }
+
+    fn tree(&self) -> roxmltree::Document<'_> {
+        roxmltree::Document::parse(&self.markup).unwrap()
+    }
+
+    /// Returns an attribute of the piece.
+    pub(crate) fn count(&self, what: &str) -> usize {
+        let tree = self.tree();
+        let piece = tree.descendants().find(|node| node.has_tag_name("Piece")).unwrap();
+        piece.attribute(what).unwrap().parse().unwrap()
+    }
+
+    /// Returns the bytes of an array: one block, whose sizes are in its header.
+    fn bytes(&self, group: &str, name: &str, kind: &str) -> Vec<u8> {
+        let tree = self.tree();
+        let group = tree.descendants().find(|node| node.has_tag_name(group)).unwrap();
+        let node = group.children().find(|node| node.attribute("Name") == Some(name)).unwrap();
+        assert_eq!(node.attribute("type"), Some(kind), "{name}");
+        assert_eq!(node.attribute("format"), Some("appended"));
+        let at: usize = node.attribute("offset").unwrap().parse().unwrap();
+        let number = |k: usize| {
+            let word = &self.arrays[at + 4 * k..at + 4 * k + 4];
+            u32::from_le_bytes(word.try_into().unwrap()) as usize
+        };
+        if number(0) == 0 {
+            return Vec::new();
+        }
+        let mut unpacked = Vec::new();
+        let packed = &self.arrays[at + 16..at + 16 + number(3)];
+        flate2::read::ZlibDecoder::new(packed).read_to_end(&mut unpacked).unwrap();
+        assert_eq!([number(0), number(1), number(2)], [1, unpacked.len(), 0]);
+        unpacked
+    }
+
+    pub(crate) fn vectors(&self, group: &str, name: &str) -> Vec<[f32; 3]> {
+        let bytes = self.bytes(group, name, "Float32");
+        let numbers: Vec<f32> =
+            bytes.as_chunks().0.iter().map(|word| f32::from_le_bytes(*word)).collect();
+        numbers.as_chunks().0.to_vec()
+    }
+
+    pub(crate) fn whole(&self, group: &str, name: &str) -> Vec<usize> {
+        let bytes = self.bytes(group, name, "Int32");
+        let words = bytes.as_chunks().0.iter();
+        words.map(|word| usize::try_from(i32::from_le_bytes(*word)).unwrap()).collect()
+    }
 }
