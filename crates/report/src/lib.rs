@@ -101,6 +101,8 @@ mod sheet;
 #[cfg(feature = "documents")]
 mod simplify;
 #[cfg(feature = "documents")]
+mod stamp;
+#[cfg(feature = "documents")]
 mod strip;
 #[cfg(feature = "documents")]
 mod style;
@@ -158,6 +160,8 @@ pub use scene::{
     ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Pose2, Role,
     Scene, SceneBody, Tie, Tint, Trace,
 };
+#[cfg(feature = "documents")]
+pub use stamp::Stamp;
 #[cfg(feature = "documents")]
 pub use strip::{Panel, Strip};
 #[cfg(feature = "documents")]

@@ -57,6 +57,7 @@ fn document(
         ("maximum per event", args.most_of_event.map_or("no limit".to_owned(), |n| n.to_string())),
         ("seed", args.seed.to_string()),
         ("method", "Jayaram, Lin and Baker (2011)".to_owned()),
+        ("program", concat!("barrelstack ", env!("CARGO_PKG_VERSION")).to_owned()),
         ("correlations", "Baker and Jayaram (2008)".to_owned()),
     ];
     Document {
