@@ -4,7 +4,7 @@ use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
 use barrelstack_report::{Depth, DepthBody, DepthPoses, DepthTie, Point3, Role, Volume};
 
-use super::{PLATE, Sight, events, moment};
+use super::{PLATE, Sight, events, moment, top};
 use crate::part::Part;
 use crate::run::Run;
 
@@ -33,6 +33,7 @@ pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
         ties: straps.collect(),
         events: all,
         moment: moment(run, &own),
+        paths: top(run).collect(),
     }
 }
 
