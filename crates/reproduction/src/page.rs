@@ -48,15 +48,17 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let compared = rows.len() - count(Verdict::NotCompared);
+    let agree = count(Verdict::Agrees);
+    let mut text = if compared < rows.len() {
+        format!("{compared} of {} published results could be compared: {agree} agree", rows.len())
+    } else {
+        format!("{agree} of {compared} published results agree")
+    };
     // Writing to a String cannot fail.
-    let mut text = format!("{} of {compared} published results agree", count(Verdict::Agrees));
     if count(Verdict::InBand) > 0 {
         let _ = write!(text, ", {} more within a wider band", count(Verdict::InBand));
     }
     let _ = write!(text, ", {} differ", count(Verdict::Differs));
-    if count(Verdict::NotCompared) > 0 {
-        let _ = write!(text, "; not compared: {}", count(Verdict::NotCompared));
-    }
     text.push('.');
     text
 }
