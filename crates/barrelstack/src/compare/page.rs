@@ -149,19 +149,20 @@ fn effect(sides: &[Side]) -> Option<String> {
         (true, true, false) => "without straps".to_owned(),
         _ => format!("with {} in place of {}", second.name, first.name),
     };
-    let clause = |pair: &Paired| {
+    let clause = |(at, pair): (usize, &Paired)| {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
         let place = place(first, pair);
         let unproven = match (from == to, pair.is_clear()) {
             (false, false) => ", too few to prove a difference",
             _ => "",
         };
-        format!("{from} → {to} of {of} variants collapse{place}{unproven}")
+        let collapse = if at == 0 { " variants collapse" } else { "" };
+        format!("{from} → {to} of {of}{collapse}{place}{unproven}")
     };
     // The other plane is named if any variant collapses in it.
     let named =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
-    let clauses: Vec<String> = named.map(|(_, pair)| clause(pair)).collect();
+    let clauses: Vec<String> = named.map(clause).collect();
     Some(format!("{}: {cause}.", clauses.join("; ")))
 }
 

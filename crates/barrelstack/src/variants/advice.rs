@@ -124,7 +124,7 @@ impl Remedy {
         };
         let series = [
             bars,
-            points("all variants", 0, true),
+            points("all variants", 2, true),
             points("rejected early: the variants counted until then", 1, false),
         ];
         let mark = |at: f64, label: &str| Mark { at: percent(at), label: label.into() };
@@ -133,7 +133,7 @@ impl Remedy {
             "remedy",
             "Share of the same variants that falls after each change, in the direction in which more fall.",
             Plot {
-                x: Axis { range: Some([0.0, 100.0]), ..Axis::new("variants that fall", "%") },
+                x: Axis { range: Some([-2.0, 102.0]), ..Axis::new("variants that fall", "%") },
                 y: Axis::named(self.tried.iter().map(name).collect()),
                 series: series.into_iter().filter(|one| !one.x.is_empty()).collect(),
                 marks: as_it_is.map(|at| mark(at, "as it is")).into_iter().chain([limit]).collect(),

@@ -76,8 +76,8 @@ fn scale_of(sheet: &Sheet) -> Figure {
     let known = sheet.protocol.name.split(',').next() == Some(Protocol::rockscore().name.as_str());
     let others = if known { references() } else { Vec::new() };
     let caption = if known {
-        "The score of this stack, and those of the racks of the catalog without devices, each from one motion in four of \
-         the protocol."
+        "The score of this stack, and those of the racks of the catalog without devices; the latter are from one motion in \
+         four of the protocol."
     } else {
         "The score of this stack."
     };

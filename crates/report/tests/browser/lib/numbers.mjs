@@ -12,11 +12,13 @@ function numbersIn(text) {
   return [...plain.matchAll(/(<|less than|>|more than)?\s*(-?\d+(?:\.\d+)?)/g)].map(([, bound, digits]) => ({ bound, digits }));
 }
 
-/** Whether a number as shown is a value, rounded to the digits that are shown. */
+/** Whether a number as shown is a value, rounded to the digits that are shown; counts are below 1000. */
 function shows({ bound, digits }, value) {
   if (bound === "<" || bound === "less than") return Math.abs(value) < Number(digits);
   if (bound) return value > Number(digits);
-  const step = 10 ** -(digits.split(".")[1] ?? "").length;
+  const [whole, decimals = ""] = digits.replace("-", "").split(".");
+  // Measured numbers have three significant digits where these are fewer than all.
+  const step = 10 ** (decimals ? -decimals.length : Math.max(0, whole.length - 3));
   return Math.abs(Number(digits) - value) <= 0.5000001 * step;
 }
 
@@ -74,9 +76,12 @@ export async function ofRun(page, summary) {
   const spreads = planes.filter(({ ensemble }) => ensemble);
   for (const { ensemble } of spreads) {
     const { collapsed, variants, interval } = ensemble;
-    const counts = shown.headline.match(new RegExp(`${collapsed} of ${variants}\\D[^(]*\\(([^)]*)\\)`));
+    const said = collapsed === variants ? `all ${variants}` : collapsed === 0 ? `(?:none of|0 of) (?:the )?${variants}` : `${collapsed} of ${variants}`;
+    const counts = shown.headline.match(new RegExp(`${said}\\D[^(]*\\(([^)]*)\\)`));
     demand(counts, `the headline does not state ${collapsed} of ${variants}: ${shown.headline}`);
-    reading.are("interval in the headline", counts[1], percents(interval));
+    // If all or none fall, only the other end of the interval is stated.
+    const bounds = counts[1].includes("at least") ? [interval[0]] : counts[1].includes("at most") ? [interval[1]] : interval;
+    reading.are("interval in the headline", counts[1], percents(bounds));
   }
   if (spreads.length > 0) {
     const [table] = tablesOf(shown, "Range");
