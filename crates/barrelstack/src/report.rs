@@ -31,7 +31,7 @@ pub(crate) use sections::{standing_until, traces};
 pub use tables::{demand_table, device_table, interface_table};
 pub use trust::trust;
 pub use unknowns::unknowns;
-pub use words::{command, device as device_sentence, fine, stopped};
+pub use words::{command, device as device_sentence, fine, record_fingerprints, stopped};
 pub(crate) use words::{headline, provenance};
 
 /// Summarizes the result in a few plain sentences: the verdict, its cause, and its reliability.

@@ -394,6 +394,23 @@ mod tests {
     }
 
     #[test]
+    fn racks_of_reference_are_those_of_the_league() {
+        let league = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/league/league.csv");
+        let league = std::fs::read_to_string(league).unwrap();
+        let racks = league.lines().filter(|line| line.contains(",rack,"));
+        let whole = |cell: Option<&&str>| cell.unwrap().parse().unwrap();
+        let racks: Vec<page::OnScale> = racks
+            .map(|line| line.split(',').collect::<Vec<_>>())
+            .map(|cells| {
+                let range = [whole(cells.get(5)), whole(cells.get(6))];
+                (cells[0].to_owned(), whole(cells.get(2)), Some(range))
+            })
+            .collect();
+        assert!(racks.len() > 5);
+        assert_eq!(page::references(), racks);
+    }
+
+    #[test]
     fn without_a_curve_the_highest_level_counts_at_which_nine_in_ten_stood() {
         assert_eq!(between([0, 0, 0, 8]), Capacity::Between(0.9, 1.35));
         assert_eq!(between([0, 0, 8, 24]), Capacity::Between(0.6, 0.9));

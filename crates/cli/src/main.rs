@@ -43,6 +43,15 @@ fn main() -> ExitCode {
         }
     };
     barrelstack_input::system::guard_inputs();
+    let commit = std::env::var("BARRELSTACK_COMMIT");
+    let commit = commit.unwrap_or_else(|_| env!("BARRELSTACK_COMMIT").to_owned());
+    match barrelstack_input::system::clock() {
+        Ok(now) => barrelstack_report::Stamp::new(now, commit).state(),
+        Err(wrong) => {
+            printer::error(&anyhow::Error::msg(wrong), json);
+            return ExitCode::from(2);
+        }
+    }
     interrupt::stop_at(args.stop_at.clone());
     match commands::dispatch(args) {
         // Stopped work is not a success, even if results are kept.

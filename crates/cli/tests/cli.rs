@@ -47,6 +47,24 @@ fn timeless(text: &str) -> Vec<String> {
 }
 
 #[test]
+fn a_page_states_its_date_and_commit_and_a_wrong_date_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |date: &str| {
+        let mut command = program(["run", "sliding-block", "--quiet", "--overwrite", "--out"]);
+        command.arg(&out).env("SOURCE_DATE_EPOCH", date).output().unwrap()
+    };
+    assert!(run("1408875644").status.success());
+    let page = fs::read_to_string(out.join("report.html")).unwrap().replace('\u{a0}', " ");
+    assert!(page.contains("<dd>2014-08-24 (UTC)</dd>"), "no date");
+    assert!(page.contains(", commit 0123456789ab</dd>"), "no commit");
+    let refused = run("yesterday");
+    assert_eq!(refused.status.code(), Some(2));
+    let said = stderr(&refused);
+    assert!(said.contains("SOURCE_DATE_EPOCH") && said.contains("\"yesterday\""), "{said}");
+}
+
+#[test]
 fn the_summary_says_what_happened_in_words_and_rows() {
     let output = barrelstack(SHORT);
     let text = stdout(&output);

@@ -6,7 +6,7 @@ use std::io::{self, Read as _, Write as _};
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 /// Describes an I/O error so that the user can act on it.
 pub fn words(error: &io::Error) -> String {
@@ -34,6 +34,25 @@ pub fn words(error: &io::Error) -> String {
     let text = error.to_string();
     // The error number adds nothing for the user.
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
+}
+
+/// Returns the time (s since the start of 1970, UTC): that of the variable `SOURCE_DATE_EPOCH`, so
+/// that files can be written again bit for bit, and without it that of the clock.
+///
+/// # Errors
+/// A message if the variable is not a whole number.
+pub fn clock() -> Result<u64, String> {
+    let Some(given) = std::env::var_os("SOURCE_DATE_EPOCH").filter(|given| !given.is_empty())
+    else {
+        let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+        return Ok(now.map_or(0, |since| since.as_secs()));
+    };
+    let given = given.to_string_lossy();
+    given.parse().map_err(|_| {
+        format!(
+            "SOURCE_DATE_EPOCH: expected whole seconds since 1970, found \"{given}\"; correct or unset this variable"
+        )
+    })
 }
 
 /// Opens an input file for reading.

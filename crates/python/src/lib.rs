@@ -24,6 +24,9 @@ mod view;
 /// The library for the package `barrelstack`.
 #[pyo3::pymodule]
 mod _native {
+    use pyo3::exceptions::PyValueError;
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use crate::analyses::{compare, heights, protect, reproduce, score, select};
     #[pymodule_export]
@@ -50,6 +53,15 @@ mod _native {
 
     #[pymodule_export]
     const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
+    /// Sets the date that pages state.
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let now = barrelstack_input::system::clock().map_err(PyValueError::new_err)?;
+        let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_default();
+        barrelstack_report::Stamp::new(now, commit).state();
+        Ok(())
+    }
+
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

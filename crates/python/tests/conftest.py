@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+# Pages of the command and of the package state the same date and commit.
+os.environ.update(SOURCE_DATE_EPOCH="1408875644", BARRELSTACK_COMMIT="0123456789ab")
+
 ROOT = Path(__file__).resolve().parents[3]
 
 

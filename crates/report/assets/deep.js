@@ -420,7 +420,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   // Draws labels, arrows and paths over the picture.
   function drawOver(pen) {
     const { context } = pen;
-    if (flat.traces && depth.plane) drawPaths(pen);
+    if (flat.traces) drawPaths(pen);
     const arrows = flat.forces && depth.plane ? drawPushes(pen) : [];
     for (const { body } of currentEvents(depth, pen.time)) {
       if (body !== null && depth.bodies[body].role !== "ground") ring(pen, circle(body, pen.frame));
@@ -461,11 +461,14 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   function drawPaths({ context, frame }) {
     data.traces.forEach((trace, at) => {
       const [px, pz] = trace.point, [xs, zs, angles] = [0, 1, 2].map((c) => data.poses[3 * trace.body + c]);
+      // In space a path is that of a body's center.
+      const center = depth.plane ? null : [0, 1, 2].map((c) => depth.poses[7 * depth.paths[at] + c]);
       context.beginPath();
       let open = false;
       for (let k = 0; k <= frame; k++) {
-        const [cos, sin] = [Math.cos(angles[k]), Math.sin(angles[k])];
-        const [x, y] = project(inPlane(xs[k] + cos * px - sin * pz, zs[k] + sin * px + cos * pz));
+        const [cos, sin] = center ? [1, 0] : [Math.cos(angles[k]), Math.sin(angles[k])];
+        const point = center ? center.map((values) => values[k]) : inPlane(xs[k] + cos * px - sin * pz, zs[k] + sin * px + cos * pz);
+        const [x, y] = project(point);
         if (isFinite(x + y)) context[open ? "lineTo" : "moveTo"](x, y);
         open = isFinite(x + y);
       }

@@ -129,6 +129,9 @@ pub struct Depth {
     pub events: Vec<Event>,
     /// The instant at which the player opens.
     pub moment: Option<Moment>,
+    /// With poses of its own: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
+    /// center it follows.
+    pub paths: Vec<usize>,
 }
 
 impl Depth {
@@ -174,6 +177,7 @@ impl Depth {
             "moment": moment,
             "plane": plane,
             "poses": poses,
+            "paths": self.paths.iter().filter(|body| **body < self.bodies.len()).collect::<Vec<_>>(),
         })
     }
 

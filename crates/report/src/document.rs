@@ -24,6 +24,20 @@ pub struct Document {
     pub warnings: Vec<String>,
 }
 
+impl Document {
+    /// Returns the blocks up to the first picture, and the blocks that follow the prose of the verdict.
+    ///
+    /// The first picture is the first player or, without a player, a figure or table that opens the document.
+    pub(crate) fn parted(&self) -> (&[Block], &[Block]) {
+        let player = |block: &Block| matches!(block, Block::Player(_) | Block::Players(_));
+        let opens = |at: &usize| matches!(self.blocks[*at], Block::Figure(_) | Block::Table(_));
+        let blocks = &self.blocks;
+        let first = || blocks.iter().position(|block| !matches!(block, Block::Heading { .. }));
+        let picture = blocks.iter().position(player).or_else(|| first().filter(opens));
+        blocks.split_at(picture.map_or(0, |at| at + 1))
+    }
+}
+
 /// Scope of a result, stated after the provenance.
 pub(crate) const SCOPE: &str = "This page states what a model computes from the inputs that it lists. It does not replace the \
                          judgment of an engineer who has inspected the stack, its racks and its floor.";
@@ -63,17 +77,21 @@ pub struct Verdict {
 const ONE_HEADING: usize = 180;
 
 /// Least length (bytes) of the sentences that open a longer headline.
-const OPENING: usize = 60;
+const OPENING: usize = 30;
 
 impl Verdict {
     /// Returns the sentences of the headline that open a page, and the other ones, which follow in smaller type.
     pub(crate) fn opening(&self) -> (&str, &str) {
-        let whole = self.headline.as_str();
-        let end = whole.match_indices(". ").map(|(at, _)| at + 1).find(|end| *end >= OPENING);
-        match end.filter(|_| whole.len() > ONE_HEADING) {
-            Some(end) => (&whole[..end], whole[end..].trim_start()),
-            None => (whole, ""),
-        }
+        opening(&self.headline, ONE_HEADING)
+    }
+}
+
+/// Returns the sentences that open a text longer than `whole` (bytes), and the other ones.
+pub(crate) fn opening(text: &str, whole: usize) -> (&str, &str) {
+    let end = text.match_indices(". ").map(|(at, _)| at + 1).find(|end| *end >= OPENING);
+    match end.filter(|_| text.len() > whole) {
+        Some(end) => (&text[..end], text[end..].trim_start()),
+        None => (text, ""),
     }
 }
 

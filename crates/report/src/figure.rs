@@ -216,6 +216,47 @@ impl Attachment {
     }
 }
 
+/// Numbers of figures and tables, in reading order; they are the same in every format.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Counter {
+    pub(crate) figures: usize,
+    pub(crate) tables: usize,
+}
+
+impl Counter {
+    /// Returns the number of the next figure; the panes of a player share one number.
+    pub(crate) fn figure(&mut self) -> usize {
+        self.figures += 1;
+        self.figures
+    }
+
+    /// Returns the number of the next table.
+    pub(crate) fn table(&mut self) -> usize {
+        self.tables += 1;
+        self.tables
+    }
+
+    /// Passes over blocks that are written later.
+    pub(crate) fn skip(&mut self, blocks: &[Block]) {
+        walk(blocks, &mut |block| match block {
+            Block::Figure(_) | Block::Player(_) | Block::Players(_) => self.figures += 1,
+            Block::Table(_) => self.tables += 1,
+            Block::Heading { .. }
+            | Block::Paragraph(_)
+            | Block::List(_)
+            | Block::Details { .. } => {}
+        });
+    }
+}
+
+/// Returns the letter of one of several panes that share the number of a figure.
+pub(crate) fn pane_letter(pane: usize) -> String {
+    u8::try_from(pane)
+        .ok()
+        .filter(|at| *at < 26)
+        .map_or_else(|| format!("-{}", pane + 1), |at| char::from(b'a' + at).to_string())
+}
+
 /// Assigns unique names; the names of a document are the same in every format.
 #[derive(Default)]
 pub(crate) struct Names {

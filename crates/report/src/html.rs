@@ -6,21 +6,22 @@ use serde::Serialize;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Figure, FigureKind, Strip, Table, Tone,
+    Block, Document, Figure, FigureKind, Strip, Table, Tone, Verdict,
     document::FINE,
     drawing::Room,
     escape,
-    figure::Names,
+    figure::{Counter, Names},
     glossary::Glossary,
     number,
     page::{Payload, assemble},
+    stamp,
     trial::{self, Trial},
 };
 
 /// Writes the document as one HTML file that makes no network requests.
 ///
-/// Order: the verdict, then the blocks, then the provenance. Warnings and a list of sections follow
-/// the first player, or precede all blocks if there is no player. Players and interactive plots run
+/// Order: the headline, the first picture, the sentences of the verdict, warnings, a list of
+/// sections, all other blocks, and the provenance. Players and interactive plots run
 /// in the page; without scripts, and in print, they are SVG pictures.
 pub fn html(document: &Document) -> String {
     written(document, None)
@@ -39,16 +40,16 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
         writer.put(trial::OPENER);
     }
     writer.out.push_str("<main id=\"content\">\n");
-    let first_player =
-        document.blocks.iter().position(|b| matches!(b, Block::Player(_) | Block::Players(_)));
-    let split = first_player.map_or(0, |at| at + 1);
+    let (opening, rest) = document.parted();
     let sections = sections(&document.blocks);
-    writer.blocks(&document.blocks[..split]);
+    let provenance = stamp::provenance(document);
+    writer.blocks(opening);
+    writer.account(&document.verdict);
     writer.warnings(&document.warnings);
-    writer.contents(&sections, !document.provenance.is_empty());
-    writer.blocks(&document.blocks[split..]);
+    writer.contents(&sections, !provenance.is_empty());
+    writer.blocks(rest);
     writer.words();
-    writer.provenance(&document.provenance);
+    writer.provenance(&provenance);
     writer.out.push_str("</main>\n");
     assemble(&document.title, &writer.out, writer.payload, trial)
 }
@@ -95,8 +96,7 @@ pub(crate) struct Writer<'a> {
     pub(crate) payload: Payload,
     pub(crate) names: Names,
     anchors: Names,
-    tables: usize,
-    figures: usize,
+    counter: Counter,
     folded: usize,
     glossary: Glossary,
     /// `true` if players include pictures for print and for pages without scripts.
@@ -111,8 +111,7 @@ impl<'a> Writer<'a> {
             payload: Payload::default(),
             names: Names::default(),
             anchors: Names::default(),
-            tables: 0,
-            figures: 0,
+            counter: Counter::default(),
             folded: 0,
             glossary: Glossary::of(&document.words),
             prints: true,
@@ -131,7 +130,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Writes an element like [`Writer::element`], with technical terms marked.
-    fn explained(&mut self, open: &str, text: &str, close: &str) {
+    pub(crate) fn explained(&mut self, open: &str, text: &str, close: &str) {
         let text = self.glossary.marked(&number::tied(text));
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
@@ -149,8 +148,28 @@ impl<'a> Writer<'a> {
         self.put(&format!("<header class=\"verdict {}\">\n", tone.class()));
         self.element("<p class=\"title\">", &document.title, "</p>");
         self.put(&badge(tone));
-        let (opening, rest) = verdict.opening();
-        self.element("<h1>", opening, "</h1>");
+        self.element("<h1>", verdict.opening().0, "</h1>");
+        let count = document.warnings.len();
+        if count > 0 {
+            let plural = if count == 1 { "" } else { "s" };
+            self.put(&format!(
+                "<p class=\"heed\"><a href=\"#warnings\">{count} warning{plural}</a></p>\n"
+            ));
+        }
+        self.put("</header>\n");
+    }
+
+    /// Writes the sentences of the verdict that follow the first picture.
+    fn account(&mut self, verdict: &Verdict) {
+        let (_, rest) = verdict.opening();
+        let parts = [rest, &verdict.advice, &verdict.command];
+        if parts.iter().all(|part| part.is_empty())
+            && verdict.sentences.is_empty()
+            && verdict.fine.is_empty()
+        {
+            return;
+        }
+        self.put("<section class=\"account\" aria-label=\"Verdict in words\">\n");
         if !rest.is_empty() {
             self.explained("<p class=\"rest\">", rest, "</p>");
         }
@@ -172,14 +191,7 @@ impl<'a> Writer<'a> {
             self.explained("<p>", &verdict.fine.join(" "), "</p>");
             self.put("</details>\n");
         }
-        let count = document.warnings.len();
-        if count > 0 {
-            let plural = if count == 1 { "" } else { "s" };
-            self.put(&format!(
-                "<p class=\"heed\"><a href=\"#warnings\">{count} warning{plural}</a></p>\n"
-            ));
-        }
-        self.put("</header>\n");
+        self.put("</section>\n");
     }
 
     fn warnings(&mut self, warnings: &[String]) {
@@ -265,11 +277,11 @@ impl<'a> Writer<'a> {
     }
 
     fn table(&mut self, table: &Table) {
-        self.tables += 1;
+        let count = self.counter.table();
         self.put("<div class=\"table\" tabindex=\"0\" role=\"region\"");
         let label = escape::html(&table.caption);
-        self.put(&format!(" aria-label=\"Table {}. {label}\">\n<table>\n", self.tables));
-        let number = format!("<caption><span><b>Table {}.</b> ", self.tables);
+        self.put(&format!(" aria-label=\"Table {count}. {label}\">\n<table>\n"));
+        let number = format!("<caption><span><b>Table {count}.</b> ");
         self.explained(&number, &table.caption, "</span></caption>");
         let numeric = table.numeric();
         let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
@@ -343,8 +355,7 @@ impl<'a> Writer<'a> {
     }
 
     pub(crate) fn caption(&mut self, caption: &str) {
-        self.figures += 1;
-        let number = format!("<figcaption><b>Figure {}.</b> ", self.figures);
+        let number = format!("<figcaption><b>Figure {}.</b> ", self.counter.figure());
         self.explained(&number, caption, "</figcaption>");
     }
 

@@ -66,6 +66,7 @@ mod raster;
 mod scene;
 mod sheet;
 mod simplify;
+mod stamp;
 mod strip;
 mod style;
 mod svg;
@@ -102,6 +103,7 @@ pub use scene::{
     ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Pose2, Role,
     Scene, SceneBody, Tie, Tint, Trace,
 };
+pub use stamp::Stamp;
 pub use strip::{Panel, Strip};
 pub use table::{Cell, Column, ColumnOf, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};

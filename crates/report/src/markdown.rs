@@ -2,8 +2,11 @@
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Attachment, Block, Document, Event, Player, Players, Table, Word, attachments, document::FINE,
-    escape, figure::Names, glossary, number,
+    Attachment, Block, Document, Event, Player, Players, Table, Word, attachments,
+    document::FINE,
+    escape,
+    figure::{Counter, Names, pane_letter},
+    glossary, number, stamp,
 };
 
 /// Markdown text, and the files to which the text refers.
@@ -26,13 +29,14 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
         out: String::new(),
         folder: figure_dir.trim_end_matches('/').to_owned(),
         names: Names::default(),
-        tables: 0,
-        figures: 0,
+        counter: Counter::default(),
     };
     let verdict = &document.verdict;
     writer.line(&format!("# {}\n", escape::markdown(&document.title)));
     let headline = escape::markdown(&verdict.headline);
     writer.line(&format!("**{}: {headline}**\n", verdict.tone.word()));
+    let (opening, rest) = document.parted();
+    writer.blocks(opening, 0);
     if !verdict.advice.is_empty() {
         writer.line(&format!("**{}**\n", escape::markdown(&verdict.advice)));
     }
@@ -54,7 +58,7 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
         }
         writer.line("");
     }
-    writer.blocks(&document.blocks, 0);
+    writer.blocks(rest, 0);
     let words = glossary::used(&document.words, &writer.out);
     if !words.is_empty() {
         writer.line(&format!("## {}\n", glossary::TITLE));
@@ -64,9 +68,10 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
         }
         writer.line("");
     }
-    if !document.provenance.is_empty() {
+    let provenance = stamp::provenance(document);
+    if !provenance.is_empty() {
         writer.line("## Provenance\n\n| what | value |\n| :--- | :--- |");
-        for (name, value) in &document.provenance {
+        for (name, value) in &provenance {
             writer.line(&format!("| {} | {} |", escape::markdown(name), escape::markdown(value)));
         }
         for line in SIGNATURE {
@@ -82,8 +87,7 @@ struct Writer {
     out: String,
     folder: String,
     names: Names,
-    tables: usize,
-    figures: usize,
+    counter: Counter,
 }
 
 impl Writer {
@@ -110,7 +114,10 @@ impl Writer {
                 Block::Paragraph(text) => self.line(&format!("{}\n", escape::markdown(text))),
                 Block::List(items) => self.list(items),
                 Block::Table(table) => self.table(table),
-                Block::Figure(figure) => self.picture(&figure.id, &figure.caption),
+                Block::Figure(figure) => {
+                    let number = self.counter.figure().to_string();
+                    self.picture(&number, &figure.id, &figure.caption);
+                }
                 Block::Player(player) => self.player(player),
                 Block::Players(players) => self.players(players),
                 Block::Details { summary, blocks } => {
@@ -121,8 +128,7 @@ impl Writer {
         }
     }
 
-    fn picture(&mut self, id: &str, caption: &str) {
-        self.figures += 1;
+    fn picture(&mut self, number: &str, id: &str, caption: &str) {
         let name = self.names.take(id);
         let folder = if self.folder.is_empty() {
             String::new()
@@ -132,21 +138,23 @@ impl Writer {
             format!("{}/", safe.replace('(', "%28").replace(')', "%29"))
         };
         let caption = escape::markdown(caption);
-        let number = self.figures;
         self.line(&format!("![Figure {number}]({folder}{name}.svg)\n"));
         self.line(&format!("**Figure {number}.** {caption} ([data]({folder}{name}.csv))\n"));
     }
 
     fn player(&mut self, player: &Player) {
-        self.picture(&player.id, &player.caption);
+        let number = self.counter.figure().to_string();
+        self.picture(&number, &player.id, &player.caption);
         self.events(player.scene.events.iter().map(|event| ("", event)).collect());
     }
 
     fn players(&mut self, players: &Players) {
-        self.line(&format!("{}\n", escape::markdown(&players.caption)));
+        let number = self.counter.figure();
+        self.line(&format!("**Figure {number}.** {}\n", escape::markdown(&players.caption)));
         let mut events = Vec::new();
-        for (pane, figure) in players.panes.iter().zip(players.paper_figures()) {
-            self.picture(&figure.id, &figure.caption);
+        for (at, (pane, figure)) in players.panes.iter().zip(players.paper_figures()).enumerate() {
+            let number = format!("{number}{}", pane_letter(at));
+            self.picture(&number, &figure.id, &figure.caption);
             events.extend(pane.scene.events.iter().map(|event| (pane.mark.as_str(), event)));
         }
         events.sort_by(|a: &(&str, &Event), b| a.1.time.total_cmp(&b.1.time));
@@ -170,8 +178,8 @@ impl Writer {
     }
 
     fn table(&mut self, table: &Table) {
-        self.tables += 1;
-        self.line(&format!("**Table {}.** {}\n", self.tables, escape::markdown(&table.caption)));
+        let number = self.counter.table();
+        self.line(&format!("**Table {number}.** {}\n", escape::markdown(&table.caption)));
         if table.columns.is_empty() {
             return;
         }

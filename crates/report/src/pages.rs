@@ -9,11 +9,12 @@ use crate::{
     document::FINE,
     drawing::{Anchor, Drawing, Item},
     escape,
-    figure::Names,
+    figure::{Counter, Names, pane_letter},
     font::Font,
     number,
     pdf::{Page, pdf},
     sheet::{Sheet, baseline, row_height, wrap},
+    stamp,
     style::{Style, Tag},
     tags::Tags,
 };
@@ -47,12 +48,9 @@ impl Paper {
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
-    let first = document
-        .blocks
-        .iter()
-        .position(|block| matches!(block, Block::Player(_) | Block::Players(_)));
-    let (opening, rest) = document.blocks.split_at(first.map_or(0, |at| at + 1));
+    let (opening, rest) = document.parted();
     flow.blocks(opening);
+    flow.account();
     flow.warnings();
     flow.blocks(rest);
     flow.provenance();
@@ -85,10 +83,9 @@ struct Flow<'a> {
     /// Distance (points) of the next block from the top of the last page.
     y: f64,
     names: Names,
-    tables: usize,
-    figures: usize,
-    /// Collapsed content, for the appendix.
-    folded: Vec<(&'a str, &'a [Block])>,
+    counter: Counter,
+    /// Collapsed content, for the appendix, with the numbers before it.
+    folded: Vec<(&'a str, &'a [Block], Counter)>,
     tags: Tags,
     /// Index of the current structure element.
     current: usize,
@@ -102,8 +99,7 @@ impl<'a> Flow<'a> {
             pages: Vec::new(),
             y: 0.0,
             names: Names::default(),
-            tables: 0,
-            figures: 0,
+            counter: Counter::default(),
             folded: Vec::new(),
             tags: Tags::new(),
             current: 0,
@@ -234,6 +230,11 @@ impl<'a> Flow<'a> {
         for dots in &verdict.dots {
             self.dots(dots);
         }
+    }
+
+    /// Writes the sentences of the verdict that follow the first picture.
+    fn account(&mut self) {
+        let verdict = &self.document.verdict;
         if !verdict.advice.is_empty() {
             self.paragraph("page-bold", &verdict.advice);
         }
@@ -276,12 +277,11 @@ impl<'a> Flow<'a> {
     }
 
     fn provenance(&mut self) {
-        let document = self.document;
-        if document.provenance.is_empty() {
+        let provenance = stamp::provenance(self.document);
+        if provenance.is_empty() {
             return;
         }
-        let pairs =
-            document.provenance.iter().map(|(name, value)| vec![name.clone(), value.clone()]);
+        let pairs = provenance.into_iter().map(|(name, value)| vec![name, value]);
         let lines = SIGNATURE.map(|line| vec![line.to_owned(), String::new()]);
         let rows: Vec<Vec<String>> = pairs.chain(lines).collect();
         self.heading("page-section", "Provenance", 40.0);
@@ -296,7 +296,8 @@ impl<'a> Flow<'a> {
         }
         self.heading("page-section", "Appendix", 60.0);
         let mut at = 0;
-        while let Some(&(summary, blocks)) = self.folded.get(at) {
+        while let Some(&(summary, blocks, counter)) = self.folded.get(at) {
+            self.counter = counter;
             self.heading("page-part", summary, self.least(blocks));
             self.blocks(blocks);
             at += 1;
@@ -314,16 +315,21 @@ impl<'a> Flow<'a> {
                 Block::Paragraph(text) => self.paragraph("page-text", text),
                 Block::List(items) => self.list(items),
                 Block::Table(table) => self.table(table),
-                Block::Figure(figure) => self.figure(figure),
+                Block::Figure(figure) => {
+                    let number = self.counter.figure().to_string();
+                    self.figure(&number, figure);
+                }
                 Block::Player(player) => self.player(player),
                 Block::Players(players) => {
-                    for figure in players.paper_figures() {
-                        self.figure(&figure);
+                    let number = self.counter.figure();
+                    for (at, figure) in players.paper_figures().iter().enumerate() {
+                        self.figure(&format!("{number}{}", pane_letter(at)), figure);
                     }
                 }
                 Block::Details { summary, blocks } => {
                     self.paragraph("page-small", &format!("{summary}: see the appendix."));
-                    self.folded.push((summary, blocks));
+                    self.folded.push((summary, blocks, self.counter));
+                    self.counter.skip(blocks);
                 }
             }
         }
@@ -362,10 +368,9 @@ impl<'a> Flow<'a> {
         (drawing, height, scale)
     }
 
-    fn figure(&mut self, figure: &Figure) {
+    fn figure(&mut self, number: &str, figure: &Figure) {
         let id = self.names.take(&figure.id);
-        self.figures += 1;
-        let caption = format!("Figure {}. {}", self.figures, figure.caption);
+        let caption = format!("Figure {number}. {}", figure.caption);
         let style = Style::of(Tag::Text, "page-small");
         let lines = wrap(Font::of(false), style.font_size, &caption, self.width()).len();
         let (drawing, height, scale) = self.picture(figure, &id);
@@ -385,7 +390,7 @@ impl<'a> Flow<'a> {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
         // At the second fall the first one is visible too.
         let first = falls.next();
-        let Some(fall) = falls.next().or(first).filter(|_| self.figures == 0) else {
+        let Some(fall) = falls.next().or(first).filter(|_| self.counter.figures == 0) else {
             return player.paper_figure(&self.document.blocks);
         };
         let panel = Panel { time: fall.time, note: fall.text.clone() };
@@ -394,7 +399,9 @@ impl<'a> Flow<'a> {
     }
 
     fn player(&mut self, player: &Player) {
-        self.figure(&self.still(player));
+        let still = self.still(player);
+        let number = self.counter.figure().to_string();
+        self.figure(&number, &still);
         let events = player.scene.events.iter().filter(|event| event.time.is_finite());
         let rows: Vec<Vec<String>> = events
             .map(|event| {
@@ -409,11 +416,11 @@ impl<'a> Flow<'a> {
     }
 
     fn table(&mut self, table: &Table) {
-        self.tables += 1;
+        let number = self.counter.table();
         let head = table.columns.iter().map(crate::Column::heading).collect();
         let rows = table.rows.iter().map(|row| table.shown(row).collect()).collect();
         self.need(66.0);
-        let caption = format!("Table {}. {}", self.tables, table.caption);
+        let caption = format!("Table {number}. {}", table.caption);
         self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &caption));
         self.y += 3.0;
         self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));

@@ -1,13 +1,19 @@
 //! Players as markup: stages, controls, printed pictures and the list of events.
 
 use crate::{
-    Event, FigureKind, Pane, Player, Players, escape,
+    Event, FigureKind, Pane, Player, Players,
+    document::opening,
+    escape,
     html::{Writer, sign},
     number, player_data,
 };
 
 /// Number of events that are shown while the list is collapsed.
 const OPEN_EVENTS: usize = 4;
+
+/// Length (bytes) of a verdict that is shown whole above its pane; the sentences that follow the
+/// opening of a longer verdict are shown below the player.
+const PANE_VERDICT: usize = 120;
 
 /// Markup of the controls, with a placeholder for the stages.
 const CONTROLS: &str = include_str!("../assets/player.html");
@@ -69,6 +75,14 @@ impl Writer<'_> {
         events.sort_by(|a, b| a.1.time.total_cmp(&b.1.time));
         self.events(events);
         self.put("</figure>\n");
+        for pane in &players.panes {
+            let (_, rest) = opening(&pane.verdict, PANE_VERDICT);
+            if !rest.is_empty() {
+                let mark = escape::html(&pane.mark);
+                let open = format!("<p class=\"text\"><b class=\"mark\">{mark}</b> ");
+                self.explained(&open, rest, "</p>");
+            }
+        }
     }
 
     /// Writes events, each with the mark of its pane, which is empty if there is only one pane.
@@ -119,6 +133,6 @@ fn pane_head(pane: &Pane) -> String {
         sign(pane.tone),
         escape::html(&pane.mark),
         escape::html(&number::tied(&pane.name)),
-        escape::html(&number::tied(&pane.verdict))
+        escape::html(&number::tied(opening(&pane.verdict, PANE_VERDICT).0))
     )
 }

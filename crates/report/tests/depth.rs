@@ -32,6 +32,7 @@ fn deep(poses: DepthPoses, frames: usize) -> Scene {
         ties: vec![DepthTie { bodies: [1, 2], points: [[0.0; 3]; 2], torn_at: None }],
         events: flat.events.clone(),
         moment: Some(Moment { time: f64::NAN, body: 1, text: "never".into(), falls: true }),
+        paths: vec![2, 3],
     });
     flat
 }

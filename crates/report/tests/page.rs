@@ -65,7 +65,8 @@ fn a_long_headline_opens_with_its_verdict_and_continues_in_smaller_type() {
         markup(&html(&doc))
     };
     let page = shown(format!("{verdict} {rest}"));
-    assert!(page.contains(&format!("<h1>{verdict}</h1>\n<p class=\"rest\">{rest}</p>")), "{page}");
+    assert!(page.contains(&format!("<h1>{verdict}</h1>\n</header>")), "{page}");
+    assert!(page.contains(&format!("<p class=\"rest\">{rest}</p>")), "{page}");
     assert!(shown(verdict.to_owned()).contains(&format!("<h1>{verdict}</h1>")));
 }
 
@@ -81,7 +82,7 @@ fn advice_stands_under_the_headline_and_the_numbers_behind_it_are_folded() {
     ];
     let page = markup(&html(&doc));
     let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text} in {page}"));
-    assert!(at("<h1>") < at("Three levels would have stood."));
+    assert!(at("<h1>") < at("</header>") && at("</header>") < at("Three levels would have stood."));
     assert!(at("Three levels would have stood.") < at("class=\"lead\""));
     assert!(at("<code>barrelstack compare &#39;a b&#39;</code>") < at("<details class=\"fine\">"));
     assert!(at("<details class=\"fine\">") < at("0.37\u{a0}g"));

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::common::{HOSTILE, document, player, scene};
 use barrelstack_report::{
-    Animation, Block, Cell, Document, Figure, FigureKind, Film, Paper, Strip, Table, document_pdf,
+    Animation, Block, Cell, Document, Figure, FigureKind, Film, Pane, Paper, Players, Strip, Table,
+    Tone, document_pdf, html, markdown,
 };
 
 fn strip() -> Figure {
@@ -78,6 +79,48 @@ fn words(pdf: &lopdf::Document) -> String {
     let pages: Vec<u32> = pdf.get_pages().keys().copied().collect();
     let text = pdf.extract_text(&pages).unwrap();
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn figures_and_tables_have_the_same_numbers_in_every_format() {
+    let table = |caption: &str| {
+        let mut table = Table::new(caption, &[("quantity", "")]);
+        table.rows.push(vec![Cell::text("slip")]);
+        Block::Table(table)
+    };
+    let figure = |caption: &str| Block::Figure(Figure { caption: caption.into(), ..strip() });
+    let pane = |mark: &str| Pane {
+        mark: mark.into(),
+        name: format!("run {mark}"),
+        verdict: "It falls.".into(),
+        tone: Tone::Falls,
+        scene: Arc::new(scene(2, 60)),
+        traces: Vec::new(),
+    };
+    let players = Players {
+        id: "players".into(),
+        caption: "Two runs.".into(),
+        panes: vec![pane("A"), pane("B")],
+        ground: Vec::new(),
+        overlay: None,
+    };
+    let folded = Block::details("Folded", vec![table("Inner."), figure("Folded strip.")]);
+    let document =
+        document(vec![Block::Players(players), folded, table("Outer."), figure("Open strip.")]);
+    let wanted =
+        ["Table 1. Inner.", "Table 2. Outer.", "Figure 2. Folded strip.", "Figure 3. Open strip."];
+    let panes = ["Figure 1a. A: run A.", "Figure 1b. B: run B."];
+    let plain = |text: &str| text.replace("**", "").replace("<b>", "").replace("</b>", "");
+    let page = plain(&html(&document));
+    let text = plain(&markdown(&document, "").text);
+    let paper = words(&on_paper(&document, Paper::A4));
+    for wanted in wanted {
+        for (format, text) in [("page", &page), ("Markdown", &text), ("paper", &paper)] {
+            assert!(text.contains(wanted), "{wanted} is missing from the {format}:\n{text}");
+        }
+    }
+    assert!(page.contains("Figure 1. Two runs.") && text.contains("Figure 1. Two runs."));
+    assert!(panes.iter().all(|pane| text.contains(pane) && paper.contains(pane)), "{paper}");
 }
 
 #[test]

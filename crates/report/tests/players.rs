@@ -81,6 +81,16 @@ fn every_pane_has_its_verdict_with_a_sign_and_events_say_whose_they_are() {
 }
 
 #[test]
+fn sentences_behind_the_verdict_of_a_pane_follow_the_player() {
+    let mut both = low_and_high();
+    both.panes[0].verdict = "Falls. 15 of 16 variants fall (72–99 %). Depending on the friction of the seats, which is uncertain, 19 to 100 % fall; none of these decides alone.".into();
+    let page = html(&document(vec![Block::Players(both)])).replace('\u{a0}', " ");
+    assert_eq!(page.matches("<span>Falls. 15 of 16 variants fall (72–99 %).</span>").count(), 2);
+    let rest = page.find("<b class=\"mark\">A</b> Depending on").unwrap();
+    assert!(rest > page.find("</figure>").unwrap());
+}
+
+#[test]
 fn on_paper_the_panes_stand_at_the_same_times() {
     let figures = low_and_high().paper_figures();
     assert_eq!(figures.len(), 2);

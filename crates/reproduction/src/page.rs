@@ -48,15 +48,17 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let compared = rows.len() - count(Agreement::NotCompared);
+    let agree = count(Agreement::Agrees);
+    let mut text = if compared < rows.len() {
+        format!("{compared} of {} published results could be compared: {agree} agree", rows.len())
+    } else {
+        format!("{agree} of {compared} published results agree")
+    };
     // Writing to a String cannot fail.
-    let mut text = format!("{} of {compared} published results agree", count(Agreement::Agrees));
     if count(Agreement::InBand) > 0 {
         let _ = write!(text, ", {} more within a wider band", count(Agreement::InBand));
     }
     let _ = write!(text, ", {} differ", count(Agreement::Differs));
-    if count(Agreement::NotCompared) > 0 {
-        let _ = write!(text, "; not compared: {}", count(Agreement::NotCompared));
-    }
     text.push('.');
     text
 }

@@ -13,7 +13,7 @@ use barrelstack::variants::{Advance, RunChoice};
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_report::Pane;
 
-use crate::drawing::{Sight, ground_histories, scene};
+use crate::drawing::{Sight, ground_histories, scene, traces};
 use crate::report::provenance;
 use crate::run::Run;
 use crate::variants::{Answer, Case, answered};
@@ -52,6 +52,7 @@ impl Comparable for Answer {
             let variants = cases.iter().skip(1).map(|Case { result, .. }| result.collapsed());
             (Some("spatial"), variants.collect())
         });
+        let drawn = scene(&run, Sight::Across);
         Side {
             name,
             stated: scenario,
@@ -72,8 +73,8 @@ impl Comparable for Answer {
                 name: String::new(),
                 verdict: headline(&run, &summary),
                 tone: tone(&run, &summary),
-                scene: scene(&run, Sight::Across),
-                traces: Vec::new(),
+                traces: traces(&run, &drawn),
+                scene: drawn,
             },
             ground: ground_histories(&run),
             traced: traced(&run),

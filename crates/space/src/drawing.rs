@@ -20,7 +20,7 @@ use barrelstack_dynamics::{
     Body, Element, Linear as _, Link, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3,
 };
 use barrelstack_report::{
-    Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody, Tie,
+    Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody, Tie, Trace,
 };
 
 use self::view::BodyView;
@@ -120,6 +120,14 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     }
     let ends = std::iter::repeat_n(SceneBody::new("", Role::Block, Vec::new()), 2 * ties.len());
     drawn.extend(ends);
+    // The paths of barrels are those of invisible bodies at their centers.
+    for body in top(run) {
+        drawn.push(SceneBody::new("", Role::Block, Vec::new()));
+        for (row, frame) in poses.iter_mut().zip(&frames) {
+            let (place, _) = placed(run.frames.poses[*frame][body]);
+            row.push([place.dot(right), place.dot(up), 0.0]);
+        }
+    }
     Arc::new(Scene {
         bodies: drawn,
         frames: Frames {
@@ -237,6 +245,25 @@ pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     });
     let frames = Frames { times: times.to_vec(), poses, forces: Vec::new() };
     Scene { bodies: drawn, frames, events, moment, depth: deep, ..Scene::default() }
+}
+
+/// Returns the barrels of the top level, whose paths are drawn.
+fn top(run: &Run) -> impl Iterator<Item = usize> {
+    let levels = run.stack.levels;
+    run.stack
+        .of_kind(PartKind::Barrel)
+        .filter(move |body| levels > 0 && run.stack.parts[*body].level == levels)
+}
+
+/// Returns the traces of the centers of the barrels of the top level in a scene of the run.
+pub fn traces(run: &Run, scene: &Scene) -> Vec<Trace> {
+    let first = scene.bodies.len() - top(run).count();
+    let trace = |(at, body): (usize, usize)| Trace {
+        body: first + at,
+        point: [0.0; 2],
+        label: format!("center of {}", run.stack.parts[body].name),
+    };
+    top(run).enumerate().map(trace).collect()
 }
 
 /// A strap or a tie. It is drawn between two invisible bodies at its ends. It cannot be attached to the drawings of the

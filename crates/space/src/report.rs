@@ -2,7 +2,8 @@
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{
-    WORDS, command, demand_table, device_table, interface_table, legend, trust, unknowns,
+    WORDS, command, demand_table, device_table, interface_table, legend, record_fingerprints,
+    trust, unknowns,
 };
 use barrelstack::variants::words::dots_of;
 use barrelstack::variants::{Range, Remedy};
@@ -11,7 +12,7 @@ use barrelstack_report::{
     Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
 };
 
-use crate::drawing::{Sight, ground_histories, scene};
+use crate::drawing::{Sight, ground_histories, scene, traces};
 use crate::fate::Heading;
 use crate::run::Run;
 use crate::summary::Summary;
@@ -33,7 +34,7 @@ pub fn document(answer: &Answer) -> Document {
         verdict: String::new(),
         tone: tone(run, summary),
         scene: std::sync::Arc::clone(scene),
-        traces: Vec::new(),
+        traces: traces(run, scene),
     };
     let mut blocks = vec![Block::Players(Players {
         id: "players".into(),
@@ -135,10 +136,8 @@ fn of_variants(summary: &Summary) -> Vec<Block> {
         blocks.extend(decides);
     }
     if let Some(found) = &summary.remedy {
-        blocks.extend([
-            heading("What would have kept the stack up"),
-            Block::Table(found.table(false)),
-        ]);
+        blocks.push(heading("What would have kept the stack up"));
+        blocks.extend(found.blocks(summary.ensemble.as_ref().and_then(|all| all.share), false));
     }
     blocks
 }
@@ -269,13 +268,14 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     let made = &summary.provenance;
     let mut rows = vec![
         ("program".to_owned(), format!("{} {}", made.program, made.version)),
-        ("scenario".to_owned(), made.scenario_hash.clone()),
+        ("scenario fingerprint".to_owned(), made.scenario_hash.clone()),
         ("view".to_owned(), "spatial".to_owned()),
         (
             "method".to_owned(),
             format!("{}, steps of {:.3} ms", summary.run.method, 1e3 * run.stack.step),
         ),
     ];
+    rows.extend(record_fingerprints(&run.scenario.motion));
     rows.extend(made.motion.iter().map(|step| ("motion".to_owned(), step.clone())));
     rows
 }

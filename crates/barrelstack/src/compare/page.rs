@@ -109,9 +109,6 @@ fn stands(side: &Side) -> bool {
     }
 }
 
-/// Cause stated in the headline if the first run has straps and the second has none.
-const WITHOUT: &str = "Leaving straps off";
-
 /// Describes the change of the number of collapses from the first run to the others, in paired
 /// variants; `None` if a run has no variants.
 fn effect(sides: &[Side]) -> Option<String> {
@@ -148,38 +145,25 @@ fn effect(sides: &[Side]) -> Option<String> {
     let straps = |side: &Side| side.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
     let levels = |side: &Side| side.stated.stack().map(|stack| stack.levels);
     let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
-        (true, false, true) => "Straps".to_owned(),
-        (true, true, false) => WITHOUT.to_owned(),
-        _ => format!("{} in place of {}", capital(&second.name), first.name),
+        (true, false, true) => "with straps".to_owned(),
+        (true, true, false) => "without straps".to_owned(),
+        _ => format!("with {} in place of {}", second.name, first.name),
     };
-    let clause = |pair: &Paired| {
+    let clause = |(at, pair): (usize, &Paired)| {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
         let place = place(first, pair);
         let unproven = match (from == to, pair.is_clear()) {
             (false, false) => ", too few to prove a difference",
             _ => "",
         };
-        let verb = match (&*cause, from == to, to < from) {
-            ("Straps", true, _) => " leave",
-            ("Straps", false, true) => " cut",
-            ("Straps", false, false) => " raise",
-            (WITHOUT, true, _) => " leaves",
-            (WITHOUT, false, true) => " cuts",
-            (WITHOUT, false, false) => " raises",
-            _ => "",
-        };
-        if from == to {
-            format!("{verb} collapse{place} at {to} of {of} variants")
-        } else {
-            format!("{verb} collapse{place} from {from} to {to} of {of} variants{unproven}")
-        }
+        let collapse = if at == 0 { " variants collapse" } else { "" };
+        format!("{from} → {to} of {of}{collapse}{place}{unproven}")
     };
     // The other plane is named if any variant collapses in it.
     let named =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
-    let clauses: Vec<String> = named.map(|(_, pair)| clause(pair)).collect();
-    let colon = if cause == "Straps" || cause == WITHOUT { "" } else { ":" };
-    Some(format!("{cause}{colon}{}.", clauses.join(";")))
+    let clauses: Vec<String> = named.map(clause).collect();
+    Some(format!("{}: {cause}.", clauses.join("; ")))
 }
 
 /// Returns the plane of a pair, such as " across the barrels"; empty unless both planes were

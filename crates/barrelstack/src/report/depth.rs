@@ -35,6 +35,7 @@ pub(super) fn depth(
         ties: ties.iter().flat_map(|tie| section.bands(tie)).collect(),
         events: events.to_vec(),
         moment: moment.cloned(),
+        paths: Vec::new(),
     })
 }
 

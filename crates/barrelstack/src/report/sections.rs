@@ -27,9 +27,10 @@ pub(super) fn all(
     scene: &Arc<Scene>,
 ) -> Vec<Block> {
     let mut blocks = vec![stage(run, summary, other, scene)];
-    let remedy = summary.remedy.iter().map(|found| Block::Table(found.table(true))).collect();
-    section(&mut blocks, 2, "What would have kept the stack up", remedy);
     let spreads = summary.spreads();
+    let worst = spreads.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
+    let remedy = summary.remedy.iter().flat_map(|found| found.blocks(worst, true)).collect();
+    section(&mut blocks, 2, "What would have kept the stack up", remedy);
     let placed: Vec<(&str, &Spread)> =
         spreads.iter().map(|(view, spread)| (view.words(), *spread)).collect();
     section(&mut blocks, 2, "What decides", unknowns(&placed));

@@ -7,7 +7,7 @@ use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::scenario::View;
+use crate::scenario::{MotionSpec, View};
 use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants::{self, Remedy};
 use crate::verify::Verification;
@@ -291,12 +291,20 @@ pub(super) fn details(
     sentences
 }
 
+/// Returns the fingerprint of each file of a motion, as pairs for the provenance.
+pub fn record_fingerprints(motion: &MotionSpec) -> impl Iterator<Item = (String, String)> {
+    let pair = |(file, print)| ("record fingerprint".to_owned(), format!("{print} ({file})"));
+    motion.fingerprints().into_iter().map(pair)
+}
+
 /// Returns the provenance of the result, as pairs of name and value.
 pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));
     pair("program", format!("barrelstack {}", summary.provenance.version));
     pair("scenario fingerprint", summary.provenance.scenario_hash.clone());
+    pairs.extend(record_fingerprints(&run.stated.motion));
+    let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));
     let RunSummary { method, time_step, steps, stiffness_basis, .. } = summary.run;
     let step = 1e3 * time_step;
     pair("integration", format!("{method}, time step {step:.4} ms, {steps} steps"));

@@ -1,6 +1,8 @@
 //! The remedy as a sentence and as a table.
 
-use barrelstack_report::{Cell, Table, capital, listed};
+use barrelstack_report::{
+    Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table, capital, listed,
+};
 
 use super::remedy::{Remedy, Tried};
 use super::words::percent;
@@ -91,6 +93,53 @@ impl Remedy {
     fn pretensions(&self) -> String {
         let tried = self.tried.iter().filter_map(|one| one.pretension);
         format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
+    }
+
+    /// Returns a plot and a table of all changes; `as_it_is` is the share of variants of the stack as it is that fall.
+    pub fn blocks(&self, as_it_is: Option<f64>, in_planes: bool) -> Vec<Block> {
+        if self.tried.is_empty() {
+            return Vec::new();
+        }
+        vec![Block::Figure(self.figure(as_it_is)), Block::Table(self.table(in_planes))]
+    }
+
+    /// Plots the share of variants that falls after every change; `as_it_is` is the share of the stack as it is.
+    pub fn figure(&self, as_it_is: Option<f64>) -> Figure {
+        let percent = |share: f64| 100.0 * share;
+        let counted = |one: &Tried| percent(f64::from(one.failed) / f64::from(one.variants.max(1)));
+        let rows = || self.tried.iter().enumerate().map(|(at, one)| (Axis::row(at), one));
+        let mut bars =
+            Series::new("95 % interval, for all changes at once", Vec::new(), Vec::new());
+        for (row, interval) in rows().filter_map(|(row, one)| Some((row, one.interval?))) {
+            // NaN breaks the line between one bar and the next.
+            bars.x.extend(interval.map(percent).into_iter().chain([f64::NAN]));
+            bars.y.extend([row; 3]);
+        }
+        bars.style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
+        let points = |label: &str, index: usize, known: bool| {
+            let shown = rows().filter(|(_, one)| one.share.is_some() == known);
+            let (x, y) = shown.map(|(row, one)| (counted(one), row)).unzip();
+            let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
+            Series { style, ..Series::new(label, x, y) }
+        };
+        let series = [
+            bars,
+            points("all variants", 2, true),
+            points("rejected early: the variants counted until then", 1, false),
+        ];
+        let mark = |at: f64, label: &str| Mark { at: percent(at), label: label.into() };
+        let limit = mark(1.0 - self.required_share, "limit");
+        Figure::new(
+            "remedy",
+            "Share of the same variants that falls after each change, in the direction in which more fall.",
+            Plot {
+                x: Axis { range: Some([-2.0, 102.0]), ..Axis::new("variants that fall", "%") },
+                y: Axis::named(self.tried.iter().map(name).collect()),
+                series: series.into_iter().filter(|one| !one.x.is_empty()).collect(),
+                marks: as_it_is.map(|at| mark(at, "as it is")).into_iter().chain([limit]).collect(),
+                ..Plot::default()
+            },
+        )
     }
 
     /// Tabulates every change that was tried; `in_planes` selects the wording for planes rather

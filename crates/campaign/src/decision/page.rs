@@ -10,6 +10,7 @@ use super::loss::{Breakage, Losses};
 use super::modes::ModeIncidence;
 use super::words::{self, count, percent, range};
 use super::{Decision, figures, tables};
+use crate::scenario::Scenario;
 use crate::study::Provenance;
 
 /// Builds the report page of a decision.
@@ -31,6 +32,11 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
 /// Returns a block with the heading of a section.
 pub(crate) fn heading(text: &str) -> Block {
     Block::Heading { level: 2, text: text.to_owned() }
+}
+
+/// Returns the fingerprint of a scenario as text.
+pub(crate) fn print(scenario: &Scenario) -> String {
+    format!("{:016x}", scenario.fingerprint())
 }
 
 pub(crate) fn text(text: impl Into<String>) -> Block {

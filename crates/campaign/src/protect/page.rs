@@ -2,11 +2,12 @@
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, capital, listed, significant,
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Series, SeriesStyle, Table, Verdict,
+    capital, listed, significant,
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
-use crate::decision::{fallen_at_rest, heading, left_out, percent, points, text};
+use crate::decision::{fallen_at_rest, heading, left_out, percent, points, print, text};
 
 pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
     let mut blocks = before_and_after;
@@ -32,6 +33,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
         },
         blocks,
         provenance: vec![
+            ("scenario fingerprint".into(), print(&all.request.scenario)),
             ("protections tried (not counting the stack as it is)".into(), all.tries().to_string()),
             ("runs".into(), all.runs.to_string()),
             ("seed".into(), all.request.seed.to_string()),
@@ -304,6 +306,22 @@ fn legend(all: &Ranking) -> String {
 /// Plots the number of fallen barrels against cost.
 fn chart(all: &Ranking) -> Figure {
     let last = all.all.iter().map(|one| one.round).max();
+    let fallen_at = |one: &&Ranked| one.fallen.mean;
+    let mut front: Vec<&Ranked> =
+        all.all.iter().filter(|one| one.on_front && Some(one.round) == last).collect();
+    front.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    // Between two protections the cheaper one is the best that the money buys, so the frontier has steps.
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (at, one) in front.iter().enumerate() {
+        if let Some(before) = at.checked_sub(1).map(|before| &front[before]) {
+            x.push(one.cost());
+            y.push(fallen_at(before));
+        }
+        x.push(one.cost());
+        y.push(fallen_at(one));
+    }
+    let style = SeriesStyle { index: Some(0), ..SeriesStyle::default() };
+    let frontier = Series { style, ..Series::new("frontier: fewest fall for the cost", x, y) };
     let series = [(true, "best for their cost"), (false, "others")]
         .into_iter()
         .enumerate()
@@ -315,6 +333,7 @@ fn chart(all: &Ranking) -> Figure {
             let means = some.iter().map(|one| one.fallen.mean);
             points(label, &x, means, some.iter().map(bounds), index)
         })
+        .chain((front.len() > 1).then_some(frontier))
         .collect();
     let fallen = if is_site(all) { "barrels fallen a year" } else { "barrels fallen" };
     Figure::new(

@@ -8,7 +8,7 @@ use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, to_
 use barrelstack_report::{Block, Cell, Document, Table, Verdict};
 
 use super::{Prepared, Protocol, ScoreError, Sheet, page, prepared};
-use crate::decision::{heading, percent, text};
+use crate::decision::{heading, percent, print, text};
 use crate::direction::Direction;
 use crate::protect::{Kind, changed, singles, slug};
 use crate::scenario::{Scenario, StackSpec, catalog};
@@ -193,7 +193,14 @@ impl League {
 fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Document {
     let runs: usize =
         league.rows.iter().flat_map(|(_, sheet)| &sheet.rows).map(|row| row.runs).sum();
-    let mut blocks = vec![Block::Table(table(league)), text(legend(scenario))];
+    let on_scale =
+        |(one, sheet): &(Contender, Sheet)| (one.name.clone(), sheet.score(), sheet.range());
+    let scores: Vec<page::OnScale> = league.rows.iter().map(on_scale).collect();
+    let mut blocks = vec![
+        Block::Figure(page::scale("The scores of the table.", &scores)),
+        Block::Table(table(league)),
+        text(legend(scenario)),
+    ];
     if !league.not_scored.is_empty() {
         blocks.push(heading("Not scored"));
         let row = |(name, reason): &(String, String)| format!("{name}: {reason}");
@@ -210,6 +217,7 @@ fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Docume
         provenance: vec![
             ("protocol".into(), protocol.name.clone()),
             ("stack".into(), scenario.title.clone()),
+            ("scenario fingerprint".into(), print(scenario)),
             ("runs".into(), runs.to_string()),
             ("seed".into(), protocol.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),

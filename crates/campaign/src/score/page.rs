@@ -1,13 +1,17 @@
 //! Report page of a score: the score, all states and directions, the curves, and the protocol.
 
 use barrelstack_fragility::Interval;
-use barrelstack_report::{Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict};
+use barrelstack_report::{
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Series, SeriesStyle, Table, Verdict,
+};
 
 use barrelstack::variants::ShareAt;
 use barrelstack_input::listing::Source;
 
-use super::{Capacity, Scored, Sheet};
-use crate::decision::{chance_axis, fallen_at_rest, fitted, heading, left_out, percent, raw, text};
+use super::{Capacity, Protocol, Scored, Sheet};
+use crate::decision::{
+    chance_axis, fallen_at_rest, fitted, heading, left_out, percent, print, raw, text,
+};
 use crate::direction::Direction;
 
 pub(super) fn document(sheet: &Sheet) -> Document {
@@ -20,6 +24,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             ..Verdict::default()
         },
         blocks: vec![
+            Block::Figure(scale_of(sheet)),
             Block::Table(table(sheet)),
             text(
                 "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood \
@@ -37,6 +42,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         ],
         provenance: vec![
             ("protocol".into(), protocol.name.clone()),
+            ("scenario fingerprint".into(), print(&sheet.scenario)),
             ("runs".into(), sheet.rows.iter().map(|row| row.runs).sum::<usize>().to_string()),
             ("seed".into(), protocol.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
@@ -44,6 +50,67 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         warnings: warnings(sheet),
         words: barrelstack::report::WORDS.to_vec(),
     }
+}
+
+/// A score on a scale: its name, the score (cm/s), and its range over the uncertain constants (cm/s).
+pub(super) type OnScale = (String, u32, Option<[u32; 2]>);
+
+/// Scores of the racks of the catalog, from `validation/league`, without devices.
+const REFERENCES: &str = include_str!("references.csv");
+
+/// Returns the racks of the catalog with which a score of the protocol in planes is compared.
+pub(super) fn references() -> Vec<OnScale> {
+    let row = |line: &str| {
+        let mut cells = line.split(',');
+        let name = cells.next()?.to_owned();
+        let mut whole = || cells.next()?.parse().ok();
+        let (score, low, high) = (whole()?, whole(), whole());
+        Some((name, score, low.zip(high).map(|(low, high)| [low, high])))
+    };
+    REFERENCES.lines().skip(1).filter_map(row).collect()
+}
+
+/// Draws the score on a scale, among the racks of the catalog if these have a score of the same protocol.
+fn scale_of(sheet: &Sheet) -> Figure {
+    let own = (format!("this stack: {}", scored(sheet)), sheet.score(), sheet.range());
+    let known = sheet.protocol.name.split(',').next() == Some(Protocol::rockscore().name.as_str());
+    let others = if known { references() } else { Vec::new() };
+    let caption = if known {
+        "The score of this stack, and those of the racks of the catalog without devices; the latter are from one motion in \
+         four of the protocol."
+    } else {
+        "The score of this stack."
+    };
+    let mut rows: Vec<OnScale> = std::iter::once(own).chain(others).collect();
+    rows.sort_by_key(|(_, score, _)| std::cmp::Reverse(*score));
+    scale(caption, &rows)
+}
+
+/// Draws scores on a scale, each with its range over the uncertain constants.
+pub(super) fn scale(caption: &str, rows: &[OnScale]) -> Figure {
+    let mut bars = Series::new("range over the uncertain constants", Vec::new(), Vec::new());
+    let mut scores = Series::new("score", Vec::new(), Vec::new());
+    for (at, (_, score, range)) in rows.iter().enumerate() {
+        if let Some([low, high]) = range {
+            // NaN breaks the line between one bar and the next.
+            bars.x.extend([f64::from(*low), f64::from(*high), f64::NAN]);
+            bars.y.extend([Axis::row(at); 3]);
+        }
+        scores.x.push(f64::from(*score));
+        scores.y.push(Axis::row(at));
+    }
+    bars.style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
+    scores.style = SeriesStyle { points: true, index: Some(1), ..SeriesStyle::default() };
+    Figure::new(
+        "scale",
+        caption,
+        Plot {
+            x: Axis::new("RockScore", "cm/s"),
+            y: Axis::named(rows.iter().map(|(name, ..)| name.clone()).collect()),
+            series: [bars, scores].into_iter().filter(|one| !one.x.is_empty()).collect(),
+            ..Plot::default()
+        },
+    )
 }
 
 /// Describes the scored rack and devices, such as "two-barrel racks with chocks and straps".

@@ -146,7 +146,7 @@ fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow:
         CellarFailure::Plan(error) => error.into(),
         CellarFailure::Stack(failure) => super::placed(failure, cellar.stated(), args),
         CellarFailure::Room(RoomFailure::Stack { name, failure }) => {
-            super::placed(failure, cellar.stated(), args).context(format!("stack {name}"))
+            super::placed(*failure, cellar.stated(), args).context(format!("stack {name}"))
         }
         CellarFailure::Room(error) => anyhow::Error::from(error).context(args.scenario.clone()),
     }

@@ -468,7 +468,7 @@ def reproduce(record: Path | None = None, *, studies: bool = True, progress: Pro
     Examples
     --------
     >>> reproduce(studies=False).headline
-    '... published results agree, 0 differ; not compared: ...'
+    '... published results could be compared: ... agree, 0 differ.'
     """
     with reporting(progress, "the cases of the paper") as report:
         return Reproduction(_native.reproduce(None if record is None else os.fspath(record), studies, report))

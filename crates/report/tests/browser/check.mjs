@@ -9,7 +9,7 @@
 // Exit status: 0 when all checks pass, 1 when one fails, 2 when node, a module, the browser or a
 // page is missing, so that a caller can tell "broken" from "not here".
 
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { accessible, spoiled } from "./lib/access.mjs";
@@ -18,6 +18,7 @@ import { addressed, fingers, inDepth, pace, presets, shows, switches, turns, wit
 import { overlay, variants } from "./lib/ghosts.mjs";
 import { Goldens, looks } from "./lib/golden.mjs";
 import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
+import { ofComparison, ofHeights, ofReproduction, ofRun, ofStudy } from "./lib/numbers.mjs";
 import { PAGES, make, reportOf } from "./lib/pages.mjs";
 import { links, loops, still } from "./lib/opening.mjs";
 import { cameras, drawing, frameRate, keyboard, scrubbing, together } from "./lib/player.mjs";
@@ -121,6 +122,31 @@ for (const name of ["demo", "eight", "levels"]) {
   await suite.check(`${name}: loops slowly around what matters until somebody takes over`, () => loops(browser, reportOf(pages, name)));
 }
 await suite.check("demo: an instant has an address", () => links(browser, reportOf(pages, "demo")));
+for (const [name, file, compared] of [
+  ["demo", "demo/summary.json", ofRun],
+  ["eight", "eight/summary.json", ofRun],
+  ["along", "along/summary.json", ofRun],
+  ["space", "space/summary.json", ofRun],
+  ["verify", "verify/summary.json", ofRun],
+  ["levels", "levels.json", ofComparison],
+  ["heights", "heights/heights.json", ofHeights],
+  ["study", "study/decision.json", ofStudy],
+  ["reproduce", null, ofReproduction],
+]) {
+  await checkOn("states the numbers of its JSON", name, (page) =>
+    compared(page, file && JSON.parse(readFileSync(join(pages, file)))));
+}
+await checkOn("wrong numbers are seen", "demo", async (page) => {
+  const spoil = (change) => {
+    const summary = JSON.parse(readFileSync(join(pages, "demo/summary.json")));
+    change(summary);
+    return ofRun(page, summary).then(() => false, () => true);
+  };
+  demand(await spoil(({ ensemble }) => { ensemble.collapsed += 1; }), "one collapse more is not seen");
+  demand(await spoil(({ ensemble }) => { ensemble.range[0] += 0.02; }), "another range is not seen");
+  demand(await spoil(({ bodies }) => { bodies.at(-2).peak_slip += 0.01; }), "another slip is not seen");
+  demand(await spoil(({ remedy }) => { remedy.tried[0].failed += 1; }), "another count of a change is not seen");
+});
 await suite.check("axe finds what is wrong with a spoiled page", () => on("eight", {}, spoiled));
 // Pictures.
 await goldens.tools();

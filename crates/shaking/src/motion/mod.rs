@@ -245,6 +245,18 @@ impl MotionSpec {
         })
     }
 
+    /// Returns the loaded files of the motion: the name of each, without folders, and the
+    /// fingerprint of its content.
+    pub fn fingerprints(&self) -> Vec<(String, String)> {
+        let mut same = self.clone();
+        let held = same.files_mut().filter(|file| file.is_held());
+        let print = |file: &mut FileRef| {
+            let name = file.resolve().file_name().map(|name| name.to_string_lossy().into_owned());
+            (name.unwrap_or_default(), file.by_content().path)
+        };
+        held.map(print).collect()
+    }
+
     /// Returns the motion with its loaded files identified by content.
     #[must_use]
     pub fn by_content(&self) -> Self {

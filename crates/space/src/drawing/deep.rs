@@ -6,7 +6,7 @@ use barrelstack_report::{
     Depth, DepthBody, DepthPoses, DepthTie, Event, Moment, Point3, Role, Volume,
 };
 
-use super::{PLATE, Sight, events, moment};
+use super::{PLATE, Sight, events, moment, top};
 use crate::part::Part;
 use crate::run::Run;
 
@@ -35,6 +35,7 @@ pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
         ties: straps.collect(),
         events: all,
         moment: moment(run, &own),
+        paths: top(run).collect(),
     }
 }
 
@@ -59,6 +60,7 @@ pub(super) fn of_bodies<'a>(
         ties: Vec::new(),
         events,
         moment,
+        paths: Vec::new(),
     }
 }
 

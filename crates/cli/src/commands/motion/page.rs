@@ -74,7 +74,13 @@ fn document(panels: &Panels, after: &Record, text: PageText) -> Document {
             ..Verdict::default()
         },
         blocks,
-        provenance: steps.map(|(at, note)| (format!("step {}", at + 1), note.clone())).collect(),
+        provenance: steps
+            .map(|(at, note)| (format!("step {}", at + 1), note.clone()))
+            .chain([(
+                "program".to_owned(),
+                concat!("barrelstack ", env!("CARGO_PKG_VERSION")).to_owned(),
+            )])
+            .collect(),
         warnings: Vec::new(),
         words: Vec::new(),
     }

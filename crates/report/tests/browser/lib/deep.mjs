@@ -50,7 +50,7 @@ export async function shows(page) {
           // What stands before it hides it.
           if (pane.deep.bodyAt([x, y]) !== body) return;
           barrels += 1;
-          if (wood(x, y) < 0.4) faults.push(`where ${name} is, ${(100 * wood(x, y)).toFixed(0)} % is wood`);
+          if (wood(x, y) < 0.3) faults.push(`where ${name} is, ${(100 * wood(x, y)).toFixed(0)} % is wood`);
         });
         const [r, g, b] = at(width - 3, 3);
         if (Math.min(r, g, b) < 230) faults.push(`the paper is ${[r, g, b]}`);

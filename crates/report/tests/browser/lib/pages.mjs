@@ -1,15 +1,17 @@
 // The pages that are checked: what is run for each, and how each is looked at.
 
 import { spawn } from "node:child_process";
-import { mkdirSync, rmSync } from "node:fs";
+import { closeSync, mkdirSync, openSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { missing } from "./browser.mjs";
 
+/** The date and the commit that pages state, the same on every day. */
+const STAMP = { SOURCE_DATE_EPOCH: "1408875644", BARRELSTACK_COMMIT: "0123456789ab" };
 const FRICTION = "interface.rack-ground.friction.coefficient";
 
 /**
  * Pages by name: the arguments of the program without `--out`, what is run before it (`{folder}` is that of all
- * pages), whether several runs or planes share
+ * pages; a document that is printed with `--json` is kept beside that folder), whether several runs or planes share
  * the page, whether it is looked at for readers of screens only (`plain`), its file where that is not
  * report.html, and the looks of it that are kept as pictures.
  */
@@ -33,7 +35,7 @@ export const PAGES = {
   },
   levels: {
     several: true,
-    args: ["compare", "demo-napa", "--against", "stack.levels=4", "--variants=16", "--quiet"],
+    args: ["compare", "demo-napa", "--against", "stack.levels=4", "--variants=16", "--quiet", "--json"],
     looks: ["desktop-light", "desktop-dark", "phone-light", "print"],
   },
   friction: {
@@ -74,9 +76,11 @@ export function reportOf(folder, name) {
   return join(folder, name, PAGES[name].file ?? "report.html");
 }
 
-function run(program, args) {
+function run(program, args, out) {
   return new Promise((done) => {
-    const child = spawn(program, args, { stdio: ["ignore", "ignore", "pipe"] });
+    const stdout = out ? openSync(out, "w") : "ignore";
+    const child = spawn(program, args, { stdio: ["ignore", stdout, "pipe"], env: { ...process.env, ...STAMP } });
+    if (out) closeSync(stdout);
     let said = "";
     child.stderr.on("data", (text) => { said += text; });
     child.on("error", (error) => done(error.message));
@@ -97,7 +101,10 @@ export async function make(folder) {
       const { before = [], args } = PAGES[name];
       const steps = [...before, [...args, "--out", join(folder, name)]];
       let fault = null;
-      for (const step of steps) fault ??= await run(program, step.map((word) => word.replace("{folder}", folder)));
+      for (const step of steps) {
+        const out = step.includes("--json") ? `${join(folder, name)}.json` : null;
+        fault ??= await run(program, step.map((word) => word.replace("{folder}", folder)), out);
+      }
       if (fault) throw new Error(`the page ${name} was not made: ${fault}`);
     }
   };

@@ -58,6 +58,7 @@ fn document(
         ("seed", args.seed.to_string()),
         ("method", "Jayaram, Lin and Baker (2011)".to_owned()),
         ("correlations", "Baker and Jayaram (2008)".to_owned()),
+        ("program", concat!("barrelstack ", env!("CARGO_PKG_VERSION")).to_owned()),
     ];
     Document {
         title: format!("{} records for {}", set.selection.chosen.len(), args.target),
@@ -156,8 +157,10 @@ fn records(set: &Set<'_>) -> Table {
         ("PGV", "cm/s"),
         ("D5-95", "s"),
     ];
-    let mut table =
-        Table::new("Records of the set, with PGA and PGV of the first horizontal as scaled", &head);
+    let mut table = Table::new(
+        "Records of the set, with PGA and PGV of the first horizontal as scaled.",
+        &head,
+    );
     for (row, chosen) in set.chosen() {
         let number = |column: &str, factor: f64, digits: usize| {
             set.number(column, row).map_or(Cell::text(""), |v| Cell::Number(factor * v, digits))

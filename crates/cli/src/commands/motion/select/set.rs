@@ -122,7 +122,7 @@ impl Set<'_> {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         format!(
             "{} selected of {} that can be scaled to the target: median within {:.1} % of the \
-             target, {}, after {} rounds of exchanges",
+             target, {}, after {} {} of exchanges",
             selection.chosen.len(),
             selection.eligible,
             100.0 * selection.median_error(target),
@@ -137,7 +137,8 @@ impl Set<'_> {
                     selection.deviation_error(target)
                 )
             },
-            selection.rounds
+            selection.rounds,
+            if selection.rounds == 1 { "round" } else { "rounds" }
         )
     }
 }

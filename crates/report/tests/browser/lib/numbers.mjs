@@ -1,0 +1,213 @@
+// Numbers of a page, read back and compared with the JSON document of the same run.
+
+import { demand } from "./suite.mjs";
+
+const GRAVITY = 9.80665;
+const VIEWS = { "across the barrels": "transverse", "along the barrels": "longitudinal" };
+const PLACES = Object.fromEntries(Object.entries(VIEWS).map(([words, view]) => [view, words]));
+
+/** The numbers in a text, each with its text; "< 0.1" has a bound. */
+function numbersIn(text) {
+  const plain = text.replaceAll("−", "-").replace(/(\d)–(?=\d)/g, "$1 ");
+  return [...plain.matchAll(/(<|less than|>|more than)?\s*(-?\d+(?:\.\d+)?)/g)].map(([, bound, digits]) => ({ bound, digits }));
+}
+
+/** Whether a number as shown is a value, rounded to the digits that are shown; counts are below 1000. */
+function shows({ bound, digits }, value) {
+  if (bound === "<" || bound === "less than") return Math.abs(value) < Number(digits);
+  if (bound) return value > Number(digits);
+  const [whole, decimals = ""] = digits.replace("-", "").split(".");
+  // Measured numbers have three significant digits where these are fewer than all.
+  const step = 10 ** (decimals ? -decimals.length : Math.max(0, whole.length - 3));
+  return Math.abs(Number(digits) - value) <= 0.5000001 * step;
+}
+
+/** Compares the numbers of pages with values, and counts the comparisons. */
+class Reading {
+  constructor() {
+    this.count = 0;
+    this.faults = [];
+  }
+
+  /** The first numbers of a text are these values; a null is a dash. */
+  are(what, text, values) {
+    this.count += values.length;
+    const shown = values.every((value) => value === null) ? [] : numbersIn(text);
+    const dash = shown.length === 0 && text.trim() === "–";
+    const right = values.every((value, at) => (value === null ? dash : shown[at] && shows(shown[at], value)));
+    if (!right) this.faults.push(`${what}: the page states "${text}", the JSON ${JSON.stringify(values)}`);
+  }
+
+  close() {
+    demand(this.faults.length === 0, this.faults.join("\n"));
+    demand(this.count > 0, "nothing was compared");
+    return `${this.count} numbers`;
+  }
+}
+
+/** Headline, heads of panes, and all tables of a page as text. */
+async function contents(page) {
+  return page.evaluate(() => {
+    const text = (element) => element.textContent.replaceAll("\u00a0", " ");
+    return {
+      headline: text(document.querySelector("h1")),
+      heads: [...document.querySelectorAll(".screen .pane-head")].map(text),
+      tables: [...document.querySelectorAll("table")].map((table) => ({
+        caption: text(table.caption),
+        head: [...table.tHead.rows[0].cells].map(text),
+        rows: [...table.tBodies[0].rows].map((row) => [...row.cells].map(text)),
+      })),
+    };
+  });
+}
+
+function tablesOf({ tables }, begin) {
+  const found = tables.filter(({ caption }) => caption.replace(/^Table \d+\. /, "").startsWith(begin));
+  demand(found.length > 0, `no table begins with "${begin}"`);
+  return found;
+}
+
+const percents = (shares) => shares.map((share) => 100 * share);
+
+/** The page of a run, in planes or in space. */
+export async function ofRun(page, summary) {
+  const shown = await contents(page), reading = new Reading();
+  const planes = [summary, summary.other_plane].filter(Boolean);
+  const spreads = planes.filter(({ ensemble }) => ensemble);
+  for (const { ensemble } of spreads) {
+    const { collapsed, variants, interval } = ensemble;
+    const said = collapsed === variants ? `all ${variants}` : collapsed === 0 ? `(?:none of|0 of) (?:the )?${variants}` : `${collapsed} of ${variants}`;
+    const counts = shown.headline.match(new RegExp(`${said}\\D[^(]*\\(([^)]*)\\)`));
+    demand(counts, `the headline does not state ${collapsed} of ${variants}: ${shown.headline}`);
+    // If all or none fall, only the other end of the interval is stated.
+    const bounds = counts[1].includes("at least") ? [interval[0]] : counts[1].includes("at most") ? [interval[1]] : interval;
+    reading.are("interval in the headline", counts[1], percents(bounds));
+  }
+  if (spreads.length > 0) {
+    const [table] = tablesOf(shown, "Range");
+    const row = (name) => table.rows.find(([first]) => first === name);
+    table.head.slice(1).forEach((head, at) => {
+      const plane = planes.find(({ view }) => PLACES[view] === head.toLowerCase()) ?? summary;
+      const { variants, collapsed, share, interval, range, first_loss: loss, first_fall: fall, barrels_fallen: fallen, barrels } = plane.ensemble;
+      const cell = (name, values) => reading.are(`${name}, ${head}`, row(name)[at + 1], values);
+      cell("variants with a verdict", [variants]);
+      cell("variants that collapse", [collapsed]);
+      cell("share that collapses, with its 95 % interval", percents([share, ...interval]));
+      if (range) cell("range of the share over uncertain constants", percents(range));
+      if (loss) cell("first loss of a seat", [loss.p05, loss.p95]);
+      if (fall) cell("first fall", [fall.p05, fall.p95]);
+      if (fallen) cell("barrels fallen in a collapse", [fallen.p05, fallen.p95, barrels]);
+    });
+  }
+  if (summary.remedy) {
+    const [table] = tablesOf(shown, "Changes that were tried");
+    demand(table.rows.length === summary.remedy.tried.length, "the page lists other changes than the JSON");
+    summary.remedy.tried.forEach(({ failed, variants, share, interval }, at) => {
+      const [name, counts, shares] = table.rows[at];
+      reading.are(name, counts, [failed, variants]);
+      reading.are(name, shares, share === null ? [null] : percents([share, ...interval]));
+    });
+  }
+  const inSpace = summary.bodies.some((body) => "drop" in body);
+  const tables = tablesOf(shown, inSpace ? "Slips are" : "Largest slip");
+  demand(tables.length === planes.length, `${tables.length} tables of bodies in ${planes.length} planes`);
+  tables.forEach((table, plane) => {
+    const { bodies } = planes[plane], column = (begin) => table.head.findIndex((head) => head.startsWith(begin));
+    for (const row of table.rows) {
+      const body = bodies.find(({ name }) => name === row[0]);
+      demand(body, `the JSON has no body ${row[0]}`);
+      reading.are(`${body.name} leaves its seat`, row[1], [body.left_seat_at]);
+      reading.are(`${body.name} falls`, row[column(inSpace ? "falls" : "fell")], [body.fell_at]);
+      reading.are(`${body.name} slips`, row[column("largest slip")], [100 * body.peak_slip]);
+      if (!inSpace) {
+        reading.are(`${body.name} falls by`, row[column("fall height")], [body.fall_height]);
+        reading.are(`${body.name} at the end`, row[column("at the end")], [100 * body.residual_displacement]);
+      }
+    }
+  });
+  for (const { outcome, view } of planes.filter(({ outcome }) => outcome.kind === "collapse" && outcome.barrels_fallen > 1)) {
+    const head = shown.heads.find((text) => text.toLowerCase().includes(PLACES[view]));
+    const { barrels_fallen: fallen, barrels, time } = outcome;
+    const said = head?.match(/(\d.*)$/)?.[1] ?? "";
+    if (head && fallen < barrels) reading.are(`outcome ${view}`, said, [fallen, barrels, time]);
+  }
+  return reading.close();
+}
+
+/** The page of a comparison of two stacks. */
+export async function ofComparison(page, { paired }) {
+  const { headline } = await contents(page), reading = new Reading();
+  demand(paired.length > 0, "no run is paired");
+  for (const { both, only_first: first, only_second: second, neither, view } of paired) {
+    const counts = [both + first, both + second, both + first + second + neither];
+    const clause = headline.split("; ").find((text) => paired.length === 1 || text.includes(PLACES[view]));
+    // A plane in which nothing collapses is not named.
+    if (clause || counts[0] + counts[1] > 0) reading.are(`headline, ${view}`, clause ?? "", counts);
+  }
+  return reading.close();
+}
+
+/** The page of heights. */
+export async function ofHeights(page, { heights }) {
+  const shown = await contents(page), reading = new Reading();
+  const at = (levels, direction, pgv) => heights.find((one) => one.levels === levels && one.direction === direction)
+    ?.at.find((one) => Math.abs(one.pgv - pgv) < 1e-9);
+  const cells = (table, use) => {
+    for (const row of table.rows) {
+      table.head.forEach((head, column) => {
+        const levels = Number(head.match(/^(\d+) levels$/)?.[1]);
+        if (levels) use(row[column], levels, Number(numbersIn(row[0])[0].digits) / 100, `${head} at ${row[0]}`);
+      });
+    }
+  };
+  const [worst] = tablesOf(shown, "Chance that a stack");
+  cells(worst, (text, levels, pgv, what) => {
+    const both = Object.values(VIEWS).map((view) => at(levels, view, pgv)).filter(Boolean);
+    const high = Math.max(...both.map(({ interval }) => interval[1]));
+    const possible = both.filter(({ interval }) => interval[1] === high);
+    const { collapsed, cases, interval } = possible.at(-1);
+    reading.are(what, text, percents([collapsed / cases, ...interval]));
+  });
+  for (const [words, view] of Object.entries(VIEWS)) {
+    const [table] = tablesOf(shown, `Collapse under shaking ${words}`);
+    cells(table, (text, levels, pgv, what) => {
+      const { collapsed, cases } = at(levels, view, pgv);
+      reading.are(`${what}, ${words}`, text, [collapsed, cases]);
+    });
+  }
+  const [margins] = tablesOf(shown, "Static margin");
+  for (const [levels, pushed, margin] of margins.rows) {
+    const { static_margin: value } = heights.find((one) => one.levels === Number(levels) && one.direction === VIEWS[pushed]);
+    reading.are(`static margin of ${levels} levels ${pushed}`, margin, [value / GRAVITY]);
+  }
+  return reading.close();
+}
+
+/** The page of a study. */
+export async function ofStudy(page, decision) {
+  const shown = await contents(page), reading = new Reading();
+  demand(shown.headline === decision.headline, `the headlines are "${shown.headline}" and "${decision.headline}"`);
+  const [table] = tablesOf(shown, "Raw counts of collapse"), { raw } = decision.fragility[0];
+  demand(table.rows.length === raw.length, "the page has other levels than the JSON");
+  raw.forEach(({ intensity, cases, failures, interval }, at) => {
+    const [level, count, failed, share, wilson] = table.rows[at];
+    // Three digits of a velocity in cm/s.
+    reading.are("level", level, [100 * intensity]);
+    reading.are(`cases at ${level}`, count, [cases]);
+    reading.are(`failures at ${level}`, failed, [failures]);
+    reading.are(`share at ${level}`, share, percents([failures / cases]));
+    reading.are(`interval at ${level}`, wilson, percents(interval));
+  });
+  return reading.close();
+}
+
+/** The page of a reproduction: its headline counts the rows of its table. */
+export async function ofReproduction(page) {
+  const shown = await contents(page), reading = new Reading();
+  const [{ rows }] = tablesOf(shown, "All numbers and findings");
+  const count = (verdict) => rows.filter((row) => row.at(-1) === verdict).length;
+  const compared = rows.length - count("not compared");
+  const some = compared < rows.length;
+  reading.are("headline", shown.headline, some ? [compared, rows.length, count("agrees")] : [count("agrees"), compared]);
+  return reading.close();
+}
