@@ -221,7 +221,7 @@ impl Island {
 
     /// Returns the pose of a body in the room, relative to the ground.
     pub(crate) fn in_room(&self, body: BodyId) -> Pose<Spatial> {
-        self.fixed.frame.pose(self.seen(body))
+        self.fixed.frame.pose(self.relative(body))
     }
 
     /// Returns the velocity of a body in the room, relative to the ground.
@@ -231,7 +231,7 @@ impl Island {
     }
 
     /// Returns the pose of a body in the island, relative to the ground.
-    fn seen(&self, body: BodyId) -> Pose<Spatial> {
+    fn relative(&self, body: BodyId) -> Pose<Spatial> {
         let poses = &self.live.running.state.poses;
         let Pose { position, orientation } = poses[body];
         Pose { position: position - poses[Stack::GROUND].position, orientation }
@@ -260,7 +260,7 @@ impl Island {
     /// Starts a window in which bodies may move as far as their tubes; `keeps` is `true` if the island may have to
     /// return to its start.
     pub(crate) fn open(&mut self, keeps: bool) {
-        self.from = (0..self.fixed.owners.len()).map(|body| self.seen(body)).collect();
+        self.from = (0..self.fixed.owners.len()).map(|body| self.relative(body)).collect();
         self.live.travels.fill(0.0);
         self.live.stopped_by = None;
         self.live.kept = self.logs.lengths();

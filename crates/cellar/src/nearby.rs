@@ -1,7 +1,7 @@
 //! Bodies of different islands that are near each other, and how far each may move before two of them can touch.
 //!
-//! The gap of two bodies is measured when it may have become small. From then on it shrinks by no more than the ways of
-//! the two bodies, which are summed window by window, so it is measured anew only when these have used it up.
+//! The gap of two bodies is measured when it may have become small. From then on it shrinks by no more than the
+//! paths of the two bodies, which are summed window by window, so it is measured anew only when these have used it up.
 
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;
@@ -14,7 +14,7 @@ use crate::world::World;
 /// Distance (m) of two bodies up to which they are in the list.
 const MARGIN: f64 = 0.4;
 
-/// Way (m) of a body after which the list is made anew.
+/// Displacement (m) of a body after which the list is made anew.
 const STALE: f64 = 0.1;
 
 /// Distance (m) that a body that is near no other may move in a window; it corresponds to 45 m/s.
@@ -24,7 +24,7 @@ pub(crate) const FREE: f64 = 0.09;
 /// foreseen.
 const SLACK: f64 = 2e-3;
 
-/// Way (m) of a body in a window for which there is always room.
+/// Distance (m) that every body may move in a window.
 const LEAST: f64 = 1e-3;
 
 /// Gap (m) up to which gaps are exact, and not only bounded from below.
@@ -35,9 +35,9 @@ struct Couple {
     bodies: [Owner; 2],
     /// Gap (m) when it was measured, or a lower bound of it.
     gap: f64,
-    /// Ways (m) of the two bodies until then.
+    /// Lengths (m) of the paths of the two bodies until then.
     since: [f64; 2],
-    /// Ways (m) of the two bodies that must not be exceeded in this window.
+    /// Lengths (m) of the paths of the two bodies that must not be exceeded in this window.
     limits: [f64; 2],
 }
 
@@ -46,8 +46,8 @@ pub(crate) struct Nearby {
     couples: Vec<Couple>,
     /// For every body, its couples.
     of_body: Vec<Vec<u32>>,
-    /// Way (m) of every body since the start; it grows while the body is in the list.
-    ways: Vec<f64>,
+    /// Length (m) of the path of every body since the start; it grows while the body is in the list.
+    paths: Vec<f64>,
     /// Positions (m) in the room for which the list was made.
     made_for: Vec<Vec3>,
 }
@@ -61,7 +61,7 @@ impl Nearby {
         Self {
             couples: Vec::new(),
             of_body: vec![Vec::new(); count],
-            ways: vec![0.0; count],
+            paths: vec![0.0; count],
             made_for: Vec::new(),
         }
     }
@@ -69,8 +69,8 @@ impl Nearby {
     /// Makes the list anew if a body has moved far.
     pub(crate) fn refresh(&mut self, world: &World<'_>, islands: &[Option<Island>]) {
         let moved = |(place, made): (&Vec3, &Vec3)| {
-            let way = *place - *made;
-            way.dot(way) > STALE * STALE
+            let moved_by = *place - *made;
+            moved_by.dot(moved_by) > STALE * STALE
         };
         let mut places = self.made_for.clone();
         places.resize(world.count, Vec3::default());
@@ -165,9 +165,9 @@ impl Nearby {
         }
         for (bodies, gap) in found {
             let numbers = bodies.map(|owner| world.number(owner));
-            let since = numbers.map(|number| self.ways[number]);
+            let since = numbers.map(|number| self.paths[number]);
             let known = old.binary_search_by(|couple| couple.bodies.cmp(&bodies)).ok();
-            let known = known.map(|at| (old[at].bound(&self.ways, numbers), &old[at]));
+            let known = known.map(|at| (old[at].bound(&self.paths, numbers), &old[at]));
             let (gap, since) = match known {
                 Some((bound, couple)) if bound > gap => (couple.gap, couple.since),
                 _ => (gap, since),
@@ -224,11 +224,11 @@ impl Nearby {
             });
             let need = needs[0] + needs[1];
             let numbers = couple.bodies.map(|owner| world.number(owner));
-            let mut bound = couple.bound(&self.ways, numbers);
+            let mut bound = couple.bound(&self.paths, numbers);
             if moves && bound < need + SLACK {
                 bound = gap(world, islands, places, couple.bodies, EXACT.max(2.0 * need));
                 couple.gap = bound;
-                couple.since = numbers.map(|number| self.ways[number]);
+                couple.since = numbers.map(|number| self.paths[number]);
             }
             if moves && bound < need + SLACK {
                 meetings.push(couple.bodies);
@@ -236,7 +236,7 @@ impl Nearby {
             } else {
                 for side in 0..2 {
                     let share = (bound - SLACK).max(0.0) * needs[side] / need;
-                    couple.limits[side] = self.ways[numbers[side]] + share;
+                    couple.limits[side] = self.paths[numbers[side]] + share;
                 }
             }
         }
@@ -261,7 +261,7 @@ impl Nearby {
                 if Self::parted(couple, places, of) {
                     near = true;
                     let side = usize::from(couple.bodies[0] != *owner);
-                    least = least.min(couple.limits[side] - self.ways[number]);
+                    least = least.min(couple.limits[side] - self.paths[number]);
                 }
             }
             least
@@ -279,7 +279,7 @@ impl Nearby {
     }
 
     /// Returns the body or obstacle that keeps a body from moving on, if there is one.
-    pub(crate) fn in_the_way(
+    pub(crate) fn nearest_to(
         &self,
         world: &World<'_>,
         places: &Places,
@@ -296,18 +296,18 @@ impl Nearby {
         nearest.limits[side(nearest)].is_finite().then(|| nearest.bodies[1 - side(nearest)])
     }
 
-    /// Adds the ways of the bodies of an island in a window.
+    /// Adds the paths of the bodies of an island in a window.
     pub(crate) fn add(&mut self, world: &World<'_>, island: &mut Island) {
         for (owner, travel) in island.fixed.owners.iter().zip(&mut island.live.travels) {
-            self.ways[world.number(*owner)] += std::mem::take(travel);
+            self.paths[world.number(*owner)] += std::mem::take(travel);
         }
     }
 }
 
 impl Couple {
     /// Returns a lower bound of the gap (m).
-    fn bound(&self, ways: &[f64], numbers: [usize; 2]) -> f64 {
-        let [one, other] = numbers.map(|number| ways[number]);
+    fn bound(&self, paths: &[f64], numbers: [usize; 2]) -> f64 {
+        let [one, other] = numbers.map(|number| paths[number]);
         self.gap - (one - self.since[0]) - (other - self.since[1])
     }
 }

@@ -97,15 +97,15 @@ impl Running<'_> {
         threads: usize,
         observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
     ) -> Result<bool, RoomFailure> {
-        let mut asked: Option<Instant> = None;
-        let mut told = vec![false; self.world.stacks.len()];
+        let mut called: Option<Instant> = None;
+        let mut reported = vec![false; self.world.stacks.len()];
         let mut windows = 0_u32;
         loop {
             self.keep_rolling();
             let awake = || self.islands.iter().flatten().filter(|island| island.is_awake());
             let done = awake().next().is_none();
-            if done || asked.is_none_or(|at| at.elapsed() >= PATIENCE) {
-                asked = Some(Instant::now());
+            if done || called.is_none_or(|at| at.elapsed() >= PATIENCE) {
+                called = Some(Instant::now());
                 let end_time = self.world.end_time;
                 let mut now = Advance {
                     time: awake().map(Island::time).fold(end_time, f64::min),
@@ -116,7 +116,7 @@ impl Running<'_> {
                 for island in self.islands.iter().flatten() {
                     for member in &island.fixed.members {
                         let rests = !island.is_awake();
-                        if rests && !std::mem::replace(&mut told[member.stack], rests) {
+                        if rests && !std::mem::replace(&mut reported[member.stack], rests) {
                             now.rested.push(member.stack);
                         }
                     }
@@ -179,7 +179,7 @@ impl Running<'_> {
         }
     }
 
-    /// Merges islands whose bodies would have left their tubes with those that are in their way, in the order of time.
+    /// Merges islands whose bodies would have left their tubes with the nearest ones, in the order of time.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {
@@ -191,7 +191,7 @@ impl Running<'_> {
             let first = stopped.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let Some((time, _, number, body)) = first else { return Ok(()) };
             let Some(island) = &self.islands[number] else { return Ok(()) };
-            let Some(other) = self.nearby.in_the_way(world, &self.places, island, body) else {
+            let Some(other) = self.nearby.nearest_to(world, &self.places, island, body) else {
                 if let Some(island) = &mut self.islands[number] {
                     island.live.stopped_by = None;
                     island.live.ending = Some(Ending::Broken);

@@ -3,6 +3,7 @@
 //! `cargo run --release -p barrelstack-cellar --example dominoes FIGURE.svg`
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
+#[path = "dominoes/row.rs"]
 mod row;
 
 use std::error::Error;
