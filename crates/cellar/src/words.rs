@@ -38,7 +38,11 @@ pub fn headline(summary: &CellarSummary) -> String {
     let all = summary.plan.stacks;
     let (own, knocked) = (shown.by_themselves, shown.knocked_over);
     if own + knocked == 0 {
-        let stand = if all == 1 { "The only stack stands".to_owned() } else { format!("All {all} stacks stand") };
+        let stand = if all == 1 {
+            "The only stack stands".to_owned()
+        } else {
+            format!("All {all} stacks stand")
+        };
         let some = &summary.room.some_fall;
         return if some.of_variants == 0 {
             format!("{stand}.")
