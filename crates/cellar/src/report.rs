@@ -93,6 +93,9 @@ fn players(answer: &Answer) -> Option<Block> {
     }))
 }
 
+/// Number of sentences that support the headline before the others, which are collapsed on screen.
+const OPENING: usize = 3;
+
 /// Returns the report on a cellar as a document that does not depend on the output format.
 pub fn document(answer: &Answer) -> Document {
     let summary = &answer.summary;
@@ -145,6 +148,9 @@ pub fn document(answer: &Answer) -> Document {
             .collect(),
     ));
     let fell = summary.room.some_fall.of_variants;
+    let mut opening = sentences(summary);
+    // The tables show the rest as well.
+    let fine = opening.split_off(OPENING.min(opening.len()));
     Document {
         title: summary.title.clone(),
         verdict: Verdict {
@@ -155,7 +161,8 @@ pub fn document(answer: &Answer) -> Document {
                 stood: summary.counted - fell,
                 open: u32::try_from(summary.broken.len()).unwrap_or(u32::MAX),
             }],
-            sentences: sentences(summary),
+            sentences: opening,
+            fine,
             tone: tone(summary),
             ..Verdict::default()
         },

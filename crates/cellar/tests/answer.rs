@@ -45,7 +45,7 @@ fn every_number_of_the_page_is_that_of_the_document() {
     assert_eq!(json["headline"], page.verdict.headline.as_str());
     assert_eq!(json["counted"], 2);
     let tables = tables(&page.blocks);
-    let stacks = tables.iter().find(|table| table.columns[0].name == "stack").unwrap();
+    let stacks = tables.iter().find(|table| table.columns[1].name == "falls").unwrap();
     let shown = stacks.to_csv();
     let rows: Vec<&str> = shown.lines().skip(1).collect();
     assert_eq!(rows.len(), json["stacks"].as_array().unwrap().len());

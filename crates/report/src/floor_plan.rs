@@ -132,7 +132,7 @@ impl FloorPlan {
         }
         for (point, name) in &self.marks {
             let [x, y] = at(*point);
-            items.push(Item::Circle { class: "plan mark".into(), center: [x, y], radius: 4.0 });
+            items.push(Item::Circle { class: "plan people".into(), center: [x, y], radius: 4.0 });
             let (shift, anchor) =
                 if x > 0.8 * width { (-8.0, Anchor::End) } else { (8.0, Anchor::Start) };
             items.text("label strong halo", [x + shift, y + 4.0], anchor, name);
