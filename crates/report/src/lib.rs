@@ -137,7 +137,7 @@ pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 #[cfg(feature = "documents")]
 pub use film::Film;
 #[cfg(feature = "documents")]
-pub use html::{Fragment, badge, fragment, html, html_with};
+pub use html::{Fragment, badge, fragment, html, html_with, player_html};
 #[cfg(feature = "documents")]
 pub use markdown::{MarkdownBundle, markdown};
 pub use number::{measured, shortest, significant};

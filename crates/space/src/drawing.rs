@@ -84,8 +84,24 @@ pub(crate) const PLATE: f64 = 0.012;
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
+/// Number of steps of the view direction of a body per right angle.
+const STEPS: f64 = 10.0;
+
+/// Number of steps of [`coarse_scene`].
+const COARSE_STEPS: f64 = 3.0;
+
 /// Returns the drawing of a run in a view direction.
 pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
+    Arc::new(drawn(run, sight, STEPS))
+}
+
+/// Returns the drawing of a run across the barrels for a small file: the scene in three dimensions is that of [`scene`],
+/// while the flat drawings of rotating bodies change in coarser steps.
+pub fn coarse_scene(run: &Run) -> Scene {
+    drawn(run, Sight::Across, COARSE_STEPS)
+}
+
+fn drawn(run: &Run, sight: Sight, steps: f64) -> Scene {
     let [right, up] = sight.page();
     let toward = right.cross(up);
     let frames = shown(run);
@@ -114,7 +130,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         for (at, frame) in frames.iter().enumerate() {
             let (place, rotation) = placed(run.frames.poses[*frame][body]);
             let page = [right, up].map(|axis| rotation.unapply(axis));
-            let view = BodyView::of(kind, page);
+            let view = BodyView::of(kind, page, steps);
             let slot = *known.entry(view.key()).or_insert_with(|| {
                 drawn.push(view.draw(part, &bodies[body]));
                 drawn.len() - 1
@@ -131,7 +147,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     }
     let ends = std::iter::repeat_n(SceneBody::new("", Role::Block, Vec::new()), 2 * ties.len());
     drawn.extend(ends);
-    Arc::new(Scene {
+    Scene {
         bodies: drawn,
         frames: Frames {
             times: frames.iter().map(|frame| run.frames.times[*frame]).collect(),
@@ -145,7 +161,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         // The page shows the three-dimensional scene in place of the first view.
         depth: (sight == Sight::Across).then(|| deep::depth(run, &frames)),
         ..Scene::default()
-    })
+    }
 }
 
 /// A strap or a tie. It is drawn between two invisible bodies at its ends. It cannot be attached to the drawings of the
