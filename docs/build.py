@@ -220,7 +220,7 @@ def notebook(path: Path, out: Path) -> str:
                 picture = f"{path.stem}-{number}-{at}.{kind}"
                 (out / picture).write_bytes(base64.b64decode(data[f"image/{kind}"]))
                 text.append(f"![Figure of this cell]({picture})")
-            elif framed := re.match('<iframe srcdoc="(.*?)"', str(data.get("text/html", ""))):
+            elif framed := re.match('<iframe srcdoc="([^"]*)"', str(data.get("text/html", ""))):
                 page = f"{path.stem}-{number}-{at}.html"
                 (out / page).write_text(html.unescape(framed[1]), encoding="utf-8")
                 text.append(f'<iframe src="{page}" title="Output of this cell" width="100%" height="720"></iframe>')
