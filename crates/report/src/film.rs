@@ -80,17 +80,18 @@ impl Scene {
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let times = &self.frames.times;
-        self.only((0..self.frames.len()).filter(|at| (from..=to).contains(&times[*at])).collect())
+        let inside = |at: &usize| (from..=to).contains(&times[*at]);
+        self.only(&(0..self.frames.len()).filter(inside).collect::<Vec<_>>())
     }
 
     /// Returns the scene reduced to frames `1/rate` (s) apart, as for [`Film`], with all events.
     #[must_use]
     pub fn thinned(&self, rate: f64) -> Self {
-        self.only(sampled(self, rate))
+        self.only(&sampled(self, rate))
     }
 
     /// Returns the scene reduced to the frames with some indices.
-    fn only(&self, kept: Vec<usize>) -> Self {
+    fn only(&self, kept: &[usize]) -> Self {
         let frames = &self.frames;
         let frames = Frames {
             times: kept.iter().map(|at| frames.times[*at]).collect(),
