@@ -21,7 +21,7 @@ pub(crate) struct Extra {
 }
 
 /// The oldest toolchain that builds the workspace: `rust-version` in `Cargo.toml`.
-const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
+pub(crate) const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Returns a command that starts a program of the oldest toolchain, which may have been installed
 /// under the name of its first release, or a message that it is missing.
