@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import base64
+import html
 import importlib.util
 import inspect
 import json
@@ -219,6 +220,10 @@ def notebook(path: Path, out: Path) -> str:
                 picture = f"{path.stem}-{number}-{at}.{kind}"
                 (out / picture).write_bytes(base64.b64decode(data[f"image/{kind}"]))
                 text.append(f"![Figure of this cell]({picture})")
+            elif framed := re.match('<iframe srcdoc="([^"]*)"', str(data.get("text/html", ""))):
+                page = f"{path.stem}-{number}-{at}.html"
+                (out / page).write_text(html.unescape(framed[1]), encoding="utf-8")
+                text.append(f'<iframe src="{page}" title="Output of this cell" width="100%" height="720"></iframe>')
             elif written := output_text(output):
                 text.append(f"```text\n{written}\n```")
     if lacking:

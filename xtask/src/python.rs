@@ -8,9 +8,10 @@ use anyhow::{Context as _, bail};
 use crate::steps::{build_program, cargo, program, target};
 
 /// Packages that the tests need.
-const TESTS: [&str; 20] = [
+const TESTS: [&str; 21] = [
     "maturin>=1.9,<2",
     "numpy",
+    "openpyxl",
     "pytest",
     "pytest-xdist",
     "mypy",

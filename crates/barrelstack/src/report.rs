@@ -26,7 +26,7 @@ use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 
 pub use glossary::WORDS;
 pub(crate) use inputs::{settings_table, shown};
-pub use sections::{standing_range, stress_figure};
+pub use sections::{player, standing_range, stress_figure};
 pub(crate) use sections::{standing_until, traces};
 pub use tables::{demand_table, device_table, interface_table};
 pub use trust::trust;

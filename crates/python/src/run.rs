@@ -9,7 +9,7 @@ use barrelstack::render::{Part, RenderFolder, Rendered, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::watch::{Joint, StressEnvelope};
-use barrelstack_report::{Format, document_pdf, html};
+use barrelstack_report::{Format, Player, Scene, document_pdf, html, player_html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -91,6 +91,23 @@ pub(crate) fn rendered(
     });
     let written = written.map_err(errors::general)?;
     Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
+}
+
+/// Returns a page with nothing but the player of a scene, which is reduced to a time interval (s)
+/// and to a number of pictures per second.
+pub(crate) fn animated(
+    py: Python<'_>,
+    (title, end_time): (&str, f64),
+    (rate, between): (f64, Option<[f64; 2]>),
+    scene: impl FnOnce() -> Arc<Scene> + Send,
+    player: impl FnOnce(Scene) -> Player + Send,
+) -> PyResult<String> {
+    let how = Rendering { rate, between, ..Rendering::default() };
+    how.check(end_time).map_err(PyValueError::new_err)?;
+    Ok(py.detach(|| {
+        let [from, to] = between.unwrap_or([0.0, f64::INFINITY]);
+        player_html(title, &player(scene().between(from, to).thinned(rate)))
+    }))
 }
 
 fn missing(what: &str) -> PyErr {
@@ -234,6 +251,19 @@ impl Run {
     fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
         let paper = paper_of(paper)?;
         Ok(bytes(py, &py.detach(|| document_pdf(&report::answer_document(&self.answer), paper))))
+    }
+
+    /// Returns a page with nothing but the player.
+    fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
+        let run = self.run();
+        let of_run = (run.scenario.title.as_str(), run.end_time);
+        animated(
+            py,
+            of_run,
+            (rate, between),
+            || report::scene(run),
+            |scene| report::player(run, &Arc::new(scene)),
+        )
     }
 
     /// Writes parts of a rendering; for each part, returns its folder or file and the number of

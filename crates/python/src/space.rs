@@ -6,7 +6,8 @@ use std::sync::Arc;
 use barrelstack::export::Folder;
 use barrelstack::render::Rendering;
 use barrelstack_report::{Format, document_pdf, html};
-use barrelstack_space::report::document;
+use barrelstack_space::drawing::coarse_scene;
+use barrelstack_space::report::{document, player};
 use barrelstack_space::run::Frames;
 use barrelstack_space::{Answer, columns, export, words};
 use numpy::{PyArray1, PyArray3, PyArrayMethods as _};
@@ -15,7 +16,7 @@ use pyo3::types::PyBytes;
 
 use crate::errors;
 use crate::page::paper_of;
-use crate::run::{chosen, rendered};
+use crate::run::{animated, chosen, rendered};
 use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{Numbers, view};
@@ -104,6 +105,14 @@ impl SpatialRun {
     fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
         let paper = paper_of(paper)?;
         Ok(bytes(py, &py.detach(|| document_pdf(&document(&self.answer), paper))))
+    }
+
+    /// Returns a page with nothing but the player.
+    fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
+        let run = &self.answer.run;
+        let of_run = (run.scenario.title.as_str(), run.end_time);
+        let across = || Arc::new(coarse_scene(run));
+        animated(py, of_run, (rate, between), across, |scene| player(run, scene))
     }
 
     /// Writes parts of a rendering; for each part, returns its folder or file and the number of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -101,6 +102,41 @@ def test_a_run_shows_its_page_and_writes_the_files_of_the_command(run: Run, tmp_
     assert {"summary.json", "histories.npz", "report.html"} <= set(os.listdir(tmp_path / "files"))
     with pytest.raises(barrelstack.Error, match="not empty"):
         run.write(tmp_path / "files")
+
+
+def frames_of(page: str) -> int:
+    """Returns the number of times in the data of the only player of a page."""
+    data = json.loads(page.split('id="barrelstack-data">')[1].split("</script>")[0])
+    (pane,) = data["players"][0]["panes"]
+    assert pane["depth"]["bodies"]
+    return int(pane["times"]["n"])
+
+
+def test_an_animation_of_the_demo_fits_into_a_cell(tmp_path: Path) -> None:
+    run = Scenario.load("demo-napa").run(variants=0)
+    film = run.animate()
+    cell = film._repr_html_()
+    assert cell.startswith("<iframe srcdoc=")
+    assert len(cell.encode()) < 1_000_000
+    count = frames_of(film.html())
+    assert abs(count - 20 * run.frames.time[-1]) < 3
+    fewer = run.animate(rate=10, between=(4.0, 9.0))
+    assert abs(frames_of(fewer.html()) - 51) < 3
+    assert len(fewer.html()) < len(film.html())
+    film.save(tmp_path / "film.html")
+    assert (tmp_path / "film.html").read_text(encoding="utf-8") == film.html()
+    with pytest.raises(ValueError, match=r"\.html"):
+        film.save(tmp_path / "film.gif")
+    with pytest.raises(ValueError, match="pictures per second"):
+        run.animate(rate=0.0)
+    with pytest.raises(ValueError, match="run ends"):
+        run.animate(between=(1e4, 2e4))
+
+
+def test_a_large_animation_is_announced_with_a_remedy(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("barrelstack._pictured.LARGE", 1000)
+    with pytest.warns(barrelstack.BarrelstackWarning, match=r"rate=10\).*between="):
+        run.animate()
 
 
 def test_a_plot_has_units_and_names(run: Run) -> None:

@@ -97,6 +97,12 @@ def test_a_research_task_runs(path: Path, site: Path) -> None:
     assert f'href="{path.stem}.html"' in (site / "html" / "research" / "index.html").read_text(encoding="utf-8")
 
 
+def test_the_page_of_the_animation_shows_it(site: Path) -> None:
+    page = (site / "html" / "research" / "09-animation.html").read_text(encoding="utf-8")
+    (shown,) = re.findall(r'<iframe src="([^"]+)"', page)
+    assert 'id="barrelstack-data"' in (site / "html" / "research" / shown).read_text(encoding="utf-8")
+
+
 def test_the_gallery_shows_ten_figures_with_their_code(site: Path) -> None:
     scripts = sorted((ROOT / "docs" / "gallery").glob("*.py"))
     assert len(scripts) == 10

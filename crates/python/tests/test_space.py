@@ -81,6 +81,18 @@ def test_its_files_are_those_of_the_command(run: SpatialRun, tmp_path: Path) -> 
     assert "<iframe" in run._repr_html_()
 
 
+def test_an_animation_in_space_fits_into_a_cell(run: SpatialRun) -> None:
+    film = run.animate()
+    tall = Scenario.load("demo-napa").set("stack.view", "spatial").run_in_space(variants=0)
+    for cell in (film._repr_html_(), tall.animate()._repr_html_()):
+        assert len(cell.encode()) < 1_000_000
+    data = json.loads(film.html().split('id="barrelstack-data">')[1].split("</script>")[0])
+    (pane,) = data["players"][0]["panes"]
+    assert len(pane["depth"]["bodies"]) == len(run.frames.bodies)
+    assert pane["depth"]["poses"] is not None
+    assert len(data["players"][0]["ground"]) > 0
+
+
 def test_plane_and_space_name_each_other() -> None:
     with pytest.raises(ValueError, match=r"run_in_space\(\)"):
         Scenario.load("demo-napa").set("stack.view", "spatial").run()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import barrelstack
-from barrelstack import Record, Run, Scenario, Study, Table
+from barrelstack import Record, Run, Scenario, Study, Table, intensities
 
 
 @pytest.fixture(scope="module")
@@ -61,6 +61,39 @@ def test_xarray_gets_dimensions_and_units_and_writes_them(run: Run, table: Table
     histories.to_netcdf(tmp_path / "run.nc", engine="scipy")
     again = xarray.open_dataset(tmp_path / "run.nc", engine="scipy")
     assert again["B2.1_rotation"].attrs["units"] == "rad"
+
+
+def test_a_workbook_has_numbers_as_numbers_and_texts_as_texts(table: Table, tmp_path: Path) -> None:
+    openpyxl = pytest.importorskip("openpyxl", reason="no openpyxl")
+    table.to_excel(tmp_path / "a.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    heads, *rows = book["values"].iter_rows(values_only=True)
+    assert "first_loss (s)" in heads
+    assert "outcome" in heads
+    for at, name in enumerate(table):
+        # A workbook keeps sixteen digits of a number.
+        close = [pytest.approx(value, rel=1e-15) if isinstance(value, float) else value for value in table[name]]
+        assert [row[at] for row in rows] == close, name
+    about = {row[0]: row[3] for row in book["columns"].iter_rows(values_only=True)}
+    assert about["first_loss"] == next(column.meaning for column in table.columns if column.name == "first_loss")
+    sums = intensities({"=1+1": Record.bundled()}, "pgv")
+    sums.to_excel(tmp_path / "b.xlsx")
+    cells = [cell for row in openpyxl.load_workbook(tmp_path / "b.xlsx")["values"].iter_rows() for cell in row]
+    assert {cell.data_type for cell in cells if cell.value == "=1+1"} == {"s"}
+    run = Scenario.load("sliding-block").run()
+    run.histories.to_excel(tmp_path / "c.xlsx")
+    sheet = openpyxl.load_workbook(tmp_path / "c.xlsx", read_only=True)["values"]
+    assert sum(1 for _ in sheet.iter_rows()) == 1 + len(run.histories.time)
+    with pytest.raises(ValueError, match=r"\.xlsx"):
+        table.to_excel(tmp_path / "a.csv")
+
+
+def test_a_missing_package_for_workbooks_is_named(
+    table: Table, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(barrelstack.MissingPackageError, match="pip install openpyxl"):
+        table.to_excel(tmp_path / "a.xlsx")
 
 
 @pytest.mark.parametrize("name", ["pandas", "polars", "xarray"])

@@ -79,9 +79,20 @@ impl Scene {
     /// Returns the scene reduced to the frames between two times (s), with all events.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
+        let times = &self.frames.times;
+        let inside = |at: &usize| (from..=to).contains(&times[*at]);
+        self.only(&(0..self.frames.len()).filter(inside).collect::<Vec<_>>())
+    }
+
+    /// Returns the scene reduced to frames `1/rate` (s) apart, as for [`Film`], with all events.
+    #[must_use]
+    pub fn thinned(&self, rate: f64) -> Self {
+        self.only(&sampled(self, rate))
+    }
+
+    /// Returns the scene reduced to the frames with some indices.
+    fn only(&self, kept: &[usize]) -> Self {
         let frames = &self.frames;
-        let inside = |at: &usize| (from..=to).contains(&frames.times[*at]);
-        let kept: Vec<usize> = (0..frames.len()).filter(inside).collect();
         let frames = Frames {
             times: kept.iter().map(|at| frames.times[*at]).collect(),
             poses: kept.iter().map(|at| frames.poses[*at].clone()).collect(),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Figure, FigureKind, Strip, Table, Tone, Verdict,
+    Block, Document, Figure, FigureKind, Player, Strip, Table, Tone, Verdict,
     document::FINE,
     drawing::Room,
     escape,
@@ -52,6 +52,18 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     writer.provenance(&provenance);
     writer.out.push_str("</main>\n");
     assemble(&document.title, &writer.out, writer.payload, trial)
+}
+
+/// Writes a player alone as one HTML file that makes no network requests, for a cell of a notebook.
+///
+/// The file has no pictures for print and shows nothing without scripts.
+pub fn player_html(title: &str, player: &Player) -> String {
+    let document = Document::default();
+    let mut writer = Writer { prints: false, ..Writer::of(&document) };
+    writer.put("<main id=\"content\">\n");
+    writer.player(player);
+    writer.put("</main>\n");
+    assemble(title, &writer.out, writer.payload, None)
 }
 
 /// Blocks to be added to an existing page: their markup, and the data of their players and plots.

@@ -91,7 +91,7 @@ pub use envelope::{BoundarySample, Envelope};
 pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
 pub use floor_plan::{FloorPlan, Heat, Region, RegionKind};
-pub use html::{Fragment, badge, fragment, html, html_with};
+pub use html::{Fragment, badge, fragment, html, html_with, player_html};
 pub use markdown::{MarkdownBundle, markdown};
 pub use pack::{POSE_QUANTUM, TIME_QUANTUM, base64};
 pub use page::Shell;

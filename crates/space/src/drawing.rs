@@ -85,8 +85,24 @@ pub(crate) const PLATE: f64 = 0.012;
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
+/// Number of steps of the view direction of a body per right angle.
+const STEPS: f64 = 10.0;
+
+/// Number of steps of [`coarse_scene`].
+const COARSE_STEPS: f64 = 3.0;
+
 /// Returns the drawing of a run in a view direction.
 pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
+    Arc::new(drawn(run, sight, STEPS))
+}
+
+/// Returns the drawing of a run across the barrels for a small file: the scene in three dimensions is that of [`scene`],
+/// while the flat drawings of rotating bodies change in coarser steps.
+pub fn coarse_scene(run: &Run) -> Scene {
+    drawn(run, Sight::Across, COARSE_STEPS)
+}
+
+fn drawn(run: &Run, sight: Sight, steps: f64) -> Scene {
     let [right, up] = sight.page();
     let toward = right.cross(up);
     let frames = shown(run);
@@ -111,7 +127,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         first[body] = drawn.len();
         let part = &run.stack.parts[body];
         let path = frames.iter().map(|frame| run.frames.poses[*frame][body]);
-        enter((part, &bodies[body]), path, [right, up], &mut drawn, &mut poses);
+        enter((part, &bodies[body]), path, ([right, up], steps), &mut drawn, &mut poses);
     }
     let ties = bands(run, sight, drawn.len());
     for (row, frame) in poses.iter_mut().zip(&frames) {
@@ -128,7 +144,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
             row.push([place.dot(right), place.dot(up), 0.0]);
         }
     }
-    Arc::new(Scene {
+    Scene {
         bodies: drawn,
         frames: Frames {
             times: frames.iter().map(|frame| run.frames.times[*frame]).collect(),
@@ -142,14 +158,15 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         // The page shows the three-dimensional scene in place of the first view.
         depth: (sight == Sight::Across).then(|| deep::depth(run, &frames)),
         ..Scene::default()
-    })
+    }
 }
 
-/// Adds the drawings of a body for all view directions that occur in its path, and its poses in all frames.
+/// Adds the drawings of a body for all view directions that occur in its path, in the given steps per right angle, and
+/// its poses in all frames.
 fn enter(
     (part, body): (&Part, &Body<Spatial>),
     path: impl Iterator<Item = [f64; 7]>,
-    [right, up]: [Vec3; 2],
+    ([right, up], steps): ([Vec3; 2], f64),
     drawn: &mut Vec<SceneBody>,
     poses: &mut [Vec<[f64; 3]>],
 ) {
@@ -158,7 +175,7 @@ fn enter(
     for (row, pose) in poses.iter_mut().zip(path) {
         let (place, rotation) = placed(pose);
         let page = [right, up].map(|axis| rotation.unapply(axis));
-        let view = BodyView::of(kind, page);
+        let view = BodyView::of(kind, page, steps);
         let slot = *known.entry(view.key()).or_insert_with(|| {
             drawn.push(view.draw(part, body));
             drawn.len() - 1
@@ -201,7 +218,7 @@ pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     for body in order {
         first[body] = drawn.len();
         let Shown { part, body: shape, path, .. } = &bodies[body];
-        enter((part, shape), path.iter().copied(), [right, up], &mut drawn, &mut poses);
+        enter((part, shape), path.iter().copied(), ([right, up], STEPS), &mut drawn, &mut poses);
         for view in &mut drawn[first[body]..] {
             view.name.clone_from(&bodies[body].name);
         }

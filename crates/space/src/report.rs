@@ -1,5 +1,7 @@
 //! Report of a run in space: verdict, synchronized views, collapse sequence, and tables.
 
+use std::sync::Arc;
+
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{
     WORDS, command, demand_table, device_table, interface_table, legend, record_fingerprints,
@@ -9,7 +11,7 @@ use barrelstack::variants::words::dots_of;
 use barrelstack::variants::{Range, Remedy};
 use barrelstack::verify::Verification;
 use barrelstack_report::{
-    Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
+    Block, Cell, Document, Figure, Pane, Player, Players, Scene, Strip, Table, Verdict, capital,
 };
 
 use crate::drawing::{Sight, ground_histories, scene, traces};
@@ -18,6 +20,19 @@ use crate::run::Run;
 use crate::summary::Summary;
 use crate::variants::Answer;
 use crate::words::{headline, rows, sentences, tone};
+
+/// Returns the player of a run in a view that can be turned, with a scene of the run across the barrels.
+pub fn player(run: &Run, scene: Scene) -> Player {
+    Player {
+        id: "player".into(),
+        caption: format!(
+            "The computed motion of the run, to scale, in a view that can be turned.{}",
+            legend(&scene)
+        ),
+        scene: Arc::new(Scene { ground: ground_histories(run), ..scene }),
+        traces: Vec::new(),
+    }
+}
 
 /// Returns the report on a result as a document that does not depend on the output format.
 pub fn document(answer: &Answer) -> Document {
@@ -33,7 +48,7 @@ pub fn document(answer: &Answer) -> Document {
         name: capital(sight.words(&run.stack)),
         verdict: String::new(),
         tone: tone(run, summary),
-        scene: std::sync::Arc::clone(scene),
+        scene: Arc::clone(scene),
         traces: traces(run, scene),
     };
     let mut blocks = vec![Block::Players(Players {
@@ -59,7 +74,7 @@ pub fn document(answer: &Answer) -> Document {
                 if free { "scene" } else { "stack" },
                 sight.words(&run.stack)
             ),
-            Strip::of_run(std::sync::Arc::clone(scene), 6),
+            Strip::of_run(Arc::clone(scene), 6),
         )));
     }
     if let Some(found) = &summary.verification {

@@ -112,7 +112,8 @@ fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>)
     }
 }
 
-fn player(run: &Run, scene: &Arc<Scene>) -> Player {
+/// Returns the player of a run, with a scene of it.
+pub fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
         caption: format!(

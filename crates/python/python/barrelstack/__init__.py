@@ -52,6 +52,7 @@ from ._errors import (
     guard,
 )
 from ._page import Page
+from ._pictured import Animation
 from ._record import Channel, Intensity, Record
 from ._records import Selection, intensities, read_folder, select
 from ._run import Demands, Envelope, Force, Frames, Glance, Histories, Outcome, Run
@@ -65,6 +66,7 @@ from ._table import Column, Table
 __version__ = _native.VERSION
 
 __all__ = [
+    "Animation",
     "ArgumentError",
     "BarrelstackWarning",
     "Calibration",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
 from collections.abc import Iterable, Mapping
@@ -10,27 +9,10 @@ from functools import cached_property
 from typing import Any
 
 from . import _native
-from ._pictured import Reported
+from ._pictured import Reported, frame
 from ._table import Table
 
-__all__ = ["Page", "frame", "table_of"]
-
-
-def frame(page: str) -> str:
-    """Wraps a page for display in a notebook.
-
-    Parameters
-    ----------
-    page
-        HTML.
-
-    Returns
-    -------
-    str
-        An element that contains it.
-    """
-    quoted = html.escape(page, quote=True)
-    return f'<iframe srcdoc="{quoted}" style="width: 100%; height: 720px; border: 0"></iframe>'
+__all__ = ["Page", "table_of"]
 
 
 def table_of(rows: Iterable[Mapping[str, Any]], names: Mapping[str, str]) -> Table:

@@ -1,19 +1,88 @@
-"""What results have in common: a report, and for runs pictures."""
+"""What results have in common: a report, and for runs pictures and an animation."""
 
 from __future__ import annotations
 
+import html
 import os
+import warnings
 from collections.abc import Iterable
 from typing import Generic, TypeVar
 
 from . import _native
+from ._errors import BarrelstackWarning
 from ._store import store
 
-__all__ = ["Pictured", "Reported"]
+__all__ = ["Animation", "Pictured", "Reported", "frame"]
+
+#: Size (bytes) above which an animation is too large for a cell of a notebook.
+LARGE = 1_000_000
 
 
 Native = TypeVar("Native", _native.Page, _native.Run, _native.SpatialRun)
 NativeRun = TypeVar("NativeRun", _native.Run, _native.SpatialRun)
+
+
+def frame(page: str) -> str:
+    """Wraps a page for display in a notebook.
+
+    Parameters
+    ----------
+    page
+        HTML.
+
+    Returns
+    -------
+    str
+        An element that contains it.
+    """
+    quoted = html.escape(page, quote=True)
+    return f'<iframe srcdoc="{quoted}" style="width: 100%; height: 720px; border: 0"></iframe>'
+
+
+class Animation:
+    """An animation of a run as the last line of a cell in a notebook, with controls and a view that can be turned.
+
+    Made by :meth:`Run.animate` and :meth:`SpatialRun.animate`. It needs no network and is kept in the notebook.
+
+    Examples
+    --------
+    >>> film = Scenario.load("sliding-block").run().animate()
+    >>> film._repr_html_().startswith("<iframe srcdoc=")
+    True
+    """
+
+    def __init__(self, page: str) -> None:
+        self._page = page
+
+    def html(self) -> str:
+        """Returns the animation as one page that needs no network.
+
+        Returns
+        -------
+        str
+        """
+        return self._page
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the animation as one page, which every browser shows.
+
+        Parameters
+        ----------
+        path
+            A file that ends with ``.html``.
+        """
+        if not os.fspath(path).lower().endswith((".html", ".htm")):
+            raise ValueError(
+                f"path: expected a file that ends with .html, found {os.fspath(path)!r}; "
+                'render(folder, "animation") writes GIF and animated PNG'
+            )
+        store(path, self._page.encode())
+
+    def _repr_html_(self) -> str:
+        return frame(self._page)
+
+    def __repr__(self) -> str:
+        return f"<Animation: {len(self._repr_html_()) / 1e6:.2f} MB>"
 
 
 class Reported(Generic[Native]):
@@ -45,7 +114,42 @@ class Reported(Generic[Native]):
 
 
 class Pictured(Reported[NativeRun]):
-    """A run with a report and pictures."""
+    """A run with a report, pictures and an animation."""
+
+    def animate(self, *, rate: float = 20.0, between: tuple[float, float] | None = None) -> Animation:
+        """Returns an animation of the shown run, to be shown in a notebook or saved as a page.
+
+        Parameters
+        ----------
+        rate
+            Pictures per second of the run (1/s).
+        between
+            Time interval of the film (s); all of the run by default.
+
+        Returns
+        -------
+        Animation
+
+        Raises
+        ------
+        ValueError
+            When a number is out of range.
+
+        Warns
+        -----
+        BarrelstackWarning
+            When the animation would add more than 1 MB to a notebook.
+        """
+        window = None if between is None else [float(time) for time in between]
+        film = Animation(self._native.animation(rate, window))
+        size = len(film._repr_html_().encode())
+        if size > LARGE:
+            message = (
+                f"the animation adds {size / 1e6:.1f} MB to a notebook; for less, show fewer pictures per second "
+                f"(rate={rate / 2:g}) or a part of the run (between=(start, end))"
+            )
+            warnings.warn(message, BarrelstackWarning, stacklevel=2)
+        return film
 
     def render(
         self,

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._errors import BarrelstackWarning, outside
 from ._kept import Kept
-from ._page import frame
-from ._pictured import Pictured
+from ._pictured import Pictured, frame
 from ._table import Column, Columns, Table
 
 if TYPE_CHECKING:

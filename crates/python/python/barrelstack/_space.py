@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._kept import Kept
-from ._page import frame
-from ._pictured import Pictured
+from ._pictured import Pictured, frame
 from ._table import Table
 
 __all__ = ["OutcomeInSpace", "Poses", "SpatialRun"]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import html
+import io
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -125,6 +126,55 @@ class Columns:
         coordinates = {name: one for name, one in variables.items() if name == dimension}
         data = {name: one for name, one in variables.items() if name != dimension}
         return xarray.Dataset(data, coordinates, {"source": "barrelstack"})
+
+
+    def to_excel(self, path: str | os.PathLike[str]) -> None:
+        """Writes a workbook that spreadsheet programs open, in which numbers are numbers in every language.
+
+        The sheet ``values`` has the unit of each column in its heading, and the sheet ``columns`` states the meanings.
+
+        Parameters
+        ----------
+        path
+            A file that ends with ``.xlsx``.
+
+        Raises
+        ------
+        ValueError
+            When the file has another ending, or when a sheet cannot hold all rows.
+        MissingPackageError
+            When openpyxl is not installed.
+        """
+        import openpyxl
+        from openpyxl.cell import WriteOnlyCell
+
+        if not os.fspath(path).lower().endswith(".xlsx"):
+            raise ValueError(f"path: expected a file that ends with .xlsx, found {os.fspath(path)!r}")
+        columns = self._arrays()
+        rows = len(columns[0][1]) if columns else 0
+        if rows >= ROWS:
+            raise ValueError(f"a sheet holds {ROWS - 1} rows, found {rows}; use to_parquet or fewer rows")
+        book = openpyxl.Workbook(write_only=True)
+
+        def sheet(name: str, lines: Iterable[Iterable[object]]) -> None:
+            page = book.create_sheet(name)
+            page.freeze_panes = "A2"
+            for line in lines:
+                cells = [WriteOnlyCell(page, value) for value in line]
+                for cell in cells:
+                    # A text that begins with = is a text and not a formula.
+                    cell.data_type = "s" if cell.data_type == "f" else cell.data_type
+                page.append(cells)
+
+        heads = [f"{column.name} ({column.unit})" if column.unit else column.name for column, _ in columns]
+        # NaN, which spreadsheets do not have, differs from itself.
+        values = ([value if value == value else None for value in array.tolist()] for _, array in columns)
+        sheet("values", [heads, *zip(*values, strict=True)])
+        about = [[column.name, column.unit, column.kind, column.meaning] for column, _ in columns]
+        sheet("columns", [["name", "unit", "kind", "meaning"], *about])
+        content = io.BytesIO()
+        book.save(content)
+        store(path, content.getvalue())
 
 
 class Table(Columns):
@@ -251,6 +301,9 @@ class Table(Columns):
     def __repr__(self) -> str:
         return f"<Table: {len(self)} rows of {', '.join(self)}>"
 
+
+#: Number of rows of a sheet of a workbook, its heading included.
+ROWS = 1_048_576
 
 #: Number of rows that a notebook shows.
 SHOWN = 20

@@ -8,9 +8,6 @@ use barrelstack_report::{Point, Polyline, Role, SceneBody};
 
 use crate::part::Part;
 
-/// Number of steps of the view direction per right angle.
-const STEPS: f64 = 10.0;
-
 /// View direction of a body, rounded to fixed angular steps.
 pub(super) struct BodyView {
     /// Axes, in the body frame, that point right and up in the drawing.
@@ -21,11 +18,12 @@ pub(super) struct BodyView {
 }
 
 impl BodyView {
-    /// Creates the view of a body, given the axes of the page that point right and up, in the body frame.
-    pub(super) fn of(kind: PartKind, page: [Vec3; 2]) -> Self {
+    /// Creates the view of a body, given the axes of the page that point right and up, in the body frame, and the number
+    /// of steps of the view direction per right angle.
+    pub(super) fn of(kind: PartKind, page: [Vec3; 2], steps: f64) -> Self {
         let toward = page[0].cross(page[1]);
         let axis = Vec3::new(1.0, 0.0, 0.0);
-        let stepped = |value: f64| (value * STEPS).round() / STEPS;
+        let stepped = |value: f64| (value * steps).round() / steps;
         let (from, mut right) = if kind == PartKind::Barrel {
             // A body of revolution looks the same at any rotation about its axis.
             let tilt =
