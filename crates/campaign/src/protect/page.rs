@@ -12,9 +12,9 @@ use crate::decision::{fallen_at_rest, heading, left_out, percent, points, print,
 pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
     let mut blocks = before_and_after;
     blocks.push(heading("Comparison of the protections"));
+    blocks.push(Block::Figure(chart(all)));
     blocks.push(Block::Table(table(all)));
     blocks.push(text(legend(all)));
-    blocks.push(Block::Figure(chart(all)));
     blocks.push(heading("How to try a protection"));
     blocks.push(Block::Table(changes(all)));
     if !all.not_tried.is_empty() {
