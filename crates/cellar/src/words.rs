@@ -110,17 +110,24 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         ),
         _ => format!(
             "At least one stack falls in {}. On average {:.1} of {} stacks fall by themselves ({}, 95 % interval {} to \
-             {}) and {:.1} are knocked over ({}, {} to {}).",
+             {}){}.",
             share(&room.some_fall, *of),
             room.by_themselves,
             plan.stacks,
             percent(room.share_by_themselves.mean),
             percent(room.share_by_themselves.interval[0]),
             percent(room.share_by_themselves.interval[1]),
-            room.knocked_over,
-            percent(room.share_knocked_over.mean),
-            percent(room.share_knocked_over.interval[0]),
-            percent(room.share_knocked_over.interval[1]),
+            if room.knocked_over > 0.0 {
+                format!(
+                    " and {:.1} are knocked over ({}, {} to {})",
+                    room.knocked_over,
+                    percent(room.share_knocked_over.mean),
+                    percent(room.share_knocked_over.interval[0]),
+                    percent(room.share_knocked_over.interval[1]),
+                )
+            } else {
+                ", and none is knocked over".to_owned()
+            },
         ),
     }];
     if let Some(spread) = room.spread {

@@ -244,7 +244,9 @@ pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
         });
         (events, moment)
     };
-    let (events, moment) = of(&|body| first[body]);
+    // The views of a page share one list of events.
+    let (events, moment) =
+        if sight == Sight::Across { of(&|body| first[body]) } else { Default::default() };
     let deep = (sight == Sight::Across).then(|| {
         // The first body is the floor, as in the flat scene.
         let (events, moment) = of(&|body| body + 1);
