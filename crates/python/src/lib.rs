@@ -55,7 +55,7 @@ mod _native {
     const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
     /// Sets the date that pages state.
     #[pymodule_init]
-    fn init(_: &Bound<'_, PyModule>) -> PyResult<()> {
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
         let now = barrelstack_input::system::clock().map_err(PyValueError::new_err)?;
         let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_default();
         barrelstack_report::Stamp::new(now, commit).state();
