@@ -199,9 +199,9 @@ impl Grid {
     pub fn leads(&self, starts: impl Fn(Point) -> bool, ends: impl Fn(Point) -> bool) -> bool {
         let mut visited = self.taken.clone();
         let mut queue = VecDeque::new();
-        for at in 0..visited.len() {
-            if !visited[at] && starts(self.middle(at)) {
-                visited[at] = true;
+        for (at, visited) in visited.iter_mut().enumerate() {
+            if !*visited && starts(self.middle(at)) {
+                *visited = true;
                 queue.push_back(at);
             }
         }
@@ -246,8 +246,8 @@ mod tests {
         // Corner to corner, and turned by an eighth.
         let corner = Convex::rectangle([4.0, 5.0], [6.0, 6.0]);
         assert_eq!(square.apart(&corner), 5.0);
-        let turned =
-            Convex::rectangle([-0.5, -0.5], [0.5, 0.5]).placed([2.0, 0.5], 0.785_398_163_397_448_3);
+        let turned = Convex::rectangle([-0.5, -0.5], [0.5, 0.5])
+            .placed([2.0, 0.5], std::f64::consts::FRAC_PI_4);
         assert!((square.apart(&turned) - (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
     }
 
@@ -256,7 +256,7 @@ mod tests {
         let blocked = |gap: f64| {
             let mut grid = Grid::new([0.0, 0.0], [6.0, 2.0], 0.05);
             grid.take(&Convex::rectangle([2.0, 0.0], [3.0, 2.0 - gap]), 0.5 * PASSAGE);
-            grid.take_where(|[_, y]| y < 0.5 * PASSAGE || y > 2.0 - 0.5 * PASSAGE);
+            grid.take_where(|[_, y]| !(0.5 * PASSAGE..=2.0 - 0.5 * PASSAGE).contains(&y));
             !grid.leads(|[x, _]| x < 0.1, |[x, _]| x > 5.9)
         };
         assert!(blocked(0.5) && blocked(0.59) && !blocked(0.7) && !blocked(1.2));

@@ -144,7 +144,7 @@ pub fn document(answer: &Answer) -> Document {
             .plan
             .sentences()
             .into_iter()
-            .chain(summary.plan.findings.iter().map(sentence))
+            .chain(summary.plan.findings.iter().map(|finding| sentence(finding)))
             .collect(),
     ));
     let fell = summary.room.some_fall.of_variants;
@@ -174,7 +174,7 @@ pub fn document(answer: &Answer) -> Document {
 }
 
 /// Returns a finding as a sentence.
-fn sentence(finding: &String) -> String {
+fn sentence(finding: &str) -> String {
     format!("{}.", barrelstack_report::capital(finding))
 }
 

@@ -279,13 +279,13 @@ impl Prepared {
         run: &RoomRun,
         end: &Obstacles<'_>,
     ) -> Option<f64> {
+        // Bodies whose middle is farther than a barrel is long cannot reach into the aisle.
+        const REACH: f64 = 2.0;
         let standing =
             Obstacles { cellar: &self.cellar, taken: self.plan.footprints.iter().collect() };
         if end.is_passable(from, to) || !standing.is_passable(from, to) {
             return None;
         }
-        // Bodies whose middle is farther than a barrel is long cannot reach into the aisle.
-        const REACH: f64 = 2.0;
         let near = |pose: &[f64; 7]| {
             [0, 1]
                 .into_iter()

@@ -306,7 +306,7 @@ impl Cellar {
     /// # Errors
     /// Returns the first problem found, with its place in the text.
     pub fn load(path: &Path, changes: &[String]) -> Result<Self, ScenarioError> {
-        Self::of(Host::load(path, changes, &LANGUAGE)?)
+        Self::of(&Host::load(path, changes, &LANGUAGE)?)
     }
 
     /// Reads a cellar from text, which may extend built-in cellars and scenarios only.
@@ -322,7 +322,7 @@ impl Cellar {
     /// # Errors
     /// As for [`Cellar::load`].
     pub fn parse(name: &str, bytes: &[u8], changes: &[String]) -> Result<Self, ScenarioError> {
-        Self::of(Host::parse(name, bytes, changes, &LANGUAGE)?)
+        Self::of(&Host::parse(name, bytes, changes, &LANGUAGE)?)
     }
 
     /// Reads a built-in cellar.
@@ -330,7 +330,7 @@ impl Cellar {
     /// # Errors
     /// If there is no cellar with this name, or a change is invalid.
     pub fn builtin(name: &str, changes: &[String]) -> Result<Self, ScenarioError> {
-        Self::of(Host::builtin(name, changes, &LANGUAGE)?)
+        Self::of(&Host::builtin(name, changes, &LANGUAGE)?)
     }
 
     /// `true` if a text, or a text that it extends, is of the kind of a cellar. A text that cannot be read is not.
@@ -389,7 +389,7 @@ impl Cellar {
         fnv1a(format!("{motion:016x}\n{}", to_toml(&own)).as_bytes())
     }
 
-    fn of(host: Host) -> Result<Self, ScenarioError> {
+    fn of(host: &Host) -> Result<Self, ScenarioError> {
         let reader = host.reader(&CELLAR)?;
         reader.integer("schema")?;
         let title = reader.optional_text("title")?.unwrap_or_else(|| host.stem());
@@ -421,12 +421,12 @@ impl Cellar {
             reader.skip(inherited);
         }
         reader.finish();
-        distinct(&host, "column", columns.iter().map(|one| &one.name))?;
-        distinct(&host, "door", doors.iter().map(|one| &one.name))?;
-        distinct(&host, "aisle", aisles.iter().map(|one| &one.name))?;
-        distinct(&host, "place", places.iter().map(|one| &one.name))?;
+        distinct(host, "column", columns.iter().map(|one| &one.name))?;
+        distinct(host, "door", doors.iter().map(|one| &one.name))?;
+        distinct(host, "aisle", aisles.iter().map(|one| &one.name))?;
+        distinct(host, "place", places.iter().map(|one| &one.name))?;
         let stated = host.stack(&OWN, &[])?;
-        check(&host, &stated)?;
+        check(host, &stated)?;
         let mut cellar = Self {
             title,
             room,
@@ -693,7 +693,7 @@ fn stated(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
     match (text_of("kind"), text_of("extends")) {
         (Some(kind), _) => kind == "cellar",
         (None, Some(name)) if built_in(name).is_some() => true,
-        (None, Some(name)) if name.ends_with(".toml") && depth > 0 => {
+        (None, Some(name)) if names_a_file(name) && depth > 0 => {
             let Some(folder) = path.and_then(Path::parent) else { return false };
             let next = folder.join(name);
             barrelstack_input::system::read(&next, 1 << 20)
@@ -701,4 +701,9 @@ fn stated(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
         }
         (None, _) => false,
     }
+}
+
+/// Returns `true` if a text names a TOML file.
+fn names_a_file(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "toml")
 }

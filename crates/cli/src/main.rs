@@ -43,8 +43,9 @@ fn main() -> ExitCode {
         }
     };
     barrelstack_input::system::guard_inputs();
-    let commit = std::env::var("BARRELSTACK_COMMIT");
-    let commit = commit.unwrap_or_else(|_| env!("BARRELSTACK_COMMIT").to_owned());
+    let commit =
+        std::env::var_os("BARRELSTACK_COMMIT").and_then(|commit| commit.into_string().ok());
+    let commit = commit.unwrap_or_else(|| env!("BARRELSTACK_COMMIT").to_owned());
     match barrelstack_input::system::clock() {
         Ok(now) => barrelstack_report::Stamp::new(now, commit).state(),
         Err(wrong) => {

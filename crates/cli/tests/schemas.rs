@@ -179,6 +179,21 @@ fn path(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }
 
+/// Reads the documents of rooms.
+fn of_rooms(documents: &mut Documents) {
+    let room = ["demo-cellar", "--set=stack.levels=1", "--set=run.duration=1 s"];
+    assert_eq!(documents.run(&[&["run", "--variants=1"], &room[..]].concat(), 0)["counted"], 1);
+    assert_eq!(documents.run(&[&["check"], &room[..]].concat(), 0)["stacks"], 4);
+    let narrow = [
+        "check",
+        "demo-cellar",
+        "--set=room.length=3 m",
+        "--set=aisle.aisle.to=[\"3 m\", \"3 m\"]",
+    ];
+    let wrong = documents.run(&narrow, 2);
+    assert_eq!(wrong["problems"].as_array().unwrap().len(), 1, "{wrong}");
+}
+
 #[test]
 fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     let mut documents = Documents::default();
@@ -225,17 +240,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
         assert_eq!(value["run"]["interrupted"], true);
     }
 
-    let room = ["demo-cellar", "--set=stack.levels=1", "--set=run.duration=1 s"];
-    assert_eq!(documents.run(&[&["run", "--variants=1"], &room[..]].concat(), 0)["counted"], 1);
-    assert_eq!(documents.run(&[&["check"], &room[..]].concat(), 0)["stacks"], 4);
-    let narrow = [
-        "check",
-        "demo-cellar",
-        "--set=room.length=3 m",
-        "--set=aisle.aisle.to=[\"3 m\", \"3 m\"]",
-    ];
-    let wrong = documents.run(&narrow, 2);
-    assert_eq!(wrong["problems"].as_array().unwrap().len(), 1, "{wrong}");
+    of_rooms(&mut documents);
     documents.run(&["check", "candia-8-barrels"], 0);
     documents.run(&["check", "bouncing-disc"], 0);
     let against = "--against=run.duration=0.5 s";

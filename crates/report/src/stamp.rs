@@ -57,7 +57,10 @@ fn stamped(pairs: &[(String, String)], stamp: Option<&Stamp>) -> Vec<(String, St
     let Some(Stamp { date, commit }) = stamp else { return pairs };
     if !commit.is_empty() {
         match pairs.iter_mut().find(|(name, _)| name == "program") {
-            Some((_, program)) => *program += &format!(", commit {commit}"),
+            Some((_, program)) => {
+                program.push_str(", commit ");
+                program.push_str(commit);
+            }
             None => pairs.insert(0, ("commit".to_owned(), commit.clone())),
         }
     }

@@ -223,7 +223,9 @@ pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
             view.name.clone_from(&bodies[body].name);
         }
     }
-    poses.iter_mut().for_each(|row| row.resize(drawn.len(), [f64::NAN; 3]));
+    for row in &mut poses {
+        row.resize(drawn.len(), [f64::NAN; 3]);
+    }
     let of = |number: &dyn Fn(usize) -> usize| {
         let leaving = bodies.iter().enumerate();
         let leaving = leaving.filter_map(|(at, body)| Some((body.leaves_at?, at)));

@@ -58,14 +58,14 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
 
 /// A file that a command names.
 enum Loaded {
-    Scenario(Scenario),
+    Scenario(Box<Scenario>),
     Cellar(Box<Cellar>),
 }
 
 /// Loads the scenario of a command that does not read cellars.
 fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     match load_any(args)? {
-        Loaded::Scenario(scenario) => Ok(scenario),
+        Loaded::Scenario(scenario) => Ok(*scenario),
         Loaded::Cellar(_) => anyhow::bail!(
             "{}: this is a cellar, which `barrelstack check` and `barrelstack run` read; give the scenario of one stack",
             args.scenario
@@ -98,17 +98,19 @@ fn load_any(args: &ScenarioArgs) -> anyhow::Result<Loaded> {
         if Cellar::is_stated(None, &bytes) {
             return cellar(Cellar::parse("standard input", &bytes, &overrides));
         }
-        return Ok(Loaded::Scenario(Scenario::parse_bytes("standard input", &bytes, &overrides)?));
+        let scenario = Scenario::parse_bytes("standard input", &bytes, &overrides)?;
+        return Ok(Loaded::Scenario(Box::new(scenario)));
     }
     let path = Path::new(&args.scenario);
     let looks_like_a_file = args.scenario.contains(['.', '/', '\\']);
     if path.is_file() || looks_like_a_file {
         // A file that cannot be read is reported by the reader of scenarios.
-        let bytes = system::read(path, INPUT_LIMIT as usize).unwrap_or_default();
+        let bytes = system::read(path, usize::try_from(INPUT_LIMIT).unwrap_or(usize::MAX))
+            .unwrap_or_default();
         if Cellar::is_stated(Some(path), &bytes) {
             return cellar(Cellar::load(path, &overrides));
         }
-        return Ok(Loaded::Scenario(Scenario::load(path, &overrides)?));
+        return Ok(Loaded::Scenario(Box::new(Scenario::load(path, &overrides)?)));
     }
     if barrelstack_cellar::scenario::built_in(&args.scenario).is_some() {
         return cellar(Cellar::builtin(&args.scenario, &overrides));
@@ -121,7 +123,7 @@ fn load_any(args: &ScenarioArgs) -> anyhow::Result<Loaded> {
             error.into()
         }
     })?;
-    Ok(Loaded::Scenario(scenario))
+    Ok(Loaded::Scenario(Box::new(scenario)))
 }
 
 /// Returns the error for a name that is neither a file nor a built-in scenario, with a hint about the

@@ -188,7 +188,9 @@ impl Host {
     /// Returns the first problem found, with the place where the value was written.
     pub fn stack(&self, own: &[&str], changes: &[(&str, Node)]) -> Result<Scenario, ScenarioError> {
         let mut table = self.table.clone();
-        own.iter().for_each(|key| table.remove(key));
+        for key in own {
+            table.remove(key);
+        }
         let view = self.node("stack.view");
         let stated = view.filter(|view| {
             matches!(view.origin, Origin::File { file: 0, .. } | Origin::Override(_))
