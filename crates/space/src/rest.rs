@@ -43,7 +43,7 @@ impl Rest {
         self.observe_bodies(state.time, (&state.poses, &state.twists), collapsed)
     }
 
-    /// Records the poses and twists of all bodies at a time (s), as [`Rest::observe`] does.
+    /// Records the poses and twists of all bodies at a time (s). Returns `true` if all have come to rest.
     pub fn observe_bodies(&mut self, time: f64, bodies: Motions<'_>, collapsed: bool) -> bool {
         let from = if collapsed { self.calm_from } else { self.still_from };
         let moves = time < from || self.moving(bodies).any(|body| !self.rolls_away(bodies, body));

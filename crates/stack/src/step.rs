@@ -28,7 +28,7 @@ const REFERENCE: f64 = 0.01;
 /// every fall by at most 0.3 ms (`tests/paper.rs`).
 pub const IMPACT_SHARE: f64 = 0.4;
 
-/// Penetration up to which impacts take whole steps, as a fraction of [`REFERENCE`]; the penetration of resting
+/// Penetration up to which impacts take whole steps, as a fraction of `REFERENCE`; the penetration of resting
 /// contacts is smaller.
 ///
 /// With this value, the energy residual of the demo along the barrels is 1.1e-5; with a value four times as large, it
