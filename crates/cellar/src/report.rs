@@ -310,8 +310,8 @@ fn obstacles(summary: &CellarSummary) -> Table {
     let median =
         |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.p50), 2);
     Table::of(
-        "Forces on walls and columns, in the variants in which a body strikes them: for design, the largest force of all \
-         variants.",
+        "Forces on walls and columns, in the variants in which a body strikes them: for design, the largest of all variants. \
+         Forces last some milliseconds and grow with the assumed stiffness of the contact; impulses do not.",
         &summary.obstacles,
         &[
             ("wall or column", "", &|one| Cell::text(&one.name)),

@@ -177,14 +177,15 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }) && let Some(peak) = &most.peak
     {
         all.push(format!(
-            "The largest force on a wall or column is {:.0} kN, on the {}.",
+            "The largest force on a wall or column is {:.0} kN for an instant, on the {}; it grows with the assumed \
+             stiffness of the contact, unlike the impulses in the table.",
             1e-3 * peak.most,
             most.name
         ));
     }
     if !summary.inspection.is_empty() && room.some_fall.of_variants > 0 {
         let first: Vec<&String> = summary.inspection.iter().take(5).collect();
-        all.push(format!("Inspect first, of those that stand: {}.", listed(first)));
+        all.push(format!("Inspect first, where they still stand: {}.", listed(first)));
     }
     if !summary.broken.is_empty() {
         all.push(format!(
