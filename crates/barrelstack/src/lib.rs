@@ -40,6 +40,7 @@
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod breakage;
 pub mod compare;
 pub mod export;
 pub mod period;

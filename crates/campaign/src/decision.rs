@@ -47,7 +47,7 @@ pub use export::{ExportError, Exported, export};
 pub use hazard::{Lost, Site, SiteHazard};
 pub use indices::Sensitivity;
 pub use limit::LimitState;
-pub use loss::{Breakage, Losses};
+pub use loss::Losses;
 pub use measures::MeasureRow;
 pub use modes::ModeIncidence;
 pub use sensitivity::{Effect, Group, Level};

@@ -63,7 +63,7 @@ fn losses_count_barrels_and_burst_them_by_the_height_of_their_fall() {
     let last = found.losses.as_ref().unwrap().levels.last().unwrap();
     let collapsed = (0..12).filter(|record| capacity(*record) <= 0.9).count() as f64;
     assert!((last.fallen - 4.0 * collapsed / 12.0).abs() < 1e-12);
-    let chance = barrelstack_campaign::decision::Breakage::RANGE[1].probability(1.8);
+    let chance = barrelstack::breakage::Breakage::RANGE[1].probability(1.8);
     assert!((chance - 0.0443).abs() < 5e-4, "{chance}");
     assert!((last.burst[1] - chance * last.fallen).abs() < 1e-12);
     assert!(last.burst[0] < last.burst[1] && last.burst[1] < last.burst[2]);

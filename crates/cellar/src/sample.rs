@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::{PartKind, law_in_space};
+use barrelstack::breakage::Breakage;
 use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::{Friction, Interface, NormalLaw, Scene};
 use barrelstack::variants::planes;
 use barrelstack::{RunFailure, Scenario, pool};
-use barrelstack_campaign::decision::Breakage;
 use barrelstack_dynamics::{Drive, Spatial};
 use barrelstack_input::fnv1a;
 use barrelstack_space::Ground;

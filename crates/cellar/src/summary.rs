@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use barrelstack::breakage::cost;
 use barrelstack::ground::MotionSummary;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{LEVEL, Range};
@@ -98,6 +99,8 @@ described! {
         pub burst: [f64; 3] as "1",
         /// Expected loss of wine, under the same assumptions.
         pub wine_lost: [f64; 3] as "m3",
+        /// Lower and upper cost of the barrels that burst and of their wine, under the central assumption.
+        pub cost: [f64; 2] as "US$",
         /// Largest force on a wall or column in any variant; null without walls and columns.
         pub peak_force: Option<f64> as "N",
     }
@@ -338,6 +341,7 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
             mean(all.iter().map(|case| case.stacks.iter().map(|stack| of(stack)[which]).sum()))
         })
     };
+    let [burst, wine_lost] = [three(&|stack| stack.burst), three(&|stack| stack.wine)];
     let peaks = all.iter().flat_map(|case| case.obstacles.iter().map(|one| one.peak));
     let room = RoomAnswer {
         some_fall: Count::of(&all, |case| first(case).is_some()),
@@ -348,8 +352,9 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         spread: (own > 0.0).then(|| (own + knocked) / own),
         stacks_fallen: range(all.iter().map(|case| fallen(case).into_iter().map(f64::from).sum())),
         barrels_fallen: range(all.iter().map(barrels)),
-        burst: three(&|stack| stack.burst),
-        wine_lost: three(&|stack| stack.wine),
+        burst,
+        wine_lost,
+        cost: cost(burst[1], wine_lost[1]),
         peak_force: peaks.reduce(f64::max),
     };
     let (case, run) = shown;

@@ -2,7 +2,7 @@
 
 use barrelstack::variants::Range;
 use barrelstack::variants::words::percent;
-use barrelstack_report::{Tone, listed};
+use barrelstack_report::{Tone, listed, measured};
 
 use crate::plan::liters;
 use crate::summary::{CellarSummary, Count};
@@ -131,15 +131,14 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         ),
     }];
     if let Some(spread) = room.spread {
-        all.push(format!(
-            "A collapse spreads to {spread:.1} stacks for each that falls by itself."
-        ));
+        all.push(format!("For each stack that falls by itself, {spread:.1} fall in all."));
     }
     if room.barrels_fallen.most > 0.0 {
         let [few, central, many] = room.wine_lost.map(liters);
+        let [least, most] = room.cost.map(|dollars| measured(dollars, 0));
         all.push(format!(
             "Of {} barrels {} fall. About {central} of {} of wine are lost ({few} if few of the fallen barrels burst, \
-             {many} if many do).",
+             {many} if many do); burst barrels and wine are worth US${least} to US${most}.",
             plan.barrels,
             span(&room.barrels_fallen, 0, "").trim_end(),
             liters(plan.wine),

@@ -71,7 +71,7 @@ fn two_equal_blocks_pound_as_in_closed_form() {
     println!("peak {} against {peak}; {} at the wall", meeting.peak, wall.peak);
     assert_near(meeting.peak, peak, 1e-3);
     assert_near(wall.peak, speed * (mass * stiffness).sqrt(), 1e-3);
-    // While two springs are in contact, B moves by half of the way that A would have made: v T / 2.
+    // While two springs are in contact, B moves by half of the distance that A would have moved: v T / 2.
     let away = first + together + (gap - 0.5 * speed * together) / speed;
     let (at_wall, _) = wall.first.unwrap();
     println!("at the wall {at_wall:.6} s against {away:.6} s");

@@ -110,12 +110,12 @@ fn a_second_shock_starts_from_the_stated_displacements() {
     let mut still = second;
     still.ground = still.ground.scaled(0.0);
     let run = on(2, &still);
-    let way = |(from, to): (&[f64; 7], &[f64; 7])| {
+    let displacement = |(from, to): (&[f64; 7], &[f64; 7])| {
         (0..3).map(|at| (to[at] - from[at]).powi(2)).sum::<f64>().sqrt()
     };
     let ends = run.bodies.iter().zip(&first.bodies);
-    let most = ends.map(|(to, from)| way((&from.own, &to.own))).fold(0.0, f64::max);
-    println!("largest way on ground at rest {most:e} m");
+    let most = ends.map(|(to, from)| displacement((&from.own, &to.own))).fold(0.0, f64::max);
+    println!("largest displacement on ground at rest {most:e} m");
     // measured 0.7 mm
     assert!(most < 2e-3, "{most:e}");
 }

@@ -33,7 +33,7 @@ pub enum FigureKind {
     Envelope(Envelope),
     /// A scene at one instant with labels and arrows.
     Diagram(Diagram),
-    /// A floor seen from above.
+    /// A floor plan.
     FloorPlan(FloorPlan),
 }
 

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use barrelstack::breakage::cost;
 use barrelstack_fragility::{Contribution, Hazard, Interval, Lognormal, Rate, chance_within};
 
 use super::DecisionError;
 use super::cases::Cases;
 use super::curve::{LEVEL, LimitCurve};
 use super::limit::LimitState;
-use super::loss::{Losses, cost};
+use super::loss::Losses;
 use crate::measured::{Table, TableError};
 use crate::scenario::Dimension;
 

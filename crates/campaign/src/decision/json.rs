@@ -1,11 +1,12 @@
 //! JSON document of a decision: SI units, probabilities from 0 to 1, rates per year.
 
+use barrelstack::breakage::Breakage;
 use barrelstack_fragility::{Contribution, Fall, Index, Interval, Rate, Stripe};
 use barrelstack_report::described;
 
 use super::curve::{BandKind, LimitCurve};
 use super::hazard::{LimitRate, Lost, Site};
-use super::loss::{Breakage, Loss, Losses};
+use super::loss::{Loss, Losses};
 use super::measures::MeasureRow;
 use super::modes::ModeIncidence;
 use super::sensitivity::{Effect, Group, Level};

@@ -1,40 +1,10 @@
 //! Losses: barrels that fall, barrels that burst, and their wine.
 
+use barrelstack::breakage::Breakage;
 use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 
 use super::cases::{Cases, JudgedCase};
 use super::curve::{LEVEL, interpolate};
-
-/// Assumed probability that a full barrel bursts in a fall, as a lognormal function of the height of the fall.
-///
-/// No published drop tests of barrels were found. Of the barrels that toppled at Napa in 2014 about one in
-/// ten was lost (Wines & Vines 2016); the levels from which they fell are not recorded. A lognormal function
-/// with a median of 5 m and a dispersion of 0.6 agrees with that share. At 0.9 m per level, 0.2 % of the
-/// barrels that fall from the second level burst, 4 % from the third, 15 % from the fourth, 29 % from the
-/// fifth and 43 % from the sixth. If a stack of four to six levels falls completely, 7 % to 18 % of the
-/// barrels above the lowest level burst. Results are also given for medians of 3.5 m and 7 m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Breakage {
-    /// Height of fall (m) at which half of the barrels burst.
-    pub median: f64,
-    /// Standard deviation of the logarithm of the height of fall at which a barrel bursts.
-    pub dispersion: f64,
-}
-
-impl Breakage {
-    /// The three assumptions of breakage, in this order: few barrels burst, the central assumption, many
-    /// barrels burst.
-    pub const RANGE: [Self; 3] = [
-        Self { median: 7.0, dispersion: 0.6 },
-        Self { median: 5.0, dispersion: 0.6 },
-        Self { median: 3.5, dispersion: 0.6 },
-    ];
-
-    /// Returns the probability that a barrel bursts in a fall from a height (m).
-    pub fn probability(&self, fall: f64) -> f64 {
-        Lognormal { median: self.median, dispersion: self.dispersion }.probability(fall)
-    }
-}
 
 /// Assumed probability that a full barrel bursts, as a function of the largest force (N) on the barrel after
 /// it fell.
@@ -47,23 +17,6 @@ impl Breakage {
 /// height. A landing on other barrels or on barrel heads is softer than a landing on the floor, so that the
 /// two assumptions differ there.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
-
-/// Volume of wine in a bottle (m³).
-const BOTTLE: f64 = 0.75e-3;
-
-/// Assumed lower and upper value (US$) of a bottle of wine, for which the cellar could have sold it.
-///
-/// A barrel of 225 L holds 25 cases of wine (The Californian 2014).
-const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
-
-/// Assumed lower and upper cost (US$) of a burst barrel of any size, without its wine.
-const BARREL_COST: [f64; 2] = [400.0, 1200.0];
-
-/// Returns the lower and upper cost (US$) of a number of burst barrels and of their wine, whose volume is
-/// `wine` (m³).
-pub(super) fn cost(barrels: f64, wine: f64) -> [f64; 2] {
-    [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])
-}
 
 /// Expected losses of one stack at a level.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,13 @@
 //! Report page of a study: first the result, then the evidence for it.
 
+use barrelstack::breakage::Breakage;
 use barrelstack_fragility::{Stripe, clopper_pearson};
 use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, measured, significant};
 
 use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::{LimitRate, Site};
-use super::loss::{Breakage, Losses};
+use super::loss::Losses;
 use super::modes::ModeIncidence;
 use super::words::{self, count, percent, range};
 use super::{Decision, figures, tables};

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use barrelstack::breakage::Breakage;
 use barrelstack_fragility::{Hazard, Interval, Shape, grouped_mean, interval_of, mean_difference};
 
-use crate::decision::{Breakage, Cases, JudgedCase};
+use crate::decision::{Cases, JudgedCase};
 use crate::study::{Collected, Study};
 use crate::uncertain::Sample;
 

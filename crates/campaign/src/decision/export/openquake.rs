@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
+use barrelstack::breakage::Breakage;
 use barrelstack_fragility::Lognormal;
 
 use super::Foreign;
+use crate::decision::Decision;
 use crate::decision::cases::JudgedCase;
 use crate::decision::curve::interpolate;
-use crate::decision::{Breakage, Decision};
 use crate::scenario::quantity::plain;
 
 /// Name of the file with the fragility curves.
