@@ -67,13 +67,8 @@ fn cellar(rows: u32, stacks: u32, alike: bool, changes: &[String]) -> Result<Roo
 
 /// Returns a number that differs if any bit of the result differs.
 fn fingerprint(run: &RoomRun) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for body in &run.bodies {
-        for x in body.to {
-            hash = (hash ^ x.to_bits()).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-    hash
+    let bits = run.bodies.iter().flat_map(|body| body.to).flat_map(|x| x.to_bits().to_le_bytes());
+    barrelstack_input::fnv1a(&bits.collect::<Vec<u8>>())
 }
 
 /// Returns a line of the status of the process that starts with a name, where the system has one.

@@ -8,7 +8,7 @@ use barrelstack_space::Stack;
 use barrelstack_space::run::judge;
 
 use crate::history::summed;
-use crate::island::{Contact, Island, Owner, Side, Watch, numbers, plus};
+use crate::island::{Contact, Island, Owner, PartyId, Watch, numbers, plus};
 use crate::nearby::Places;
 use crate::result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, Touch};
 use crate::world::{StackOf, World};
@@ -48,7 +48,7 @@ pub(crate) fn result(
         run.work.evaluations += work.evaluations;
         run.work.contact_evaluations += work.contact_evaluations;
         for ([_, side], contact) in &island.live.contacts {
-            if let Side::Stack(_) = side {
+            if let PartyId::Stack(_) = side {
                 run.meetings.push(meeting(contact, &body_of));
             }
         }
@@ -185,7 +185,7 @@ fn obstacle_end(
         end.history = summed(&end.history, &island.logs.forces[at]);
         for ([_, side], contact) in &island.live.contacts {
             let first = end.first.is_none_or(|(time, _)| contact.time < time);
-            if *side == Side::Obstacle(number) && first {
+            if *side == PartyId::Obstacle(number) && first {
                 end.first = Some((contact.time, body_of(contact.bodies[0])));
             }
         }

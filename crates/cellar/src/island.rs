@@ -19,13 +19,13 @@ use crate::result::RoomFrames;
 use crate::world::World;
 
 /// A body of a stack: index of the stack, and ID of the body within its stack.
-pub(crate) type Whose = (usize, BodyId);
+pub(crate) type StackBody = (usize, BodyId);
 
 /// Owner of a body of the model of an island.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Owner {
     /// A body of a stack.
-    Stack(Whose),
+    Stack(StackBody),
     /// An obstacle.
     Obstacle(usize),
 }
@@ -78,7 +78,7 @@ pub(crate) struct Watch {
     pub(crate) fates: Fates,
     pub(crate) rest: Rest,
     /// First contact with a body of another stack: time, own body, other body.
-    pub(crate) touched: Option<(f64, BodyId, Whose)>,
+    pub(crate) touched: Option<(f64, BodyId, StackBody)>,
     pub(crate) touched_obstacle: Option<(f64, usize)>,
     /// Impulse (N·s) of other stacks until the first loss of seat.
     pub(crate) impulse: f64,
@@ -89,7 +89,7 @@ pub(crate) struct Watch {
 pub(crate) struct Live {
     pub(crate) running: Running,
     pub(crate) watches: Vec<Watch>,
-    pub(crate) contacts: BTreeMap<[Side; 2], Contact>,
+    pub(crate) contacts: BTreeMap<[PartyId; 2], Contact>,
     pub(crate) ending: Option<Ending>,
     pub(crate) failure: Option<RunError>,
     /// Lengths of the logs.
@@ -122,16 +122,16 @@ impl Live {
 
 /// A party of a contact: a stack or an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Side {
+pub(crate) enum PartyId {
     Stack(usize),
     Obstacle(usize),
 }
 
 impl Owner {
-    fn party(self) -> Side {
+    fn party(self) -> PartyId {
         match self {
-            Self::Stack((stack, _)) => Side::Stack(stack),
-            Self::Obstacle(obstacle) => Side::Obstacle(obstacle),
+            Self::Stack((stack, _)) => PartyId::Stack(stack),
+            Self::Obstacle(obstacle) => PartyId::Obstacle(obstacle),
         }
     }
 }
@@ -152,7 +152,7 @@ pub(crate) struct Island {
     pub(crate) live: Live,
     pub(crate) logs: Logs,
     /// Energies and work of the islands from which this one was merged.
-    pub(crate) banked: EnergySummary,
+    pub(crate) energy_before: EnergySummary,
     pub(crate) work: Work,
     /// Time (s) between frames; `None` for no frames.
     pub(crate) every: Option<f64>,
@@ -198,8 +198,8 @@ impl Island {
     /// Creates an island at the start of a window.
     pub(crate) fn of(fixed: Fixed, live: Live, logs: Logs, every: Option<f64>) -> Self {
         let tubes = vec![f64::INFINITY; fixed.owners.len()];
-        let (banked, work) = (EnergySummary::default(), Work::default());
-        Self { fixed, live, logs, banked, work, every, tubes, from: Vec::new(), start: None }
+        let (energy_before, work) = (EnergySummary::default(), Work::default());
+        Self { fixed, live, logs, energy_before, work, every, tubes, from: Vec::new(), start: None }
     }
 
     pub(crate) fn time(&self) -> f64 {
@@ -281,13 +281,13 @@ impl Island {
         let latest = until + 1e-9 * step;
         self.live.stopped_by = None;
         while self.is_awake() && (self.time() + step <= latest || latest >= end_time) {
-            if let Some(body) = self.leaves(world, step) {
+            if let Some(body) = self.update_travels(world, step) {
                 self.live.stopped_by = Some(body);
                 return;
             }
             self.step(None);
         }
-        let _ = self.leaves(world, 0.0);
+        let _ = self.update_travels(world, 0.0);
     }
 
     /// Advances to a time (s) exactly; the last step is cut short.
@@ -296,7 +296,7 @@ impl Island {
         self.live.stopped_by = None;
         while self.is_awake() && self.time() < time - sliver {
             self.step(Some(time));
-            let _ = self.leaves(world, 0.0);
+            let _ = self.update_travels(world, 0.0);
         }
         if self.live.failure.is_none() {
             self.wait_until(time);
@@ -318,7 +318,7 @@ impl Island {
     }
 
     /// Updates the distances from the start of the window; returns a body that would leave its tube within a time (s).
-    fn leaves(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
+    fn update_travels(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
         if self.from.is_empty() {
             return None;
         }
@@ -427,7 +427,7 @@ impl Island {
             contact.impulse += impulse;
             contact.peak = contact.peak.max(now);
             for (side, party) in parties.iter().enumerate() {
-                let Side::Stack(stack) = *party else { continue };
+                let PartyId::Stack(stack) = *party else { continue };
                 let Some(at) = self.fixed.members.iter().position(|of| of.stack == stack) else {
                     continue;
                 };
@@ -452,8 +452,8 @@ impl Island {
             contact.last = contact.now;
         }
         for (number, obstacle) in self.fixed.obstacles.iter().enumerate() {
-            let of = |(parties, contact): (&[Side; 2], &Contact)| {
-                (parties[1] == Side::Obstacle(*obstacle)).then_some(-contact.now)
+            let of = |(parties, contact): (&[PartyId; 2], &Contact)| {
+                (parties[1] == PartyId::Obstacle(*obstacle)).then_some(-contact.now)
             };
             let touching = contacts.iter().filter_map(of);
             let total = touching.fold(Vec3::default(), |sum, force| sum + force);
@@ -476,7 +476,9 @@ impl Island {
         let Some(every) = self.every else { return };
         for (number, Member { bodies, .. }) in self.fixed.members.iter().enumerate() {
             let time = self.time();
-            if time < self.logs.frames[number].times.len() as f64 * every {
+            let last = self.logs.frames[number].times.last();
+            let due = last.map_or(0.0, |last| ((last / every + 1e-9).floor() + 1.0) * every);
+            if time < due {
                 continue;
             }
             let bodies = bodies.clone().skip(1);
@@ -491,7 +493,7 @@ impl Island {
 
     /// Returns the energy balance since the start, including the islands from which this one was merged.
     pub(crate) fn energy(&self) -> EnergySummary {
-        plus(self.live.running.stepper.energy.summary(0), &self.banked)
+        plus(self.live.running.stepper.energy.summary(0), &self.energy_before)
     }
 
     /// Returns the numbers of steps and evaluations since the start.

@@ -16,6 +16,7 @@
 
 mod answer;
 mod collect;
+mod contact_kinds;
 pub mod geometry;
 mod history;
 mod island;
@@ -28,16 +29,13 @@ pub mod room;
 mod run;
 pub mod sample;
 pub mod scenario;
-mod sorts;
 pub mod summary;
 pub mod words;
 mod world;
 
 pub use answer::{Answer, answer};
 pub use plan::Plan;
-pub use result::{
-    BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch, Toucher,
-};
+pub use result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch};
 pub use room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure, Settings};
 pub use run::{Advance, run};
 pub use sample::{CellarFailure, Prepared};

@@ -32,7 +32,7 @@ impl Plan<'_> {
             Party {
                 name: of.name,
                 model: &of.stack.model,
-                sorts: &of.sorts,
+                kinds: &of.kinds,
                 rank: of.rank,
                 frame: of.frame.within(*frame),
                 step: of.simulation.time_step,
@@ -41,8 +41,8 @@ impl Plan<'_> {
         let obstacles = self.obstacles.iter().map(|obstacle| {
             let of = &world.obstacles[*obstacle];
             let frame = Frame::default().within(*frame);
-            let (model, sorts) = (&of.model, &of.sorts[..]);
-            Party { name: "", model, sorts, rank: of.rank, frame, step: of.step }
+            let (model, kinds) = (&of.model, &of.kinds[..]);
+            Party { name: "", model, kinds, rank: of.rank, frame, step: of.step }
         });
         stacks.chain(obstacles).collect()
     }
@@ -141,11 +141,11 @@ pub(crate) fn merged(
         })
         .collect();
     let mut live = Live::of(carry(&model, &drive, &sources, &carries, &simulation), Vec::new());
-    let (mut banked, mut work) = (EnergySummary::default(), Work::default());
+    let (mut energy_before, mut work) = (EnergySummary::default(), Work::default());
     for island in &islands {
         // What is stored now is stored in the merged island.
         let own = EnergySummary { kinetic: 0.0, elastic: 0.0, stick: 0.0, ..island.energy() };
-        banked = plus(banked, &own);
+        energy_before = plus(energy_before, &own);
         let own = island.work();
         work.steps += own.steps;
         work.evaluations += own.evaluations;
@@ -156,6 +156,6 @@ pub(crate) fn merged(
     let (obstacles, model) = (plan.obstacles, Arc::new(model));
     let fixed = Fixed { members, obstacles, owners, model, drive, frame, simulation };
     let mut island = Island::of(fixed, live, logs, every);
-    (island.banked, island.work) = (banked, work);
+    (island.energy_before, island.work) = (energy_before, work);
     Ok(island)
 }

@@ -8,7 +8,7 @@ use barrelstack_dynamics::join::gap_between;
 use barrelstack_dynamics::space::Linear as _;
 use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
 
-use crate::island::{Island, Owner, Whose};
+use crate::island::{Island, Owner, StackBody};
 use crate::world::World;
 
 /// Distance (m) of two bodies up to which they are in the list.
@@ -75,7 +75,8 @@ impl Nearby {
         let mut places = self.made_for.clone();
         places.resize(world.count, Vec3::default());
         for island in islands.iter().flatten() {
-            if !island.is_awake() && !self.made_for.is_empty() {
+            // The numbers of a failed island may not be finite.
+            if island.live.ending == Some(Ending::Broken) && !self.made_for.is_empty() {
                 continue;
             }
             for (body, owner) in island.fixed.owners.iter().enumerate() {
@@ -97,10 +98,10 @@ impl Nearby {
             }
         }
         let rules = &world.crossing.rules;
-        let mut balls: Vec<(f64, f64, Whose)> = Vec::new();
+        let mut balls: Vec<(f64, f64, StackBody)> = Vec::new();
         for (stack, of) in world.stacks.iter().enumerate() {
-            for body in 0..of.sorts.len() {
-                let meets = rules[of.sorts[body]].iter().any(Option::is_some);
+            for body in 0..of.kinds.len() {
+                let meets = rules[of.kinds[body]].iter().any(Option::is_some);
                 if meets {
                     let half = of.reach[body] + 0.5 * MARGIN;
                     let x = places[of.first + body].x;
@@ -109,17 +110,17 @@ impl Nearby {
             }
         }
         balls.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-        let place = |(stack, body): Whose| places[world.stacks[stack].first + body];
-        let reach = |(stack, body): Whose| world.stacks[stack].reach[body];
-        let sort = |(stack, body): Whose| world.stacks[stack].sorts[body];
+        let place = |(stack, body): StackBody| places[world.stacks[stack].first + body];
+        let reach = |(stack, body): StackBody| world.stacks[stack].reach[body];
+        let kind = |(stack, body): StackBody| world.stacks[stack].kinds[body];
         let mut found: Vec<([Owner; 2], f64)> = Vec::new();
-        let mut open: Vec<(f64, Whose)> = Vec::new();
+        let mut open: Vec<(f64, StackBody)> = Vec::new();
         for (from, to, body) in balls {
             open.retain(|(end, _)| from <= *end);
             for (_, other) in &open {
                 let bodies = [body.min(*other), body.max(*other)];
                 let [one, two] = bodies;
-                if island_of[one.0] == island_of[two.0] || rules[sort(one)][sort(two)].is_none() {
+                if island_of[one.0] == island_of[two.0] || rules[kind(one)][kind(two)].is_none() {
                     continue;
                 }
                 let gap = (place(one) - place(two)).length() - reach(one) - reach(two);
@@ -138,7 +139,7 @@ impl Nearby {
                 }
                 for (body, of_body) in of.stack.model.bodies().iter().enumerate() {
                     if of_body.motion == Motion::Prescribed
-                        || rules[of.sorts[body]][obstacle.sorts[0]].is_none()
+                        || rules[of.kinds[body]][obstacle.kinds[0]].is_none()
                     {
                         continue;
                     }
@@ -338,13 +339,13 @@ pub(crate) fn gap(
         }
     };
     let [(_, first), (_, second)] = bodies.map(|owner| world.body(owner));
-    let turned = world.crossing.rules[first][second].is_some_and(|rule| rule.turned);
+    let turned = world.crossing.rules[first][second].is_some_and(|rule| rule.reversed);
     let [contactor, target] = if turned { [bodies[1], bodies[0]] } else { bodies };
-    let sorts = &world.crossing.sorts;
-    let ((one, sort), (other, sort_of_other)) = (world.body(contactor), world.body(target));
+    let kinds = &world.crossing.kinds;
+    let ((one, kind), (other, kind_of_other)) = (world.body(contactor), world.body(target));
     gap_between(
-        (one, pose(contactor), sorts[sort].nodes),
-        (other, pose(target), sorts[sort_of_other].surfaces),
+        (one, pose(contactor), kinds[kind].nodes),
+        (other, pose(target), kinds[kind_of_other].surfaces),
         enough,
     )
 }

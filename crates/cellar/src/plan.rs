@@ -181,7 +181,7 @@ impl Plan {
                 ));
             }
         }
-        let free = obstacles.ways_out();
+        let free = obstacles.paths_to_doors();
         let places: Vec<PlacePlan> = cellar
             .places
             .iter()
@@ -242,7 +242,7 @@ impl Plan {
             regions.push(Region { outline, kind: kind(at), label: stack.name.clone() });
         }
         for column in &cellar.columns {
-            let [lower, upper] = column_corners(column);
+            let [lower, upper] = column.corners();
             regions.push(Region::rectangle(lower, upper, RegionKind::Solid, ""));
         }
         let marks = cellar.places.iter().map(|place| (place.at, place.name.clone())).collect();
@@ -373,10 +373,10 @@ fn neighbors(
     }
     overlaps.sort_by_key(|(first, second, _)| (*first, *second));
     if let Some((first, second, depth)) = overlaps.first().copied() {
-        let more = if overlaps.len() > 1 {
-            format!(", and so do {} more pairs", overlaps.len() - 1)
-        } else {
-            String::new()
+        let more = match overlaps.len() - 1 {
+            0 => String::new(),
+            1 => ", and so does 1 more pair".to_owned(),
+            more => format!(", and so do {more} more pairs"),
         };
         let [one, two] = [&stacks[first], &stacks[second]];
         let [path, remedy] = if one.block != two.block {
@@ -437,33 +437,30 @@ fn walls(
         }
     }
     if let Some((at, depth, side)) = wrong.first().copied() {
-        let more = if wrong.len() > 1 {
-            format!(", as do {} more", wrong.len() - 1)
-        } else {
-            String::new()
+        let mut all: Vec<usize> = wrong.iter().map(|(at, ..)| *at).collect();
+        all.dedup();
+        let more = match all.len() - 1 {
+            0 => String::new(),
+            1 => ", as does 1 more".to_owned(),
+            more => format!(", as do {more} more"),
         };
+        let border = if cellar.room.walls { "wall" } else { "border of the room" };
         let block = stacks[at].block + 1;
         let message = format!(
-            "stack {} reaches {} into the {side} wall{more}: move the block, take fewer stacks, or enlarge the room",
+            "stack {} reaches {} into the {side} {border}{more}: move the block, take fewer stacks, or enlarge the room",
             stacks[at].name,
             meters(depth)
         );
-        let mut all: Vec<usize> = wrong.iter().map(|(at, ..)| *at).collect();
-        all.dedup();
         problems.push((cellar.host.error(&[&format!("block.{block}.first")], message), all));
     }
     let (distance, at, side) = nearest.filter(|_| cellar.room.walls)?;
     Some(NearWall { stack: stacks[at].name.clone(), side, distance: distance.max(0.0) })
 }
 
-fn column_corners(column: &crate::scenario::Column) -> [Point; 2] {
-    [-0.5, 0.5].map(|s| [column.at[0] + s * column.size[0], column.at[1] + s * column.size[1]])
-}
-
 /// Finds stacks in columns.
 fn columns(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems: &mut Problems) {
     for (index, column) in (1..).zip(&cellar.columns) {
-        let [lower, upper] = column_corners(column);
+        let [lower, upper] = column.corners();
         let shape = Convex::rectangle(lower, upper);
         let hit: Vec<usize> =
             (0..stacks.len()).filter(|at| footprints[*at].apart(&shape) < -TOUCH).collect();
@@ -506,7 +503,7 @@ fn doors(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems: 
     }
 }
 
-/// What takes floor, in a room.
+/// Footprints of the bodies that occupy the floor of a room.
 pub(crate) struct Obstacles<'a> {
     pub(crate) cellar: &'a Cellar,
     pub(crate) taken: Vec<&'a Convex>,
@@ -517,7 +514,7 @@ const CELL: f64 = 0.1;
 
 impl Obstacles<'_> {
     /// Returns, for each place of people, whether a path of the width of a person leads to a door; `None` without doors.
-    pub(crate) fn ways_out(&self) -> Vec<Option<bool>> {
+    pub(crate) fn paths_to_doors(&self) -> Vec<Option<bool>> {
         let cellar = self.cellar;
         if cellar.places.is_empty() || cellar.doors.is_empty() {
             return vec![None; cellar.places.len()];
@@ -525,13 +522,7 @@ impl Obstacles<'_> {
         let RoomSpec { length, width, walls, .. } = cellar.room;
         let half = 0.5 * PASSAGE;
         let mut grid = Grid::new([0.0; 2], [length, width], CELL);
-        for polygon in &self.taken {
-            grid.take(polygon, half);
-        }
-        for column in &cellar.columns {
-            let [lower, upper] = column_corners(column);
-            grid.take(&Convex::rectangle(lower, upper), half);
-        }
+        self.take_from(&mut grid);
         let near_wall = |[x, y]: Point| {
             let nearest = x.min(y).min(length - x).min(width - y);
             walls && nearest < half - 0.5 * CELL
@@ -564,14 +555,24 @@ impl Obstacles<'_> {
             .collect()
     }
 
+    /// Marks the floor that the middle of a person cannot reach next to bodies and columns.
+    fn take_from(&self, grid: &mut Grid) {
+        let half = 0.5 * PASSAGE;
+        for polygon in &self.taken {
+            grid.take(polygon, half);
+        }
+        for column in &self.cellar.columns {
+            let [lower, upper] = column.corners();
+            grid.take(&Convex::rectangle(lower, upper), half);
+        }
+    }
+
     /// `true` if a path of the width of a person leads through a zone along its longer side.
     pub(crate) fn is_passable(&self, from: Point, to: Point) -> bool {
         let axis = usize::from(to[1] - from[1] > to[0] - from[0]);
         let half = 0.5 * PASSAGE;
         let mut grid = Grid::new(from, to, CELL);
-        for polygon in &self.taken {
-            grid.take(polygon, half);
-        }
+        self.take_from(&mut grid);
         let across = 1 - axis;
         grid.take_where(|point| {
             point[across] - from[across] < half - 0.5 * CELL
@@ -598,7 +599,7 @@ impl Obstacles<'_> {
         let near: Vec<&&Convex> =
             self.taken.iter().filter(|polygon| polygon.apart(&zone) < 0.0).collect();
         let columns = self.cellar.columns.iter().map(|column| {
-            let [lower, upper] = column_corners(column);
+            let [lower, upper] = column.corners();
             Convex::rectangle(lower, upper)
         });
         let columns: Vec<Convex> = columns.filter(|column| column.apart(&zone) < 0.0).collect();
@@ -650,7 +651,7 @@ fn section(polygon: &Convex, axis: usize, at: f64) -> Option<[f64; 2]> {
 }
 
 /// Returns the plan of a body: the hull of points of its surface in a pose, from above.
-pub(crate) fn seen_from_above(points: &[Vec3], pose: &[f64; 7]) -> Convex {
+pub(crate) fn outline_in_plan(points: &[Vec3], pose: &[f64; 7]) -> Convex {
     let [x, y, _, w, a, b, c] = *pose;
     let turn = Quaternion { w, v: Vec3::new(a, b, c) }.matrix();
     let hull = points.iter().map(|point| {

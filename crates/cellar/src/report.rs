@@ -15,7 +15,7 @@ use crate::answer::Answer;
 use crate::plan::liters;
 use crate::sample::CELL;
 use crate::summary::{CellarSummary, Count, ShownStack, counted};
-use crate::words::{sentences, span, spans_of_shares, tone};
+use crate::words::{sentences, shown_run, span, spans_of_shares, tone};
 
 /// Returns the plan of a cellar with the fates of the stacks in the run that is shown, and the places where barrels end
 /// in all variants.
@@ -86,8 +86,14 @@ fn players(answer: &Answer) -> Option<Block> {
     };
     Some(Block::Players(Players {
         id: "players".into(),
-        caption: "One run, the most typical, in a view that can be turned, or from the front and from above.".into(),
-        panes: vec![pane(Sight::Across, "X", "From the front"), pane(Sight::Above, "Z", "From above")],
+        caption: format!(
+            "The run that is shown ({}), in a view that can be turned, or from the front and from above.",
+            shown_run(summary)
+        ),
+        panes: vec![
+            pane(Sight::Across, "X", "From the front"),
+            pane(Sight::Above, "Z", "From above"),
+        ],
         overlay: None,
         ground: Vec::new(),
     }))
@@ -103,11 +109,7 @@ pub fn document(answer: &Answer) -> Document {
     let caption = format!(
         "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades (barrels): share \
          of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
-        if summary.shown.variant == 0 {
-            "the room as stated".to_owned()
-        } else {
-            format!("variant {}, the most typical", summary.shown.variant)
-        }
+        shown_run(summary)
     );
     let mut blocks = vec![
         heading("Where barrels end"),
@@ -271,7 +273,7 @@ pub fn stacks(summary: &CellarSummary) -> Table {
             "All stacks, {}. Shares have their 95 % interval; times are counted from the start of the shaking. \
              Movement is the largest of a body that did not fall, as the median of the variants in which the stack \
              stands: inspect the largest first.",
-            crate::words::counted(summary.counted, "variant")
+            crate::words::plural(summary.counted, "variant")
         ),
         &summary.stacks,
         &[

@@ -33,15 +33,6 @@ pub struct BodyEnd {
     pub own: [f64; 7],
 }
 
-/// Another party of a contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Toucher {
-    /// A body, by its index in [`RoomRun::bodies`].
-    Body(usize),
-    /// An obstacle, by its index in [`Room::obstacles`](crate::Room::obstacles).
-    Obstacle(usize),
-}
-
 /// The first contact of a stack with a body of another stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {

@@ -49,7 +49,8 @@ pub struct Obstacle {
 /// Stacks and obstacles on one ground.
 #[derive(Clone, Debug)]
 pub struct Room {
-    /// The stacks. Their order does not affect any result but its order.
+    /// The stacks. Their order does not affect the motion of any body. Sums over stacks (impulses, forces on obstacles,
+    /// energies) may differ by rounding.
     pub stacks: Vec<Placed>,
     /// Walls and columns.
     pub obstacles: Vec<Obstacle>,
@@ -99,6 +100,16 @@ pub enum RoomFailure {
     Large {
         /// Number of bodies.
         bodies: u64,
+    },
+    /// Stacks have different gravity or integration methods.
+    #[error(
+        "stacks \"{first}\" and \"{second}\" differ in run.gravity or run.method: give all stacks of a room the same"
+    )]
+    Differ {
+        /// Name of the first stack.
+        first: String,
+        /// Name of a stack that differs from it.
+        second: String,
     },
     /// Two stacks or obstacles have the same name.
     #[error("two stacks or obstacles are named \"{name}\": give each its own name")]

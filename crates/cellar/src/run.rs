@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use barrelstack::overlap::ALLOWED;
 use barrelstack::pool;
+use barrelstack::run::check_kept;
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::space::Linear as _;
 use barrelstack_dynamics::{BodyId, Vec3};
@@ -36,13 +37,12 @@ pub struct Advance {
     pub end_time: f64,
     /// Number of stacks that move.
     pub moving: usize,
-    /// Stacks that have come to rest since the last call, by their indices. A stack that is hit later moves again.
-    pub rested: Vec<usize>,
 }
 
 /// Runs a room to rest.
 ///
-/// The observer receives the progress at least every second, and may stop the run; the results until then are returned.
+/// After all stacks have settled, the observer receives the progress between windows, about twice a second, and may stop
+/// the run; the results until then are returned.
 ///
 /// # Errors
 /// If a stack cannot be built or does not stand, or stacks or obstacles overlap.
@@ -54,6 +54,14 @@ pub fn run(
     let world = World::of(room, settings.threads)?;
     let rate = room.stacks[0].scenario.record.frame_rate;
     let every = settings.frames.then_some(1.0 / rate);
+    if settings.frames {
+        // A frame has the pose and the speed of every body.
+        let frames = (world.end_time * rate + 1.0, world.count, 8);
+        check_kept(frames, (0.0, 0)).map_err(|failure| RoomFailure::Stack {
+            name: room.stacks[0].name.clone(),
+            failure: Box::new(failure),
+        })?;
+    }
     let alone = |stack| Some(Island::alone(&world, stack, every));
     let islands: Vec<Option<Island>> = (0..world.stacks.len()).map(alone).collect();
     let places = (0..islands.len()).map(|stack| (stack, 0)).collect();
@@ -98,29 +106,19 @@ impl Running<'_> {
         observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
     ) -> Result<bool, RoomFailure> {
         let mut called: Option<Instant> = None;
-        let mut reported = vec![false; self.world.stacks.len()];
         let mut windows = 0_u32;
         loop {
-            self.keep_rolling();
+            self.keep_rolling(f64::from(windows) * WINDOW);
             let awake = || self.islands.iter().flatten().filter(|island| island.is_awake());
             let done = awake().next().is_none();
             if done || called.is_none_or(|at| at.elapsed() >= PATIENCE) {
                 called = Some(Instant::now());
                 let end_time = self.world.end_time;
-                let mut now = Advance {
+                let now = Advance {
                     time: awake().map(Island::time).fold(end_time, f64::min),
                     end_time,
                     moving: awake().map(|island| island.fixed.members.len()).sum(),
-                    rested: Vec::new(),
                 };
-                for island in self.islands.iter().flatten() {
-                    for member in &island.fixed.members {
-                        let rests = !island.is_awake();
-                        if rests && !std::mem::replace(&mut reported[member.stack], rests) {
-                            now.rested.push(member.stack);
-                        }
-                    }
-                }
                 if observer(&now).is_break() {
                     return Ok(true);
                 }
@@ -261,8 +259,9 @@ impl Running<'_> {
         Ok(all)
     }
 
-    /// Lets islands go on that rest but for a barrel that rolls toward another stack or an obstacle.
-    fn keep_rolling(&mut self) {
+    /// Lets islands go on, from a time (s), that rest but for a barrel that rolls toward another stack or an obstacle.
+    fn keep_rolling(&mut self, now: f64) {
+        let world = self.world;
         let mut goes_on = Vec::new();
         for (number, island) in self.islands.iter().enumerate() {
             let Some(island) = island else { continue };
@@ -275,6 +274,10 @@ impl Running<'_> {
         }
         for number in goes_on {
             if let Some(island) = &mut self.islands[number] {
+                // An island that has rested for some time has moved along with the ground until now.
+                if island.time() < now - WINDOW {
+                    island.advance_to(world, now);
+                }
                 island.live.ending = None;
                 island.live.not_before = island.time() + ROLLS;
             }
@@ -292,7 +295,9 @@ impl Running<'_> {
             let apart = level(other - place);
             let along = apart.dot(velocity);
             let aside = apart.cross(velocity).length();
-            along > 0.0 && aside < (reach + radius) * velocity.length()
+            let speed = velocity.length();
+            // Some part of the other body is ahead, even if its middle is not, as for a long wall.
+            along > -radius * speed && aside < (reach + radius) * speed
         };
         let stacks = (0..world.stacks.len()).filter(|stack| *stack != own);
         let meets_stack = stacks.clone().any(|stack| {

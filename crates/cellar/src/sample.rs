@@ -15,7 +15,7 @@ use barrelstack_input::fnv1a;
 use barrelstack_space::Ground;
 
 use crate::geometry::{Convex, Grid};
-use crate::plan::{Obstacles, Plan, moved, seen_from_above};
+use crate::plan::{Obstacles, Plan, moved, outline_in_plan};
 use crate::result::{RoomRun, StackEnd};
 use crate::room::{Obstacle, Placed, Room, RoomFailure, Settings};
 use crate::run::{Advance, run};
@@ -210,7 +210,7 @@ impl Prepared {
             variant,
             valid: stacks.iter().all(|stack| stack.valid),
             aisles: aisles.collect(),
-            ways_out: taken.ways_out(),
+            paths_to_doors: taken.paths_to_doors(),
             obstacles: run
                 .obstacles
                 .iter()
@@ -237,7 +237,7 @@ impl Prepared {
         let of = |(at, end): (usize, &StackEnd)| {
             let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;
             let bodies = &run.bodies[end.bodies.clone()];
-            bodies.iter().zip(surfaces).map(|(body, points)| seen_from_above(points, &body.to))
+            bodies.iter().zip(surfaces).map(|(body, points)| outline_in_plan(points, &body.to))
         };
         run.stacks.iter().enumerate().flat_map(|stack| of(stack).collect::<Vec<_>>()).collect()
     }
@@ -270,8 +270,8 @@ impl Prepared {
         }
     }
 
-    /// Returns the time (s) from which on an aisle is blocked until the end; `None` if it is passable at the end, or
-    /// never was.
+    /// Returns the time (s) from which on an aisle is blocked until the end, which is the start of the shaking if stacks
+    /// and columns block it as they stand; `None` if it is passable at the end.
     fn blocked_at(
         &self,
         from: [f64; 2],
@@ -279,12 +279,15 @@ impl Prepared {
         run: &RoomRun,
         end: &Obstacles<'_>,
     ) -> Option<f64> {
-        // Bodies whose middle is farther than a barrel is long cannot reach into the aisle.
+        // No body reaches farther than this distance (m) from its middle.
         const REACH: f64 = 2.0;
         let standing =
             Obstacles { cellar: &self.cellar, taken: self.plan.footprints.iter().collect() };
-        if end.is_passable(from, to) || !standing.is_passable(from, to) {
+        if end.is_passable(from, to) {
             return None;
+        }
+        if !standing.is_passable(from, to) {
+            return Some(self.onset);
         }
         let near = |pose: &[f64; 7]| {
             [0, 1]
@@ -298,7 +301,7 @@ impl Prepared {
                 let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;
                 for (pose, points) in frames.poses[frame].iter().zip(surfaces) {
                     if near(pose) {
-                        outlines.push(seen_from_above(points, pose));
+                        outlines.push(outline_in_plan(points, pose));
                     }
                 }
             }
@@ -353,7 +356,7 @@ fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
         *restitution = room.restitution.unwrap_or(*restitution);
     }
     if let Some(wanted) = room.friction {
-        rub(&mut law, wanted);
+        set_friction(&mut law, wanted);
     }
     let interface = law_in_space("obstacle", &law);
     let block = |name: &str, lower: [f64; 2], upper: [f64; 2]| Obstacle {
@@ -374,15 +377,14 @@ fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
         ]);
     }
     all.extend(cellar.columns.iter().map(|column| {
-        let [lower, upper] = [-0.5, 0.5]
-            .map(|s| [column.at[0] + s * column.size[0], column.at[1] + s * column.size[1]]);
+        let [lower, upper] = column.corners();
         block(&column.name, lower, upper)
     }));
     Ok(all)
 }
 
 /// Sets the coefficient of the friction of a law.
-fn rub(law: &mut Interface, wanted: f64) {
+fn set_friction(law: &mut Interface, wanted: f64) {
     match &mut law.friction {
         Friction::Coulomb { coefficient, static_coefficient, .. } => {
             let ratio = if *coefficient > 0.0 { *static_coefficient / *coefficient } else { 1.0 };
@@ -405,7 +407,7 @@ pub struct Case {
     /// The aisles.
     pub aisles: Vec<AisleCase>,
     /// For each place of people, whether a path to a door is left; `None` without doors.
-    pub ways_out: Vec<Option<bool>>,
+    pub paths_to_doors: Vec<Option<bool>>,
     /// Walls and columns.
     pub obstacles: Vec<ObstacleCase>,
     /// Cells of the map that fallen barrels cover at the end.

@@ -121,6 +121,13 @@ section! {
     at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
 }
 
+impl Column {
+    /// Returns the corners (m) with the smallest and with the largest coordinates.
+    pub fn corners(&self) -> [[f64; 2]; 2] {
+        [-0.5, 0.5].map(|s| [0, 1].map(|axis| self.at[axis] + s * self.size[axis]))
+    }
+}
+
 /// Rows of equal stacks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
@@ -335,7 +342,7 @@ impl Cellar {
 
     /// `true` if a text, or a text that it extends, is of the kind of a cellar. A text that cannot be read is not.
     pub fn is_stated(path: Option<&Path>, bytes: &[u8]) -> bool {
-        stated(path, bytes, 8)
+        is_cellar(path, bytes, 8)
     }
 
     /// Returns the number of barrels.
@@ -504,7 +511,7 @@ impl Cellar {
                     format!("a column has sides of {a} m and {b} m: give it two positive sides");
                 return Err(self.host.error(&[&format!("column.{at}.size")], message));
             }
-            let ends = [-0.5, 0.5].map(|s| [column.at[0] + s * a, column.at[1] + s * b]);
+            let ends = column.corners();
             if !ends.into_iter().all(inside) {
                 return outside(format!("column.{at}.at"));
             }
@@ -677,7 +684,7 @@ fn write_block(block: &Block) -> Table {
     table
 }
 
-fn stated(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
+fn is_cellar(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
     let Ok(text) = std::str::from_utf8(bytes) else { return false };
     let mut sources = barrelstack::scenario::tree::Sources::default();
     sources.files.push(barrelstack::scenario::tree::SourceFile {
@@ -697,7 +704,7 @@ fn stated(path: Option<&Path>, bytes: &[u8], depth: u32) -> bool {
             let Some(folder) = path.and_then(Path::parent) else { return false };
             let next = folder.join(name);
             barrelstack_input::system::read(&next, 1 << 20)
-                .is_ok_and(|bytes| stated(Some(&next), &bytes, depth - 1))
+                .is_ok_and(|bytes| is_cellar(Some(&next), &bytes, depth - 1))
         }
         (None, _) => false,
     }

@@ -89,7 +89,7 @@ described! {
         pub share_by_themselves: Mean,
         /// Share of stacks that are knocked over, likewise.
         pub share_knocked_over: Mean,
-        /// How far a collapse spreads: stacks that fall, for each that falls by itself; null if none falls.
+        /// How far a collapse spreads: stacks that fall, for each that falls by itself; null if none falls by itself.
         pub spread: Option<f64> as "1",
         /// Distribution of the number of stacks that fall.
         pub stacks_fallen: Range as "1",
@@ -208,6 +208,8 @@ described! {
     pub struct ShownRoom {
         /// Number of the variant; 0 is the room as stated.
         pub variant: u32,
+        /// True if this run is the most typical of those that are counted.
+        pub typical: bool,
         /// Time in the record at which the last body came to rest.
         pub end_time: f64 as "s",
         /// Row of the first stack that falls.
@@ -390,7 +392,19 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         wall_seconds: None,
     };
     summary.inspection = inspection(&summary.stacks);
-    summary.headline = crate::words::headline(&summary);
+    summary.shown.typical = typical(cases) == Some(case.variant);
+    summary.headline = if !case.valid {
+        "The computation of the run that is shown failed, so it has no result.".to_owned()
+    } else if run.interrupted {
+        format!(
+            "The run that is shown was stopped at {:.1} s of the record; {} of {} stacks had fallen until then.",
+            run.end_time,
+            summary.shown.by_themselves + summary.shown.knocked_over,
+            summary.plan.stacks
+        )
+    } else {
+        crate::words::headline(&summary)
+    };
     summary
 }
 
@@ -467,7 +481,7 @@ fn places(prepared: &Prepared, all: &[&Case]) -> Vec<PlaceAnswer> {
     let doors = !prepared.cellar.doors.is_empty();
     let one = |(at, place): (usize, &crate::scenario::Place)| PlaceAnswer {
         name: place.name.clone(),
-        leads_out: doors.then(|| Count::of(all, |case| case.ways_out[at] == Some(true))),
+        leads_out: doors.then(|| Count::of(all, |case| case.paths_to_doors[at] == Some(true))),
     };
     prepared.cellar.places.iter().enumerate().map(one).collect()
 }
@@ -513,6 +527,7 @@ fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
     };
     ShownRoom {
         variant: case.variant,
+        typical: false,
         end_time: run.end_time,
         starts: first(case).map(|at| plan.stacks[at].row),
         by_themselves,

@@ -1,28 +1,28 @@
 //! Results of a cellar as sentences.
 
 use barrelstack::variants::Range;
-use barrelstack::variants::words::percent;
+use barrelstack::variants::words::{ENOUGH, percent};
 use barrelstack_report::{Tone, listed, measured};
 
 use crate::plan::liters;
 use crate::summary::{CellarSummary, Count};
 
-/// Number of variants needed for the verdict that a room stands.
-const ENOUGH: u32 = 8;
-
 /// Returns a number of things, such as "1 stack" or "3 stacks".
-pub(crate) fn counted(count: u32, thing: &str) -> String {
+pub(crate) fn plural(count: u32, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Returns a share with its interval, such as "28 of 32 variants (88 %, 95 % interval 72 % to 95 %)".
 pub(crate) fn share(count: &Count, of: u32) -> String {
+    if of == 1 {
+        return if count.of_variants == 0 { "no run" } else { "the only run" }.to_owned();
+    }
     let [low, high] = count.interval.map(percent);
     let share = count.share.map_or_else(String::new, |share| format!("{}, ", percent(share)));
     format!(
         "{} of {} ({share}95 % interval {low} to {high})",
         count.of_variants,
-        counted(of, "variant")
+        plural(of, "variant")
     )
 }
 
@@ -30,6 +30,15 @@ pub(crate) fn share(count: &Count, of: u32) -> String {
 pub(crate) fn span(range: &Range, decimals: usize, unit: &str) -> String {
     let [low, high] = [range.p05, range.p95].map(|value| format!("{value:.decimals$}"));
     if low == high { format!("{low} {unit}") } else { format!("{low} to {high} {unit}") }
+}
+
+/// Returns the name of the run that is shown.
+pub(crate) fn shown_run(summary: &CellarSummary) -> String {
+    match (summary.shown.variant, summary.shown.typical) {
+        (0, _) => "the room as stated".to_owned(),
+        (number, true) => format!("variant {number}, the most typical"),
+        (number, false) => format!("variant {number}"),
+    }
 }
 
 /// Returns the result of the run that is shown, in the sentence that people repeat.
@@ -48,9 +57,10 @@ pub fn headline(summary: &CellarSummary) -> String {
             format!("{stand}.")
         } else {
             format!(
-                "{stand} in the most typical run, but at least one falls in {} of {}.",
+                "{stand} in the run that is shown ({}), but at least one falls in {} of {}.",
+                shown_run(summary),
                 some.of_variants,
-                counted(summary.counted, "variant")
+                plural(summary.counted, "variant")
             )
         };
     }
@@ -105,7 +115,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     let mut all = vec![match of {
         0 => "No run has a valid result.".to_owned(),
         1 => format!(
-            "One run of the room, {}; with variants of the room, shares have a meaning.",
+            "This is one run of the room, {}; a share needs several variants.",
             if summary.shown.variant == 0 { "as stated" } else { "one variant" }
         ),
         _ => format!(
@@ -189,7 +199,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     if !summary.broken.is_empty() {
         all.push(format!(
             "The computation of {} failed; they are not counted.",
-            counted(u32::try_from(summary.broken.len()).unwrap_or(u32::MAX), "variant")
+            plural(u32::try_from(summary.broken.len()).unwrap_or(u32::MAX), "variant")
         ));
     }
     all

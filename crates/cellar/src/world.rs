@@ -17,9 +17,9 @@ use barrelstack_space::Stack;
 use barrelstack_space::run::Standing;
 use barrelstack_space::step::steps_at_fixed;
 
+use crate::contact_kinds::ContactKinds;
 use crate::island::Owner;
 use crate::room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure};
-use crate::sorts::Sorts;
 
 /// A stack of a room.
 pub(crate) struct StackOf<'a> {
@@ -32,7 +32,7 @@ pub(crate) struct StackOf<'a> {
     pub(crate) running: Running,
     pub(crate) thresholds: Thresholds,
     pub(crate) simulation: Simulation,
-    pub(crate) sorts: Vec<usize>,
+    pub(crate) kinds: Vec<usize>,
     /// Radius (m) of every body about its center of mass.
     pub(crate) reach: Vec<f64>,
     pub(crate) rank: usize,
@@ -44,7 +44,7 @@ pub(crate) struct StackOf<'a> {
 /// An obstacle of a room.
 pub(crate) struct ObstacleOf {
     pub(crate) model: Model<Spatial>,
-    pub(crate) sorts: [usize; 1],
+    pub(crate) kinds: [usize; 1],
     pub(crate) rank: usize,
     /// Longest step (s) with which the contacts of the obstacle are integrated.
     pub(crate) step: f64,
@@ -81,7 +81,7 @@ impl<'a> World<'a> {
         let standing = pool::map_on(threads, &room.stacks, stand, &|_| ());
         let mut ranks: Vec<usize> = (0..room.stacks.len()).collect();
         ranks.sort_by(|a, b| room.stacks[*a].name.cmp(&room.stacks[*b].name));
-        let (mut sorts, mut stacks, mut first) = (Sorts::default(), Vec::new(), 0);
+        let (mut kinds, mut stacks, mut first) = (ContactKinds::default(), Vec::new(), 0);
         for (number, (placed, standing)) in room.stacks.iter().zip(standing).enumerate() {
             let scenario = &placed.scenario;
             let Standing { stack, mut state, mut scratch, .. } =
@@ -104,7 +104,7 @@ impl<'a> World<'a> {
                 running: Running { state, scratch, stepper },
                 thresholds: thresholds(scenario),
                 simulation,
-                sorts: sorts.of_stack(&stack, &scenario.scene),
+                kinds: kinds.of_stack(&stack, &scenario.scene),
                 reach: stack.model.bodies().iter().map(Body::reach).collect(),
                 rank: room.obstacles.len() + rank,
                 frame: Frame {
@@ -116,12 +116,12 @@ impl<'a> World<'a> {
             });
             first += stacks[number].stack.parts.len();
         }
-        let sort = sorts.of_obstacle();
+        let kind = kinds.of_obstacle();
         let obstacles = room.obstacles.iter().enumerate();
         let obstacles = obstacles
-            .map(|(rank, obstacle)| obstacle_of(obstacle, rank, sort, &stacks))
+            .map(|(rank, obstacle)| obstacle_of(obstacle, rank, kind, &stacks))
             .collect::<Result<_, _>>()?;
-        let crossing = Arc::new(sorts.crossing());
+        let crossing = Arc::new(kinds.crossing());
         Ok(Self { room, stacks, obstacles, crossing, end_time: end, count: first })
     }
 
@@ -133,16 +133,16 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Returns a body, and its sort.
+    /// Returns a body, and its contact kind.
     pub(crate) fn body(&self, owner: Owner) -> (&Body<Spatial>, usize) {
         match owner {
             Owner::Stack((stack, body)) => {
                 let of = &self.stacks[stack];
-                (&of.stack.model.bodies()[body], of.sorts[body])
+                (&of.stack.model.bodies()[body], of.kinds[body])
             }
             Owner::Obstacle(obstacle) => {
                 let of = &self.obstacles[obstacle];
-                (&of.model.bodies()[0], of.sorts[0])
+                (&of.model.bodies()[0], of.kinds[0])
             }
         }
     }
@@ -194,6 +194,11 @@ fn check(room: &Room) -> Result<(), RoomFailure> {
     if bodies > MOST_BODIES {
         return Err(RoomFailure::Large { bodies });
     }
+    let settings = |placed: &Placed| (placed.scenario.run.gravity, placed.scenario.run.method);
+    let first = &room.stacks[0];
+    if let Some(other) = room.stacks.iter().find(|placed| settings(placed) != settings(first)) {
+        return Err(RoomFailure::Differ { first: first.name.clone(), second: other.name.clone() });
+    }
     let stacks = room.stacks.iter().map(|stack| &stack.name);
     let mut names: Vec<&String> = stacks.chain(room.obstacles.iter().map(|of| &of.name)).collect();
     names.sort_unstable();
@@ -206,7 +211,7 @@ fn check(room: &Room) -> Result<(), RoomFailure> {
 fn obstacle_of(
     obstacle: &Obstacle,
     rank: usize,
-    sort: usize,
+    kind: usize,
     stacks: &[StackOf<'_>],
 ) -> Result<ObstacleOf, RoomFailure> {
     let least = obstacle.half.iter().copied().fold(f64::INFINITY, f64::min);
@@ -241,5 +246,5 @@ fn obstacle_of(
         whole_step_depth: vec![depth],
         ..own.clone()
     });
-    Ok(ObstacleOf { model, sorts: [sort], rank, step })
+    Ok(ObstacleOf { model, kinds: [kind], rank, step })
 }

@@ -5,8 +5,6 @@ use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw};
 
 use crate::common::{assert_near, free, on, room};
 
-const G: f64 = 9.80665;
-
 /// A block of 50 kg on a smooth floor with a velocity (m/s).
 fn block(velocity: f64, stiffness: f64) -> String {
     format!(
@@ -61,6 +59,7 @@ fn two_equal_blocks_pound_as_in_closed_form() {
     println!("first contact {:.6} s against {first:.6} s", meeting.time);
     assert!((meeting.time - first).abs() < 3e-5, "{meeting:?}");
     println!("impulse {} against {}", meeting.impulse, 2.0 * mass * speed);
+    // measured 8e-5
     assert_near(meeting.impulse, 2.0 * mass * speed, 1e-3);
     let wall = &run.obstacles[0];
     println!("wall {:?} against {}, first {:?}", wall.impulse, 2.0 * mass * speed, wall.first);
@@ -69,7 +68,8 @@ fn two_equal_blocks_pound_as_in_closed_form() {
     let together = std::f64::consts::PI / (2.0 * stiffness / mass).sqrt();
     let peak = speed * (0.5 * mass * stiffness).sqrt();
     println!("peak {} against {peak}; {} at the wall", meeting.peak, wall.peak);
-    assert_near(meeting.peak, peak, 1e-3);
+    // measured 4e-6
+    assert_near(meeting.peak, peak, 1e-4);
     assert_near(wall.peak, speed * (mass * stiffness).sqrt(), 1e-3);
     // While two springs are in contact, B moves by half of the distance that A would have moved: v T / 2.
     let away = first + together + (gap - 0.5 * speed * together) / speed;
@@ -158,7 +158,7 @@ fn a_barrel_that_rolls_into_a_wall_is_thrown_back_by_the_rebound_law() {
     let (first, body) = run.obstacles[0].first.unwrap();
     assert!((first - gap / speed).abs() < 1e-5 && body == 0);
     // The wall pushes along its normal only: the weight stays on the floor.
-    assert!(run.bodies[0].fate.moved.z.abs() < 1e-3 && G > 9.8);
+    assert!(run.bodies[0].fate.moved.z.abs() < 1e-3);
 }
 
 /// Returns the positions at the end, in the room, of two blocks that pound and of which the second meets a wall. The

@@ -70,7 +70,8 @@ fn a_stack_that_falls_on_its_neighbors_is_the_first_and_they_are_touched() {
         let expected = lost.zip(stack.touched).is_some_and(|(lost, touch)| touch.time <= lost);
         assert_eq!(stack.knocked_over, expected);
     }
-    assert!(run.energy.unwrap().residual_ratio() < 1e-3);
+    // measured 3.9e-7
+    assert!(run.energy.unwrap().residual_ratio() < 1e-5);
     // Threads and the order of the stacks change no bit.
     assert_eq!(bits(&run), bits(&on(1, &room)));
     let mut turned = room;

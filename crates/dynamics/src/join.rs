@@ -69,31 +69,31 @@ impl Frame {
     }
 }
 
-/// Sort of a body: how many of its solids meet bodies of other parties. These come first in its lists.
+/// Contact kind of a body: how many of its solids meet bodies of other parties. These come first in its lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Sort {
+pub struct ContactKind {
     /// Number of node sets.
     pub nodes: usize,
     /// Number of surfaces.
     pub surfaces: usize,
 }
 
-/// Contact between bodies of two sorts.
+/// Contact between bodies of two contact kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rule {
-    /// `true` if the body of the second sort is the contactor.
-    pub turned: bool,
+    /// `true` if the body of the second contact kind is the contactor.
+    pub reversed: bool,
     /// Index of the law among the interfaces of the party of the first body, if it supplies the law, and of that of the
     /// second body, if that one does.
     pub laws: [InterfaceId; 2],
 }
 
-/// Contacts between bodies of different parties, by their sorts.
+/// Contacts between bodies of different parties, by their contact kinds.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Crossing {
-    /// The sorts.
-    pub sorts: Vec<Sort>,
-    /// For every two sorts, given by the sort of the body that comes first, the rule; `None` if they never touch.
+    /// The contact kinds.
+    pub kinds: Vec<ContactKind>,
+    /// For every two contact kinds, given by the contact kind of the body that comes first, the rule; `None` if they never touch.
     pub rules: Vec<Vec<Option<Rule>>>,
 }
 
@@ -104,8 +104,8 @@ pub struct Party<'a> {
     pub name: &'a str,
     /// Its own model.
     pub model: &'a Model<Spatial>,
-    /// Sort of every body.
-    pub sorts: &'a [usize],
+    /// Contact kind of every body.
+    pub kinds: &'a [usize],
     /// Rank: of two parties that meet, that of the lower rank supplies the law.
     pub rank: usize,
     /// Placement in the joined model.
@@ -114,13 +114,13 @@ pub struct Party<'a> {
     pub step: f64,
 }
 
-/// A model joined from several parties, and its time step (s), the shortest of theirs.
+/// Joins the models of several parties. Returns the model and its time step (s), the shortest step of all parties.
 ///
 /// # Errors
 /// If names of bodies repeat.
 ///
 /// # Panics
-/// If a party has not one sort for each body, or there is no party.
+/// If a party has not one contact kind for each body, or there is no party.
 pub fn joined(
     parties: &[Party<'_>],
     crossing: &Arc<Crossing>,
@@ -132,12 +132,12 @@ pub fn joined(
         bodies: Vec::new(),
         parties: Vec::new(),
         crossing: Arc::clone(crossing),
-        most: crossing.sorts.iter().map(|sort| sort.nodes).max().unwrap_or(0)
-            * crossing.sorts.iter().map(|sort| sort.surfaces).max().unwrap_or(0),
+        most: crossing.kinds.iter().map(|kind| kind.nodes).max().unwrap_or(0)
+            * crossing.kinds.iter().map(|kind| kind.surfaces).max().unwrap_or(0),
     };
     for (number, party) in parties.iter().enumerate() {
-        let Party { name, model, sorts, rank, frame, .. } = *party;
-        assert_eq!(sorts.len(), model.bodies.len(), "one sort for each body");
+        let Party { name, model, kinds, rank, frame, .. } = *party;
+        assert_eq!(kinds.len(), model.bodies.len(), "one kind for each body");
         let (first, law) = (bodies.len(), interfaces.len());
         bodies.extend(model.bodies.iter().map(|body| Body {
             name: format!("{name}/{}", body.name),
@@ -159,7 +159,7 @@ pub fn joined(
             element
         }));
         depths.extend(&model.substepping.whole_step_depth);
-        foreign.bodies.extend(sorts.iter().map(|sort| (number, *sort)));
+        foreign.bodies.extend(kinds.iter().map(|kind| (number, *kind)));
         foreign.parties.push((rank, law));
     }
     let Pairs::Listed { pairs, couples } = Pairs::listed(pairs) else { unreachable!("listed") };

@@ -28,7 +28,7 @@ pub(crate) enum Pairs {
         /// Number of pair indices that are reserved for every two bodies.
         most: usize,
     },
-    /// The pairs within each party are stored; those between parties follow from the sorts of their bodies, since
+    /// The pairs within each party are stored; those between parties follow from the contact kinds of their bodies, since
     /// their number would be quadratic in the number of bodies.
     Joined {
         /// The pairs within parties; those between parties have higher numbers.
@@ -43,11 +43,11 @@ pub(crate) enum Pairs {
 /// Pairs between the parties of a joined model.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Foreign {
-    /// Party and sort of every body.
+    /// Party and contact kind of every body.
     pub(crate) bodies: Vec<(usize, usize)>,
     /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
-    /// Laws between sorts.
+    /// Laws between contact kinds.
     pub(crate) crossing: Arc<Crossing>,
     /// Number of pair indices that are reserved for every two bodies.
     pub(crate) most: usize,
@@ -65,11 +65,11 @@ impl Foreign {
         let rule = self.crossing.rules[one][other]?;
         let ((rank, law), (other_rank, other_law)) = (self.parties[first], self.parties[second]);
         let law = if rank < other_rank { law + rule.laws[0] } else { other_law + rule.laws[1] };
-        let sorts = &self.crossing.sorts;
-        Some(if rule.turned {
-            (b, a, law, [sorts[other].nodes, sorts[one].surfaces])
+        let kinds = &self.crossing.kinds;
+        Some(if rule.reversed {
+            (b, a, law, [kinds[other].nodes, kinds[one].surfaces])
         } else {
-            (a, b, law, [sorts[one].nodes, sorts[other].surfaces])
+            (a, b, law, [kinds[one].nodes, kinds[other].surfaces])
         })
     }
 }

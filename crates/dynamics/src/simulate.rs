@@ -259,7 +259,7 @@ impl<S: Space<Real = f64>> Stepper<S> {
         }
     }
 
-    /// Takes one step that ends at a time (s) at the latest, earlier if the step is longer than usual.
+    /// Takes one step, or a shorter one that ends at a time (s) if the step would end later.
     ///
     /// # Errors
     /// As [`Stepper::step`].

@@ -200,7 +200,7 @@ pub struct Shown<'a> {
     pub leaves_at: Option<f64>,
 }
 
-/// Returns the drawing of many bodies at rest on one floor, such as those of the stacks of a room, at the times (s) of
+/// Returns the drawing of many bodies on one floor, such as those of the stacks of a room, at the times (s) of
 /// their frames. The scene across the barrels also has all bodies in three dimensions.
 pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     let [right, up] = sight.page();

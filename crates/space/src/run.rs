@@ -161,10 +161,11 @@ pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
 }
 
 /// Returns the latest end (s) of a run; rejects a run that would not finish within a day or would not fit into memory.
-///
-/// # Errors
-/// If the run would be too long or need too much memory.
-pub fn affordable(scenario: &Scenario, stack: &Stack, ground: &Ground) -> Result<f64, RunFailure> {
+pub(crate) fn affordable(
+    scenario: &Scenario,
+    stack: &Stack,
+    ground: &Ground,
+) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
     // A frame has 13 numbers of every body: position, quaternion, velocity and spin.

@@ -19,7 +19,7 @@ const STANDS: f64 = 0.05;
 
 /// Number of variants needed for the verdict "Stands". With seven variants of which none falls, up
 /// to 35 % of such stacks may still fall.
-const ENOUGH: u32 = 8;
+pub const ENOUGH: u32 = 8;
 
 /// Verdict on a stack in one plane or in space, ordered from best to worst.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]

@@ -171,7 +171,7 @@ impl Host {
     }
 
     /// Returns the value at a path such as `block.2.levels`; items of lists are identified by their name or number.
-    pub fn node(&self, path: &str) -> Option<&Node> {
+    fn node(&self, path: &str) -> Option<&Node> {
         merge::node_at(&self.table, &path.split('.').collect::<Vec<_>>())
     }
 

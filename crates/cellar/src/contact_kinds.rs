@@ -1,16 +1,16 @@
-//! Sorts of bodies, and the laws between bodies of different stacks.
+//! Contact kinds of bodies, and the laws between bodies of different stacks.
 //!
 //! Bodies of two stacks touch as bodies of one stack that fall on each other do.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::{Scene, SpatialScene, StackPair};
-use barrelstack_dynamics::join::{Crossing, Rule, Sort};
+use barrelstack_dynamics::join::{ContactKind, Crossing, Rule};
 use barrelstack_dynamics::{Motion, Solid};
 use barrelstack_space::Stack;
 
-/// Kind of a body that meets foreign bodies.
+/// Role of a body toward bodies of other stacks.
 #[derive(Clone, Debug, PartialEq)]
-enum Kind {
+enum Role {
     /// It meets none.
     Ground,
     Rack,
@@ -21,69 +21,72 @@ enum Kind {
     Obstacle,
 }
 
-/// Sorts of the bodies of a room, and the laws of all free scenes.
+/// Contact kinds of the bodies of a room, and the laws of all free scenes.
 #[derive(Default)]
-pub(crate) struct Sorts<'a> {
-    all: Vec<(Kind, Sort)>,
+pub(crate) struct ContactKinds<'a> {
+    all: Vec<(Role, ContactKind)>,
     scenes: Vec<&'a SpatialScene>,
 }
 
-impl<'a> Sorts<'a> {
-    /// Returns the sort of every body of a stack.
+impl<'a> ContactKinds<'a> {
+    /// Returns the contact kind of every body of a stack.
     pub(crate) fn of_stack(&mut self, stack: &Stack, scene: &'a Scene) -> Vec<usize> {
         let free = match scene {
             Scene::Spatial(scene) => {
                 let known =
                     self.scenes.iter().position(|other| other.interfaces == scene.interfaces);
-                let book = known.unwrap_or_else(|| {
+                let scene_index = known.unwrap_or_else(|| {
                     self.scenes.push(scene);
                     self.scenes.len() - 1
                 });
-                Some((scene, book))
+                Some((scene, scene_index))
             }
             Scene::Stack { .. } | Scene::Free(_) => None,
         };
         let bodies = stack.model.bodies().iter().zip(&stack.parts).enumerate();
         bodies
             .map(|(id, (body, part))| {
-                let kind = match part.kind {
-                    PartKind::Ground => Kind::Ground,
-                    PartKind::Rack => Kind::Rack,
-                    PartKind::Barrel => Kind::Barrel,
-                    PartKind::Device | PartKind::Wine => Kind::Device,
-                    PartKind::Body => free.map_or(Kind::Ground, |(scene, book)| {
+                let role = match part.kind {
+                    PartKind::Ground => Role::Ground,
+                    PartKind::Rack => Role::Rack,
+                    PartKind::Barrel => Role::Barrel,
+                    PartKind::Device | PartKind::Wine => Role::Device,
+                    PartKind::Body => free.map_or(Role::Ground, |(scene, scene_index)| {
                         let fixed = body.motion == Motion::Prescribed;
-                        Kind::Free(book, scene.bodies[id - 1].kind().to_owned(), fixed)
+                        Role::Free(scene_index, scene.bodies[id - 1].kind().to_owned(), fixed)
                     }),
                 };
                 let unbounded =
                     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace);
                 // Further node sets are bearings, which touch only their dishes.
                 let surfaces = if unbounded { 0 } else { body.surfaces.len() };
-                let sort = Sort { nodes: body.nodes.len().min(body.surfaces.len()), surfaces };
-                self.add(kind, sort)
+                let kind =
+                    ContactKind { nodes: body.nodes.len().min(body.surfaces.len()), surfaces };
+                self.add(role, kind)
             })
             .collect()
     }
 
-    /// Returns the sort of obstacles.
+    /// Returns the contact kind of obstacles.
     pub(crate) fn of_obstacle(&mut self) -> usize {
-        self.add(Kind::Obstacle, Sort { nodes: 0, surfaces: 1 })
+        self.add(Role::Obstacle, ContactKind { nodes: 0, surfaces: 1 })
     }
 
-    fn add(&mut self, kind: Kind, sort: Sort) -> usize {
-        let new = (kind, sort);
+    fn add(&mut self, role: Role, kind: ContactKind) -> usize {
+        let new = (role, kind);
         self.all.iter().position(|known| *known == new).unwrap_or_else(|| {
             self.all.push(new);
             self.all.len() - 1
         })
     }
 
-    /// Returns the laws between all sorts.
+    /// Returns the laws between all contact kinds.
     pub(crate) fn crossing(&self) -> Crossing {
-        let rule = |(first, _): &(Kind, Sort), (second, _): &(Kind, Sort)| self.rule(first, second);
+        let rule = |(first, _): &(Role, ContactKind), (second, _): &(Role, ContactKind)| {
+            self.rule(first, second)
+        };
         Crossing {
-            sorts: self.all.iter().map(|(_, sort)| *sort).collect(),
+            kinds: self.all.iter().map(|(_, kind)| *kind).collect(),
             rules: self
                 .all
                 .iter()
@@ -92,49 +95,49 @@ impl<'a> Sorts<'a> {
         }
     }
 
-    fn rule(&self, first: &Kind, second: &Kind) -> Option<Rule> {
-        let by = |law: StackPair| Some(Rule { turned: false, laws: [law as usize; 2] });
-        let turned = |rule: Option<Rule>| {
-            rule.map(|Rule { turned, laws: [one, other] }| Rule {
-                turned: !turned,
+    fn rule(&self, first: &Role, second: &Role) -> Option<Rule> {
+        let by = |law: StackPair| Some(Rule { reversed: false, laws: [law as usize; 2] });
+        let exchanged = |rule: Option<Rule>| {
+            rule.map(|Rule { reversed, laws: [one, other] }| Rule {
+                reversed: !reversed,
                 laws: [other, one],
             })
         };
         match (first, second) {
-            (Kind::Rack, Kind::Barrel) | (Kind::Barrel, Kind::Device) => {
+            (Role::Rack, Role::Barrel) | (Role::Barrel, Role::Device) => {
                 by(StackPair::FallenBarrelRack)
             }
-            (Kind::Rack, Kind::Rack | Kind::Device) | (Kind::Device, Kind::Device) => {
+            (Role::Rack, Role::Rack | Role::Device) | (Role::Device, Role::Device) => {
                 by(StackPair::FallenRackRack)
             }
-            (Kind::Barrel, Kind::Barrel) => by(StackPair::BarrelBarrel),
-            (Kind::Barrel | Kind::Device, Kind::Rack) | (Kind::Device, Kind::Barrel) => {
-                turned(self.rule(second, first))
+            (Role::Barrel, Role::Barrel) => by(StackPair::BarrelBarrel),
+            (Role::Barrel | Role::Device, Role::Rack) | (Role::Device, Role::Barrel) => {
+                exchanged(self.rule(second, first))
             }
-            (Kind::Free(one, a, fixed), Kind::Free(other, b, other_fixed))
+            (Role::Free(one, a, fixed), Role::Free(other, b, other_fixed))
                 if !(*fixed && *other_fixed) =>
             {
                 let laws = [self.law(*one, a, b)?, self.law(*other, a, b)?];
-                Some(Rule { turned: laws[0].1, laws: laws.map(|(law, _)| law) })
+                Some(Rule { reversed: laws[0].1, laws: laws.map(|(law, _)| law) })
             }
             // An obstacle supplies the law itself.
             (
-                Kind::Rack | Kind::Barrel | Kind::Device | Kind::Free(_, _, false),
-                Kind::Obstacle,
-            ) => Some(Rule { turned: false, laws: [0, 0] }),
+                Role::Rack | Role::Barrel | Role::Device | Role::Free(_, _, false),
+                Role::Obstacle,
+            ) => Some(Rule { reversed: false, laws: [0, 0] }),
             (
-                Kind::Obstacle,
-                Kind::Rack | Kind::Barrel | Kind::Device | Kind::Free(_, _, false),
-            ) => Some(Rule { turned: true, laws: [0, 0] }),
+                Role::Obstacle,
+                Role::Rack | Role::Barrel | Role::Device | Role::Free(_, _, false),
+            ) => Some(Rule { reversed: true, laws: [0, 0] }),
             // What is fixed to the ground meets nothing fixed, and a free scene has no laws for stacks.
-            (Kind::Free(..) | Kind::Ground | Kind::Obstacle, _)
-            | (_, Kind::Free(..) | Kind::Ground) => None,
+            (Role::Free(..) | Role::Ground | Role::Obstacle, _)
+            | (_, Role::Free(..) | Role::Ground) => None,
         }
     }
 
     /// Returns the index of the law between two kinds of a free scene, and `true` if it names the second kind first.
-    fn law(&self, book: usize, a: &str, b: &str) -> Option<(usize, bool)> {
-        let mut laws = self.scenes[book].interfaces.iter().enumerate();
+    fn law(&self, scene_index: usize, a: &str, b: &str) -> Option<(usize, bool)> {
+        let mut laws = self.scenes[scene_index].interfaces.iter().enumerate();
         laws.find_map(|(at, law)| {
             let [one, other] = [law.between[0].as_str(), law.between[1].as_str()];
             ((one, other) == (a, b))
