@@ -11,6 +11,7 @@ use crate::result::RoomRun;
 use crate::sample::{Case, CellarFailure, Prepared};
 use crate::scenario::Cellar;
 use crate::summary::{self, CellarSummary};
+use crate::words;
 
 /// Results of a cellar.
 #[derive(Clone, Debug)]
@@ -62,13 +63,19 @@ pub fn answer(
     let shown = prepared.run(number, 0, &mut |now| {
         report(Advance::Run(Progress { time: now.time, end_time: now.end_time }))
     })?;
-    let case = prepared.case(number, &shown);
+    // A finished case keeps its result if its repetition for the picture is stopped.
+    let finished = cases.iter().find(|case| case.variant == number).cloned();
+    let case = finished.unwrap_or_else(|| prepared.case(number, &shown));
     // A run that is repeated to be shown is counted once.
     if cases.is_empty() && !shown.interrupted {
         cases.push(case.clone());
     }
     let mut summary = summary::of(&prepared, &cases, (&case, &shown));
+    let (done, of) = if of == 0 { (usize::from(!shown.interrupted), 1) } else { (done, of) };
     summary.unfinished = (done < of).then_some(Unfinished { done, of });
+    if let Some(unfinished) = &summary.unfinished {
+        summary.headline = words::stopped(unfinished, shown.end_time);
+    }
     summary.warnings.extend(summary.unfinished.as_ref().map(Unfinished::warning));
     Ok(Answer { prepared, cases, case, shown, summary })
 }

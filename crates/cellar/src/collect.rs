@@ -37,7 +37,7 @@ pub(crate) fn result(
         merges,
         end_time: 0.0,
         interrupted,
-        warnings: world.room.ground.warnings.clone(),
+        warnings: world.room.ground.warnings.iter().map(|text| (None, text.clone())).collect(),
     };
     let mut energy = Some(EnergySummary::default());
     for island in islands.iter().flatten() {
@@ -64,7 +64,7 @@ pub(crate) fn result(
         run.bodies.extend(bodies_of(of, number, island, at));
         let (outcome, ending, warnings) = judged(world, of, island, watch);
         for warning in warnings {
-            run.warnings.push(format!("{}: {warning}", of.name));
+            run.warnings.push((Some(of.name.to_owned()), warning));
         }
         let lost_seat = watch.fates.collapse().map(|(time, body)| (time, first + body - 1));
         let touched = watch.touched.map(|(time, own, by)| Touch {

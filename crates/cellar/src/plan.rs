@@ -10,6 +10,7 @@ use barrelstack_space::{Stack, mesh};
 
 use crate::geometry::{Convex, Grid, PASSAGE, Point};
 use crate::scenario::{Cellar, Door, RoomSpec, Side, Standing};
+use crate::words::plural;
 
 /// Depth (m) in front of a door that is to stay free, so that a person can enter.
 const ENTRY: f64 = PASSAGE;
@@ -254,10 +255,9 @@ impl PlanSummary {
     /// Returns the figures of the plan as sentences.
     pub fn sentences(&self) -> Vec<String> {
         let mut all = vec![format!(
-            "{} stacks in {} {}: {} barrels, {} of wine, {} m² of floor for each barrel.",
-            self.stacks,
-            self.rows,
-            if self.rows == 1 { "row" } else { "rows" },
+            "{} in {}: {} barrels, {} of wine, {} m² of floor for each barrel.",
+            plural(u32::try_from(self.stacks).unwrap_or(u32::MAX), "stack"),
+            plural(self.rows, "row"),
             self.barrels,
             liters(self.wine),
             shortest((100.0 * self.area_per_barrel).round() / 100.0),

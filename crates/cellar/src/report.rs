@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use barrelstack::report::WORDS;
-use barrelstack::variants::Range;
 use barrelstack::variants::words::percent;
+use barrelstack::variants::{FEW, Range};
 use barrelstack_report::{
     Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Pane, Players, RegionKind, Table,
     Verdict, described,
@@ -15,13 +15,15 @@ use crate::answer::Answer;
 use crate::plan::liters;
 use crate::sample::CELL;
 use crate::summary::{CellarSummary, Count, ShownStack, counted};
-use crate::words::{sentences, shown_run, span, spans_of_shares, tone};
+use crate::words::{sentences, shown_run, span, span_of_shares, tone};
 
 /// Returns the plan of a cellar with the fates of the stacks in the run that is shown, and the places where barrels end
 /// in all variants.
 pub fn picture(answer: &Answer) -> FloorPlan {
     let Answer { prepared, cases, summary, .. } = answer;
+    // Stopped work says nothing of the fate of a stack.
     let kind = |at: usize| match summary.shown.stacks[at].fate {
+        _ if summary.unfinished.is_some() => RegionKind::Stands,
         "falls-by-itself" => RegionKind::Falls,
         "knocked-over" => RegionKind::Knocked,
         _ => RegionKind::Stands,
@@ -87,8 +89,10 @@ fn players(answer: &Answer) -> Option<Block> {
     Some(Block::Players(Players {
         id: "players".into(),
         caption: format!(
-            "The run that is shown ({}), in a view that can be turned, or from the front and from above.",
-            shown_run(summary)
+            "The run that is shown ({}), in a view that can be turned, or from the front and from above. Its clock is that \
+             of the record: the shaking starts at {:.2} s.",
+            shown_run(summary),
+            summary.onset
         ),
         panes: vec![
             pane(Sight::Across, "X", "From the front"),
@@ -108,7 +112,8 @@ pub fn document(answer: &Answer) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     let caption = format!(
         "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades (barrels): share \
-         of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
+         of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m. Racks are not drawn; they \
+         count in the table of aisles.",
         shown_run(summary)
     );
     let mut blocks = vec![
@@ -191,8 +196,8 @@ fn provenance(answer: &Answer) -> Vec<(String, String)> {
     rows
 }
 
-fn times(range: Option<&Range>) -> Cell {
-    Cell::maybe(range.map(|range| span(range, 1, "s")))
+fn times(range: Option<&Range>, of: u32) -> Cell {
+    Cell::maybe(range.map(|range| span(range, of, 1, "s")))
 }
 
 fn count(count: &Count) -> Cell {
@@ -207,16 +212,26 @@ fn count(count: &Count) -> Cell {
 
 fn aisles(summary: &CellarSummary) -> Table {
     Table::of(
-        "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which it happens; \
-         shares of variants have their 95 % interval. An aisle is blocked if no path of 0.6 m leads through it.",
+        format!(
+            "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which it happens, \
+             or all if they are fewer than {FEW}; shares of variants have their 95 % interval. A barrel is in the aisle \
+             when its center is above it. Area counts as covered by any body above it, at any height; an aisle is \
+             blocked if no path of 0.6 m leads through it."
+        ),
         &summary.aisles,
         &[
             ("aisle", "", &|aisle| Cell::text(&aisle.name)),
             ("a barrel comes in", "", &|aisle| count(&aisle.entered)),
-            ("first barrel", "", &|aisle| times(aisle.first_barrel.as_ref())),
+            ("first barrel", "", &|aisle| {
+                times(aisle.first_barrel.as_ref(), aisle.entered.of_variants)
+            }),
             ("blocked at the end", "", &|aisle| count(&aisle.blocked)),
-            ("blocked after", "", &|aisle| times(aisle.blocked_at.as_ref())),
-            ("area covered", "", &|aisle| Cell::text(spans_of_shares(&aisle.covered))),
+            ("blocked after", "", &|aisle| {
+                times(aisle.blocked_at.as_ref(), aisle.blocked.of_variants)
+            }),
+            ("area covered", "", &|aisle| {
+                Cell::text(span_of_shares(&aisle.covered, summary.counted))
+            }),
             ("fastest barrel", "m/s", &|aisle| {
                 Cell::measured(aisle.fastest.map(|fast| fast.most), 1)
             }),
@@ -259,7 +274,7 @@ fn contacts(touched: &[&ShownStack]) -> Table {
             ("struck by stack", "", &|one| Cell::maybe(one.touched_by.clone())),
             ("with body", "", &|one| body(one, 1)),
             ("at", "s", &|one| time(one.touched_at)),
-            ("impulse", "N s", &|one| Cell::number(one.impulse, 2)),
+            ("impulse before it falls", "N s", &|one| Cell::number(one.impulse, 2)),
             ("first loss of seat", "s", &|one| time(one.falls_at)),
             ("outcome", "", &fate),
         ],
@@ -282,7 +297,7 @@ pub fn stacks(summary: &CellarSummary) -> Table {
             ("by itself", "", &|stack| Cell::maybe(stack.by_itself.share.map(percent))),
             ("knocked over", "", &|stack| Cell::maybe(stack.knocked_over.share.map(percent))),
             ("struck first by", "", &|stack| Cell::maybe(stack.touched_by.clone())),
-            ("falls after", "", &|stack| times(stack.falls_at.as_ref())),
+            ("falls after", "", &|stack| times(stack.falls_at.as_ref(), stack.falls.of_variants)),
             ("barrels fallen", "", &|stack| Cell::Measured(stack.barrels_fallen, 1)),
             ("wine lost", "", &|stack| Cell::text(liters(stack.wine_lost))),
             ("movement", "cm", &|stack| {
@@ -312,15 +327,16 @@ fn obstacles(summary: &CellarSummary) -> Table {
     let median =
         |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.p50), 2);
     Table::of(
-        "Forces on walls and columns, in the variants in which a body strikes them: for design, the largest of all variants. \
-         Forces last some milliseconds and grow with the assumed stiffness of the contact; impulses do not.",
+        "Forces on walls and columns, in the variants in which a body strikes them: Forces last some milliseconds and grow \
+         with the assumed stiffness of the contact. Impulses are summed over the whole run and include bodies that lean \
+         on the wall, so they grow with the length of the run. Neither is a design load by itself.",
         &summary.obstacles,
         &[
             ("wall or column", "", &|one| Cell::text(&one.name)),
             ("struck", "", &|one| count(&one.struck)),
             ("largest force", "kN", &|one| most(one.peak, 1e-3)),
             ("median", "kN", &|one| median(one.peak, 1e-3)),
-            ("largest impulse", "N s", &|one| most(one.impulse, 1.0)),
+            ("largest impulse over the run", "N s", &|one| most(one.impulse, 1.0)),
         ],
     )
 }

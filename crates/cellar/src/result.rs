@@ -137,6 +137,6 @@ pub struct RoomRun {
     pub end_time: f64,
     /// `true` if the observer stopped the run.
     pub interrupted: bool,
-    /// Warnings, one sentence each.
-    pub warnings: Vec<String>,
+    /// Warnings, one sentence each, with the name of the stack that a warning concerns.
+    pub warnings: Vec<(Option<String>, String)>,
 }

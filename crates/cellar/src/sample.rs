@@ -414,8 +414,8 @@ pub struct Case {
     pub map: Vec<bool>,
     /// Time (s) at which the last body came to rest.
     pub end_time: f64,
-    /// Warnings, one sentence each.
-    pub warnings: Vec<String>,
+    /// Warnings, one sentence each, with the name of the stack that a warning concerns.
+    pub warnings: Vec<(Option<String>, String)>,
 }
 
 /// A stack in one variant.

@@ -1,6 +1,6 @@
 //! Results of a cellar over all its variants, as one document with the same numbers as the printed results.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use barrelstack::breakage::cost;
 use barrelstack::ground::MotionSummary;
@@ -199,7 +199,7 @@ described! {
         pub struck: Count,
         /// Distribution of the largest force, in the variants in which a body strikes it.
         pub peak: Option<Range> as "N",
-        /// Distribution of the impulse, likewise.
+        /// Distribution of the impulse over the whole run, bodies that lean on it included, likewise.
         pub impulse: Option<Range> as "N s",
     }
 
@@ -210,7 +210,7 @@ described! {
         pub variant: u32,
         /// True if this run is the most typical of those that are counted.
         pub typical: bool,
-        /// Time in the record at which the last body came to rest.
+        /// Time in the record at which the run ends: all bodies rest, its duration is over, or it was stopped.
         pub end_time: f64 as "s",
         /// Row of the first stack that falls.
         pub starts: Option<u32>,
@@ -241,7 +241,8 @@ described! {
         pub touched_by: Option<String>,
         /// Its body in this contact, and the body of the other stack.
         pub bodies: Option<[String; 2]>,
-        /// Impulse of other stacks on it until it lost a seat, or over the whole run if it stands.
+        /// Impulse of other stacks on it until it lost a seat, or over the whole run if it stands; null if it lost a seat
+        /// before it was touched.
         pub impulse: Option<f64> as "N s",
         /// Number of barrels that fell from it.
         pub barrels_fallen: usize,
@@ -360,12 +361,8 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         peak_force: peaks.reduce(f64::max),
     };
     let (case, run) = shown;
-    let mut warnings = run.warnings.clone();
-    for warning in cases.iter().flat_map(|case| &case.warnings) {
-        if !warnings.contains(warning) {
-            warnings.push(warning.clone());
-        }
-    }
+    let of_cases = cases.iter().flat_map(|case| &case.warnings);
+    let warnings = grouped(run.warnings.iter().chain(of_cases));
     let motion = prepared.ground.first.motion.as_ref();
     let mut summary = CellarSummary {
         schema: "cellar/1",
@@ -393,19 +390,30 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     };
     summary.inspection = inspection(&summary.stacks);
     summary.shown.typical = typical(cases) == Some(case.variant);
-    summary.headline = if !case.valid {
-        "The computation of the run that is shown failed, so it has no result.".to_owned()
-    } else if run.interrupted {
-        format!(
-            "The run that is shown was stopped at {:.1} s of the record; {} of {} stacks had fallen until then.",
-            run.end_time,
-            summary.shown.by_themselves + summary.shown.knocked_over,
-            summary.plan.stacks
-        )
-    } else {
+    summary.headline = if case.valid {
         crate::words::headline(&summary)
+    } else {
+        "The computation of the run that is shown failed, so it has no result.".to_owned()
     };
     summary
+}
+
+/// Returns each warning once, with the stacks that it concerns in place of the name of one stack.
+fn grouped<'a>(warnings: impl Iterator<Item = &'a (Option<String>, String)>) -> Vec<String> {
+    let mut all: Vec<(&str, BTreeSet<&str>)> = Vec::new();
+    for (stack, text) in warnings {
+        let at = all.iter().position(|(known, _)| known == text).unwrap_or_else(|| {
+            all.push((text, BTreeSet::new()));
+            all.len() - 1
+        });
+        all[at].1.extend(stack.as_deref());
+    }
+    let sentence = |(text, stacks): &(&str, BTreeSet<&str>)| match stacks.len() {
+        0 => (*text).to_owned(),
+        1 => format!("{}: {text}", stacks.iter().copied().collect::<String>()),
+        many => format!("{many} stacks: {text}"),
+    };
+    all.iter().map(sentence).collect()
 }
 
 fn rows(prepared: &Prepared, all: &[&Case]) -> Vec<RowAnswer> {
@@ -445,7 +453,7 @@ fn stacks(prepared: &Prepared, all: &[&Case]) -> Vec<StackAnswer> {
             name: standing.name.clone(),
             row: standing.row,
             number: standing.number,
-            at: [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis])),
+            at: [0, 1].map(|axis| (5e3 * (lower[axis] + upper[axis])).round() / 1e4),
             falls: Count::of(all, |case| case.stacks[at].fell_at.is_some()),
             by_itself: Count::of(all, |case| case.stacks[at].by_itself()),
             knocked_over: Count::of(all, |case| case.stacks[at].knocked),
@@ -521,7 +529,10 @@ fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
         touched_at: stack.touched.map(|(time, ..)| time - prepared.onset),
         touched_by: stack.touched.map(|(_, by, _)| plan.stacks[by].name.clone()),
         bodies: stack.touching.clone(),
-        impulse: stack.touched.map(|(.., impulse)| impulse),
+        impulse: stack
+            .touched
+            .filter(|(time, ..)| stack.fell_at.is_none_or(|fell| fell >= *time))
+            .map(|(.., impulse)| impulse),
         barrels_fallen: stack.barrels,
         moved: stack.moved,
     };

@@ -1,11 +1,14 @@
 //! Results of a cellar as sentences.
 
+use barrelstack::motion::STANDARD_GRAVITY;
+use barrelstack::run::CUT;
+use barrelstack::summary::Unfinished;
 use barrelstack::variants::Range;
 use barrelstack::variants::words::{ENOUGH, percent};
-use barrelstack_report::{Tone, listed, measured};
+use barrelstack_report::{Tone, capital, listed, measured};
 
 use crate::plan::liters;
-use crate::summary::{CellarSummary, Count};
+use crate::summary::{AisleAnswer, CellarSummary, Count};
 
 /// Returns a number of things, such as "1 stack" or "3 stacks".
 pub(crate) fn plural(count: u32, thing: &str) -> String {
@@ -26,9 +29,9 @@ pub(crate) fn share(count: &Count, of: u32) -> String {
     )
 }
 
-/// Returns the 5 and 95 % fractiles, such as "2.1 to 3.4 s"; one number where they are shown alike.
-pub(crate) fn span(range: &Range, decimals: usize, unit: &str) -> String {
-    let [low, high] = [range.p05, range.p95].map(|value| format!("{value:.decimals$}"));
+/// Returns a range over a number of variants, such as "2.1 to 3.4 s"; one number where both ends are shown alike.
+pub(crate) fn span(range: &Range, of: u32, decimals: usize, unit: &str) -> String {
+    let [low, high] = range.stated(of).map(|value| format!("{value:.decimals$}"));
     if low == high { format!("{low} {unit}") } else { format!("{low} to {high} {unit}") }
 }
 
@@ -39,6 +42,25 @@ pub(crate) fn shown_run(summary: &CellarSummary) -> String {
         (number, true) => format!("variant {number}, the most typical"),
         (number, false) => format!("variant {number}"),
     }
+}
+
+/// Returns the sentence of work that was stopped before the end of the run (s) that is shown.
+pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
+    let Unfinished { done, of } = unfinished;
+    if *of == 1 {
+        return format!(
+            "Stopped at {end_time:.1} s, before the end of the run: there is no verdict."
+        );
+    }
+    format!(
+        "Stopped after {done} of {of} runs of the room as stated and of its variants: there is no verdict."
+    )
+}
+
+/// Returns the time (s) that a run which is shown leaves of the motion; `None` if it covers the motion.
+fn missing(summary: &CellarSummary) -> Option<f64> {
+    let motion = summary.motion.as_ref()?;
+    Some(motion.duration - summary.shown.end_time).filter(|missing| *missing > CUT)
 }
 
 /// Returns the result of the run that is shown, in the sentence that people repeat.
@@ -52,6 +74,13 @@ pub fn headline(summary: &CellarSummary) -> String {
         } else {
             format!("All {all} stacks stand")
         };
+        let stand = match missing(summary) {
+            Some(missing) => format!(
+                "{stand} until {:.1} s, where the run ends, {missing:.1} s before the motion does",
+                shown.end_time
+            ),
+            None => stand,
+        };
         let some = &summary.room.some_fall;
         return if some.of_variants == 0 {
             format!("{stand}.")
@@ -64,16 +93,27 @@ pub fn headline(summary: &CellarSummary) -> String {
             )
         };
     }
+    if all == 1 {
+        return sentence(summary, &format!("the only stack falls{}.", blocked(summary)));
+    }
     let starts = shown.starts.filter(|_| summary.plan.rows > 1);
-    let starts = starts.map_or(String::new(), |row| format!("Row {row} starts it: "));
+    let starts = starts.map_or(String::new(), |row| format!("row {row} starts it: "));
     let verb = if own == 1 { "falls by itself" } else { "fall by themselves" };
     let more = match knocked {
         0 => "none is knocked over".to_owned(),
         1 => "1 more is knocked over".to_owned(),
         many => format!("{many} more are knocked over"),
     };
-    let stacks = if all == 1 { "stack" } else { "stacks" };
-    format!("{starts}{own} of {all} {stacks} {verb}, {more}{}.", blocked(summary))
+    sentence(summary, &format!("{starts}{own} of {all} stacks {verb}, {more}{}.", blocked(summary)))
+}
+
+/// Returns a sentence on the run that is shown, which names the run if there are several.
+fn sentence(summary: &CellarSummary, text: &str) -> String {
+    match (summary.counted, summary.shown.typical) {
+        (2.., true) => format!("In the most typical of {} runs, {text}", summary.counted),
+        (2.., false) => format!("In the run that is shown ({}), {text}", shown_run(summary)),
+        _ => capital(text),
+    }
 }
 
 /// Returns a clause on the aisles that are blocked in the run that is shown.
@@ -88,7 +128,7 @@ fn blocked(summary: &CellarSummary) -> String {
             _ => format!("; all {all} aisles stay passable"),
         };
     };
-    let after = format!("after {last:.0} s");
+    let after = format!("after {last:.1} s");
     match (times.len(), all) {
         (1, 1) => format!("; the aisle is blocked {after}"),
         (2, 2) => format!("; both aisles are blocked {after}"),
@@ -101,9 +141,9 @@ fn blocked(summary: &CellarSummary) -> String {
 /// Returns the tone of the verdict.
 pub fn tone(summary: &CellarSummary) -> Tone {
     match summary.room.some_fall.of_variants {
-        _ if summary.counted == 0 => Tone::Invalid,
+        _ if summary.counted == 0 || summary.unfinished.is_some() => Tone::Invalid,
         // As for one stack, few variants that stand are no verdict.
-        0 if summary.counted < ENOUGH => Tone::Neutral,
+        0 if summary.counted < ENOUGH || missing(summary).is_some() => Tone::Neutral,
         0 => Tone::Stands,
         _ => Tone::Falls,
     }
@@ -111,6 +151,9 @@ pub fn tone(summary: &CellarSummary) -> Tone {
 
 /// Returns the sentences that support the headline.
 pub fn sentences(summary: &CellarSummary) -> Vec<String> {
+    if summary.unfinished.is_some() {
+        return Vec::new();
+    }
     let CellarSummary { room, counted: of, plan, .. } = summary;
     let mut all = vec![match of {
         0 => "No run has a valid result.".to_owned(),
@@ -118,6 +161,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
             "This is one run of the room, {}; a share needs several variants.",
             if summary.shown.variant == 0 { "as stated" } else { "one variant" }
         ),
+        _ if plan.stacks == 1 => format!("The stack falls in {}.", share(&room.some_fall, *of)),
         _ => format!(
             "At least one stack falls in {}. On average {:.1} of {} stacks fall by themselves ({}, 95 % interval {} to \
              {}){}.",
@@ -140,7 +184,15 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
             },
         ),
     }];
-    if let Some(spread) = room.spread {
+    if let Some(motion) = &summary.motion {
+        all.push(format!(
+            "Along x the ground moves as {}, up to {:.2} g and {:.0} cm/s.",
+            motion.name,
+            motion.pga / STANDARD_GRAVITY,
+            100.0 * motion.pgv
+        ));
+    }
+    if let Some(spread) = room.spread.filter(|_| plan.stacks > 1) {
         all.push(format!("For each stack that falls by itself, {spread:.1} fall in all."));
     }
     if room.barrels_fallen.most > 0.0 {
@@ -150,26 +202,11 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
             "Of {} barrels {} fall. About {central} of {} of wine are lost ({few} if few of the fallen barrels burst, \
              {many} if many do); burst barrels and wine are worth US${least} to US${most}.",
             plan.barrels,
-            span(&room.barrels_fallen, 0, "").trim_end(),
+            span(&room.barrels_fallen, *of, 0, "").trim_end(),
             liters(plan.wine),
         ));
     }
-    for aisle in &summary.aisles {
-        let Some(first) = &aisle.first_barrel else {
-            all.push(format!("No barrel comes into the aisle \"{}\".", aisle.name));
-            continue;
-        };
-        let fast =
-            aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
-        all.push(format!(
-            "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end {} of its area are \
-             covered, and it is blocked in {}.",
-            aisle.name,
-            span(first, 1, "s"),
-            spans_of_shares(&aisle.covered),
-            share(&aisle.blocked, *of),
-        ));
-    }
+    all.extend(summary.aisles.iter().map(|aisle| of_aisle(aisle, *of)));
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             all.push(format!(
@@ -187,7 +224,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     {
         all.push(format!(
             "The largest force on a wall or column is {:.0} kN for an instant, on the {}; it grows with the assumed \
-             stiffness of the contact, unlike the impulses in the table.",
+             stiffness of the contact.",
             1e-3 * peak.most,
             most.name
         ));
@@ -205,8 +242,25 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     all
 }
 
-/// Returns the 5 and 95 % fractiles of a share.
-pub(crate) fn spans_of_shares(range: &Range) -> String {
-    let [low, high] = [range.p05, range.p95].map(percent);
+/// Returns the sentence on an aisle over a number of variants.
+fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
+    let Some(first) = &aisle.first_barrel else {
+        return format!("No barrel comes into the aisle \"{}\".", aisle.name);
+    };
+    let fast =
+        aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
+    format!(
+        "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end {} of its area are \
+         covered, and it is blocked in {}.",
+        aisle.name,
+        span(first, aisle.entered.of_variants, 1, "s"),
+        span_of_shares(&aisle.covered, of),
+        share(&aisle.blocked, of),
+    )
+}
+
+/// Returns a range of a share over a number of variants.
+pub(crate) fn span_of_shares(range: &Range, of: u32) -> String {
+    let [low, high] = range.stated(of).map(percent);
     if low == high { low } else { format!("{low} to {high}") }
 }

@@ -88,7 +88,7 @@ impl Progress {
                 self.said(&format!("after the first {variants} variants: {headline}"))
             }
             variants::Advance::Variants { done, of } => {
-                self.counted(done as u64, of as u64, "variants")
+                self.counted(done as u64, of as u64, "runs")
             }
         }
     }

@@ -30,7 +30,8 @@ function makeStage(data, canvas) {
   const moving = data.bodies.map((body, at) => at).filter((at) => data.bodies[at].role !== "ground");
   const [left, bottom, right, top] = data.view;
   const stage = {
-    camera: "fixed", names: true, forces: false, traces: true, tint: false, ghosts: false,
+    // The names of many bodies would cover the picture.
+    camera: "fixed", names: new Set(data.bodies.map((body) => body.name)).size <= 40, forces: false, traces: true, tint: false, ghosts: false,
     // Whether the callout of the moment is shown, and the position of the pointer (px).
     callout: false, hover: null, valued: null,
     head: HEAD,

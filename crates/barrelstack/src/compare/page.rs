@@ -163,7 +163,7 @@ fn effect(sides: &[Side]) -> Option<String> {
     let named =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
     let clauses: Vec<String> = named.map(clause).collect();
-    Some(format!("{}: {cause}.", clauses.join("; ")))
+    Some(format!("{}, {cause}.", clauses.join("; ")))
 }
 
 /// Returns the plane of a pair, such as " across the barrels"; empty unless both planes were
@@ -203,7 +203,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
             format!(
-                "Of the same {} variants{motions}{}, {} collapse in both, {} with A only and {} with \
+                "Of the same {} variants{motions}{}, {} collapse with both, {} with A only and {} with \
                  {second} only: {difference} (95 % interval {low} to {high}{clear}).{lost}",
                 pair.pairs(),
                 place(first, pair),

@@ -103,6 +103,9 @@ described! {
     }
 }
 
+/// Number of values below which a range is that of all values.
+pub const FEW: u32 = 20;
+
 impl Range {
     /// Summarizes values; `None` if there are none.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
@@ -111,6 +114,12 @@ impl Range {
         let (least, most) = (*values.first()?, *values.last()?);
         let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|share| quantile(&values, share));
         Some(Self { p05, p50, p95, least, most })
+    }
+
+    /// Returns the range that a sentence states for a number of values: the 5 and 95 % fractiles, or the extremes of
+    /// fewer than [`FEW`] values, between which fractiles would be interpolated.
+    pub fn stated(&self, values: u32) -> [f64; 2] {
+        if values < FEW { [self.least, self.most] } else { [self.p05, self.p95] }
     }
 }
 
