@@ -19,11 +19,18 @@ fn of_git() -> Option<String> {
     if !root.join(".git").exists() {
         return None;
     }
-    for file in [".git/HEAD", ".git/logs/HEAD"].map(|file| root.join(file)) {
-        if file.exists() {
-            println!("cargo::rerun-if-changed={}", file.display());
+    // In a worktree, these files are not in the folder `.git`.
+    for file in ["HEAD", "logs/HEAD"] {
+        let path = git(&["rev-parse", "--git-path", file])?;
+        if Path::new(path.trim_end()).exists() {
+            println!("cargo::rerun-if-changed={}", path.trim_end());
         }
     }
-    let output = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).output().ok()?;
+    git(&["rev-parse", "--short=12", "HEAD"])
+}
+
+/// Returns what git prints; `None` if it fails.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -7,6 +7,7 @@ mod inputs;
 mod planes;
 mod sections;
 mod spectrum;
+mod stamp;
 mod tables;
 mod trust;
 mod unknowns;
@@ -26,6 +27,7 @@ use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 
 pub use glossary::WORDS;
 pub(crate) use inputs::{settings_table, shown};
+pub use stamp::stamp_pages;
 pub use sections::{player, standing_range, stress_figure};
 pub(crate) use sections::{standing_until, traces};
 pub use tables::{demand_table, device_table, interface_table};

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use barrelstack::ground::{GroundError, from_disk};
+use barrelstack::scenario::bytes_of;
 use barrelstack::scenario::error::ScenarioError;
 use barrelstack::scenario::field::{Default, Kind, Range, names};
 use barrelstack::scenario::imperfections::IMPERFECTIONS;
@@ -313,7 +314,15 @@ impl Cellar {
     /// # Errors
     /// Returns the first problem found, with its place in the text.
     pub fn load(path: &Path, changes: &[String]) -> Result<Self, ScenarioError> {
-        Self::of(&Host::load(path, changes, &LANGUAGE)?)
+        Self::parse_file(path, &bytes_of(path)?, changes)
+    }
+
+    /// Reads a cellar like [`Cellar::load`], from the bytes of its file.
+    ///
+    /// # Errors
+    /// As for [`Cellar::load`].
+    pub fn parse_file(path: &Path, bytes: &[u8], changes: &[String]) -> Result<Self, ScenarioError> {
+        Self::of(&Host::parse_file(path, bytes, changes, &LANGUAGE)?)
     }
 
     /// Reads a cellar from text, which may extend built-in cellars and scenarios only.

@@ -43,15 +43,9 @@ fn main() -> ExitCode {
         }
     };
     barrelstack_input::system::guard_inputs();
-    let commit =
-        std::env::var_os("BARRELSTACK_COMMIT").and_then(|commit| commit.into_string().ok());
-    let commit = commit.unwrap_or_else(|| env!("BARRELSTACK_COMMIT").to_owned());
-    match barrelstack_input::system::clock() {
-        Ok(now) => barrelstack_report::Stamp::new(now, commit).state(),
-        Err(wrong) => {
-            printer::error(&anyhow::Error::msg(wrong), json);
-            return ExitCode::from(2);
-        }
+    if let Err(wrong) = barrelstack::report::stamp_pages(env!("BARRELSTACK_COMMIT")) {
+        printer::error(&anyhow::Error::msg(wrong), json);
+        return ExitCode::from(2);
     }
     interrupt::stop_at(args.stop_at.clone());
     match commands::dispatch(args) {

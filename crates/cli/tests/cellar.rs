@@ -27,6 +27,26 @@ fn the_plan_is_drawn_before_anything_is_run() {
     let again = barrelstack(["check", "demo-cellar", "--plan", &place]);
     assert_eq!(again.status.code(), Some(2));
     assert!(stderr(&again).contains("give another name after --plan"), "{}", stderr(&again));
+    #[cfg(unix)]
+    {
+        let (link, behind) = (folder.path().join("link.svg"), folder.path().join("behind.svg"));
+        std::os::unix::fs::symlink(&behind, &link).unwrap();
+        let output = barrelstack(["check", "demo-cellar", "--plan", &link.display().to_string()]);
+        refused("dangling link", &output, &behind, &["give another name after --plan"]);
+    }
+}
+
+#[test]
+fn a_mistyped_cellar_is_answered_with_the_nearest() {
+    for arguments in
+        [&["check", "demo-celar"][..], &["run", "demo-celar"], &["scenarios", "show", "demo-celar"]]
+    {
+        let output = barrelstack(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = stderr(&output);
+        assert!(said.contains("did you mean `demo-cellar`"), "{arguments:?}: {said}");
+        assert!(!said.contains("`kind`"), "{said}");
+    }
 }
 
 #[test]

@@ -58,10 +58,39 @@ fn a_page_states_its_date_and_commit_and_a_wrong_date_is_refused() {
     let page = fs::read_to_string(out.join("report.html")).unwrap().replace('\u{a0}', " ");
     assert!(page.contains("<dd>2014-08-24 (UTC)</dd>"), "no date");
     assert!(page.contains(", commit 0123456789ab</dd>"), "no commit");
-    let refused = run("yesterday");
-    assert_eq!(refused.status.code(), Some(2));
-    let said = stderr(&refused);
-    assert!(said.contains("SOURCE_DATE_EPOCH") && said.contains("\"yesterday\""), "{said}");
+    for (wrong, found) in [("yesterday", "\"yesterday\""), ("7258118400", "before the year 2200")] {
+        let refused = run(wrong);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = stderr(&refused);
+        assert!(said.contains("SOURCE_DATE_EPOCH") && said.contains(found), "{said}");
+    }
+}
+
+/// A scenario and a cellar from a pipe, which can be read only once, and the files that they extend.
+#[cfg(unix)]
+#[test]
+fn a_file_is_read_from_a_pipe_of_the_shell() {
+    let folder = tempfile::tempdir().unwrap();
+    let base = folder.path().join("base.toml");
+    fs::write(&base, "schema = 1\nextends = \"sliding-block\"\n").unwrap();
+    for (extends, words) in [
+        ("sliding-block", "sliding block"),
+        (base.to_str().unwrap(), "sliding block"),
+        ("demo-cellar", "4 stacks in 2 rows: 40 barrels"),
+    ] {
+        let mut child = program(["check", "/dev/stdin"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let text = format!("schema = 1\nextends = \"{extends}\"\n");
+        child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{extends}: {}", stderr(&output));
+        let said = stdout(&output);
+        assert!(said.to_lowercase().contains(words), "{extends}: {said}");
+    }
 }
 
 #[test]

@@ -72,6 +72,26 @@ impl Utc {
         Some(clock.later(seconds))
     }
 
+    /// Creates an instant from the seconds since the beginning of 1970. Returns `None` after the
+    /// year 2199.
+    ///
+    /// ```
+    /// use barrelstack_motion::Utc;
+    /// assert_eq!(Utc::of_unix(951_868_799).map(|day| day.date()).as_deref(), Some("2000-02-29"));
+    /// ```
+    pub fn of_unix(seconds: u64) -> Option<Self> {
+        let microseconds = i64::try_from(seconds).ok()?.checked_mul(1_000_000)?;
+        let end = Self::new(2199, 12, 31, 23, 59, 60.0)?;
+        Some(Self { microseconds }).filter(|instant| *instant < end)
+    }
+
+    /// Returns the date, such as "2014-08-24".
+    pub fn date(self) -> String {
+        let mut text = self.to_string();
+        text.truncate(10);
+        text
+    }
+
     /// Returns the seconds from `other` to this instant.
     pub fn since(self, other: Self) -> f64 {
         (self.microseconds - other.microseconds) as f64 * MICROSECOND
@@ -222,6 +242,18 @@ mod tests {
     #[test]
     fn known_instants_are_met() {
         assert_eq!(Utc::new(1970, 1, 1, 0, 0, 0.0).unwrap().microseconds, 0);
+        assert_eq!(Utc::of_unix(0), Utc::new(1970, 1, 1, 0, 0, 0.0));
+        for (seconds, date) in [
+            (86_399, "1970-01-01"),
+            (68_256_000, "1972-03-01"),
+            (1_408_875_644, "2014-08-24"),
+            (4_107_542_399, "2100-02-28"),
+            (4_107_542_400, "2100-03-01"),
+            (7_258_118_399, "2199-12-31"),
+        ] {
+            assert_eq!(Utc::of_unix(seconds).unwrap().date(), date);
+        }
+        assert_eq!([7_258_118_400, u64::MAX].map(Utc::of_unix), [None; 2]);
         // 946 684 800 s: the Unix time of the year 2000.
         assert_eq!(Utc::new(2000, 1, 1, 0, 0, 0.0).unwrap().microseconds, 946_684_800_000_000);
         let napa = Utc::new(2014, 8, 24, 10, 20, 33.0);

@@ -24,7 +24,6 @@ mod view;
 /// The library for the package `barrelstack`.
 #[pyo3::pymodule]
 mod _native {
-    use pyo3::exceptions::PyValueError;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -53,12 +52,11 @@ mod _native {
 
     #[pymodule_export]
     const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
-    /// Sets the date that pages state.
+    /// Lets pages state their date.
     #[pymodule_init]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let now = barrelstack_input::system::clock().map_err(PyValueError::new_err)?;
-        let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_default();
-        barrelstack_report::Stamp::new(now, commit).state();
+        // An import does not fail because the date is unknown; pages state the reason.
+        let _ = barrelstack::report::stamp_pages("");
         Ok(())
     }
 

@@ -8,7 +8,6 @@ use anyhow::{Context as _, bail};
 use barrelstack::export::Folder;
 use barrelstack::variants::RunChoice;
 use barrelstack_cellar::{Answer, Cellar, CellarFailure, Plan, RoomFailure, report, words};
-use barrelstack_input::system;
 use barrelstack_report::{Characters, Figure};
 
 use crate::args::{CheckArgs, RunArgs, ScenarioArgs, VariantArgs};
@@ -61,12 +60,11 @@ fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
 
 /// Writes a file that must not exist.
 fn write_new(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if path.exists() {
+    // A dangling link exists, too.
+    if path.symlink_metadata().is_ok() {
         bail!("{} exists; give another name after --plan", path.display());
     }
-    std::fs::write(path, bytes).map_err(|error| {
-        anyhow::anyhow!("cannot write {}: {}", path.display(), system::words(&error))
-    })
+    crate::store::store(path, bytes)
 }
 
 /// Runs a cellar and prints and writes the result.

@@ -24,10 +24,10 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use barrelstack::ground::GroundError;
-use barrelstack::scenario::{Problem, ScenarioError, builtin};
+use barrelstack::scenario::{Problem, ScenarioError, builtin, bytes_of};
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_cellar::Cellar;
-use barrelstack_input::system;
+use barrelstack_cellar::scenario::built_in;
 
 use crate::args::{Args, Command, ScenarioArgs};
 
@@ -56,7 +56,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// A file that a command names.
+/// What a command names: a scenario or a cellar, from a file, standard input or those that are built in.
 enum Loaded {
     Scenario(Box<Scenario>),
     Cellar(Box<Cellar>),
@@ -104,26 +104,23 @@ fn load_any(args: &ScenarioArgs) -> anyhow::Result<Loaded> {
     let path = Path::new(&args.scenario);
     let looks_like_a_file = args.scenario.contains(['.', '/', '\\']);
     if path.is_file() || looks_like_a_file {
-        // A file that cannot be read is reported by the reader of scenarios.
-        let bytes = system::read(path, usize::try_from(INPUT_LIMIT).unwrap_or(usize::MAX))
-            .unwrap_or_default();
+        // The file is read once, because a pipe is empty afterwards.
+        let bytes = bytes_of(path)?;
         if Cellar::is_stated(Some(path), &bytes) {
-            return cellar(Cellar::load(path, &overrides));
+            return cellar(Cellar::parse_file(path, &bytes, &overrides));
         }
-        return Ok(Loaded::Scenario(Box::new(Scenario::load(path, &overrides)?)));
+        let scenario = Scenario::parse_file(path, &bytes, &overrides)?;
+        return Ok(Loaded::Scenario(Box::new(scenario)));
     }
-    if barrelstack_cellar::scenario::built_in(&args.scenario).is_some() {
-        return cellar(Cellar::builtin(&args.scenario, &overrides));
+    if builtin::get(&args.scenario).is_some() {
+        let scenario = Scenario::builtin(&args.scenario, &overrides)?;
+        return Ok(Loaded::Scenario(Box::new(scenario)));
     }
-    let scenario = Scenario::builtin(&args.scenario, &overrides).map_err(|error| {
+    match Cellar::builtin(&args.scenario, &overrides) {
         // A mistyped name may be meant as a file, which the library does not consider.
-        if builtin::get(&args.scenario).is_none() {
-            no_such(&args.scenario, &error)
-        } else {
-            error.into()
-        }
-    })?;
-    Ok(Loaded::Scenario(Box::new(scenario)))
+        Err(error) if built_in(&args.scenario).is_none() => Err(no_such(&args.scenario, &error)),
+        found => cellar(found),
+    }
 }
 
 /// Returns the error for a name that is neither a file nor a built-in scenario, with a hint about the

@@ -17,19 +17,7 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
         None => list(args.json)?,
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
         Some(_) if args.json => bail!("--json applies only to the list of scenarios; leave it out"),
-        Some(ScenariosAction::Show { name, resolved }) if cellars::built_in(name).is_some() => {
-            let text = cellars::built_in(name).unwrap_or_default();
-            let cellar = Cellar::builtin(name, &[])?;
-            printer::text(&if *resolved { cellar.to_resolved_toml() } else { text.to_owned() })?;
-        }
-        Some(ScenariosAction::Show { name, resolved: false }) => {
-            // If there is no such scenario, loading it gives an error with the nearest name.
-            Scenario::builtin(name, &[])?;
-            printer::text(builtin::get(name).unwrap_or_default())?;
-        }
-        Some(ScenariosAction::Show { name, resolved: true }) => {
-            printer::text(&Scenario::builtin(name, &[])?.to_resolved_toml())?;
-        }
+        Some(ScenariosAction::Show { name, resolved }) => printer::text(&shown(name, *resolved)?)?,
         Some(ScenariosAction::Fields { filter: None }) => printer::text(&reference::markdown())?,
         Some(ScenariosAction::Fields { filter: Some(filter) }) => {
             printer::lines(filtered(&reference::markdown(), filter)?)?;
@@ -39,6 +27,20 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Returns the text of a built-in scenario or cellar, as written or with all defaults.
+fn shown(name: &str, resolved: bool) -> anyhow::Result<String> {
+    Ok(match builtin::get(name) {
+        Some(text) if !resolved => text.to_owned(),
+        Some(_) => Scenario::builtin(name, &[])?.to_resolved_toml(),
+        None => {
+            // If there is no such name, the error states the nearest one.
+            let cellar = Cellar::builtin(name, &[])?;
+            let written = cellars::built_in(name).filter(|_| !resolved);
+            written.map_or_else(|| cellar.to_resolved_toml(), str::to_owned)
+        }
+    })
 }
 
 described! {

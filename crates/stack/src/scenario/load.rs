@@ -125,9 +125,20 @@ impl Scenario {
     ///
     /// Same as [`Scenario::parse_bytes`]; also if a file cannot be read.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
-        let name = path.display().to_string();
-        let bytes = read_file(path, Place::Whole { file: name.clone() })?;
-        read(&name, &bytes, overrides, Access::Files)
+        Self::parse_file(path, &bytes_of(path)?, overrides)
+    }
+
+    /// Reads a scenario like [`Scenario::load`], from the bytes of its file: a pipe can be read only once.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`Scenario::load`].
+    pub fn parse_file(
+        path: &Path,
+        bytes: &[u8],
+        overrides: &[String],
+    ) -> Result<Self, ScenarioError> {
+        read(&path.display().to_string(), bytes, overrides, Access::Files)
     }
 
     /// Reads a scenario from a tree of values, such as the values that another program passes.
@@ -225,6 +236,14 @@ pub(super) fn unknown_builtin(field: &str, name: &str, language: &Language) -> P
         nearest: nearest(name, &valid),
         valid: valid.iter().map(|name| (*name).to_owned()).collect(),
     }
+}
+
+/// Returns the bytes of the file of a scenario or of a cellar.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn bytes_of(path: &Path) -> Result<Vec<u8>, ScenarioError> {
+    read_file(path, Place::Whole { file: path.display().to_string() })
 }
 
 pub(super) fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {

@@ -77,6 +77,7 @@ pub use free::{
     Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
 };
 pub use imperfections::Imperfections;
+pub use load::bytes_of;
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,

@@ -112,25 +112,26 @@ pub struct Host {
 }
 
 impl Host {
-    /// Reads a file and the files that it extends, and applies overrides as for a scenario ([`Scenario::parse`]).
+    /// Reads a file from its bytes, with the files that it extends, and applies overrides as for a scenario
+    /// ([`Scenario::parse`]).
     ///
     /// # Errors
-    /// Returns the first problem found, with its place in the text.
-    pub fn load(
+    /// Returns the first problem found, with its place in the text; also if the bytes are not UTF-8.
+    pub fn parse_file(
         path: &Path,
+        bytes: &[u8],
         overrides: &[String],
         language: &Language,
     ) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
-        let bytes = load::read_file(path, Place::Whole { file: name.clone() })?;
-        let (sources, table) = load::merged(&name, &bytes, overrides, Access::Files, language)?;
+        let (sources, table) = load::merged(&name, bytes, overrides, Access::Files, language)?;
         Ok(Self { sources, table })
     }
 
-    /// Reads a text like [`Host::load`]; the text may extend built-in files only.
+    /// Reads a text like [`Host::parse_file`]; the text may extend built-in files only.
     ///
     /// # Errors
-    /// As for [`Host::load`]; also if the bytes are not UTF-8.
+    /// As for [`Host::parse_file`].
     pub fn parse(
         name: &str,
         bytes: &[u8],
@@ -152,7 +153,7 @@ impl Host {
     ) -> Result<Self, ScenarioError> {
         let Some(text) = (language.builtin)(name) else {
             let place = Place::Whole { file: name.to_owned() };
-            return Err(ScenarioError::new(load::unknown_builtin("kind", name, language), place));
+            return Err(ScenarioError::new(load::unknown_builtin("scenario", name, language), place));
         };
         Self::parse(&format!("{name}.toml"), text.as_bytes(), overrides, language)
     }

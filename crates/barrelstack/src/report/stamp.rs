@@ -1,0 +1,28 @@
+//! Date and commit of pages.
+
+use barrelstack_input::system;
+use barrelstack_motion::Utc;
+use barrelstack_report::Stamp;
+
+/// States on all pages that the process writes from now on the date, which is that of
+/// `SOURCE_DATE_EPOCH` or of the clock, and the commit from which the program was built.
+///
+/// The variable `BARRELSTACK_COMMIT` replaces the commit. It is read when the program runs, not only
+/// when it is built, so that the pages of two builds can be compared bit for bit, as the tests do.
+///
+/// # Errors
+/// A message if the date is unknown; each page then states it in place of the date.
+pub fn stamp_pages(built: &str) -> Result<(), String> {
+    let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_else(|_| built.to_owned());
+    let stated = || date().unwrap_or_else(|reason| format!("unknown ({reason})"));
+    Stamp { date: stated, commit }.state();
+    date().map(drop)
+}
+
+fn date() -> Result<String, String> {
+    let seconds = system::clock()?;
+    let now = Utc::of_unix(seconds).ok_or_else(|| {
+        format!("SOURCE_DATE_EPOCH: expected seconds before the year 2200, found {seconds}; correct or unset this variable")
+    })?;
+    Ok(format!("{} (UTC)", now.date()))
+}
