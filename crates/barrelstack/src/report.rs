@@ -27,9 +27,9 @@ use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 
 pub use glossary::WORDS;
 pub(crate) use inputs::{settings_table, shown};
-pub use stamp::stamp_pages;
 pub use sections::{player, standing_range, stress_figure};
 pub(crate) use sections::{standing_until, traces};
+pub use stamp::stamp_pages;
 pub use tables::{demand_table, device_table, interface_table};
 pub use trust::trust;
 pub use unknowns::unknowns;

@@ -141,11 +141,11 @@ pub fn collapse(
     settings: &Settings,
     report: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Calibration, CalibrateError> {
-    let trials = trials(observations, scenarios, parameters, settings)?;
-    let Some(lead) = trials.first() else { return Ok(Calibration::default()) };
+    let tests = prepared(observations, scenarios, parameters, settings)?;
+    let Some(lead) = tests.first() else { return Ok(Calibration::default()) };
     let reach = math::log(settings.within);
     let point = |draw: &Draw| draw.point.iter().map(|x| reach * x).collect::<Vec<f64>>();
-    let of = settings.simulations * trials.len();
+    let of = settings.simulations * tests.len();
     let mut courses: Vec<Option<Course>> = Vec::new();
     let mut stopped = false;
     let posterior = sample(parameters.len(), settings.simulations, settings.seed, |draws| {
@@ -155,12 +155,12 @@ pub fn collapse(
             .flat_map(|draw| {
                 // One generator for all tests of a sample, so that every stack has its own placement.
                 let mut random = Random::new(draw.seed);
-                let built = |trial: &PreparedTest<'_>| {
-                    let scenario = trial.tunable.at(&trial.scenario, &point(draw));
-                    let scenario = Arc::new(placed(&scenario, trial.scatter, &mut random));
-                    Built { scenario, ground: trial.ground.clone() }
+                let built = |test: &PreparedTest<'_>| {
+                    let scenario = test.tunable.at(&test.scenario, &point(draw));
+                    let scenario = Arc::new(placed(&scenario, test.scatter, &mut random));
+                    Built { scenario, ground: test.ground.clone() }
                 };
-                trials.iter().map(built).collect::<Vec<_>>()
+                tests.iter().map(built).collect::<Vec<_>>()
             })
             .collect();
         let overall = |done| report(before + done, of.max(before + done));
@@ -170,14 +170,14 @@ pub fn collapse(
             return vec![f64::NEG_INFINITY; draws.len()];
         };
         let logs = simulated
-            .chunks_exact(trials.len())
-            .map(|tests| {
-                let log = |(trial, course): (&PreparedTest<'_>, &Option<Course>)| {
+            .chunks_exact(tests.len())
+            .map(|courses| {
+                let log = |(test, course): (&PreparedTest<'_>, &Option<Course>)| {
                     course.as_ref().map_or(f64::NEG_INFINITY, |course| {
-                        settings.errors.log_likelihood(trial.observed, course)
+                        settings.errors.log_likelihood(test.observed, course)
                     })
                 };
-                trials.iter().zip(tests).map(log).sum()
+                tests.iter().zip(courses).map(log).sum()
             })
             .collect();
         courses.extend(simulated);
@@ -199,15 +199,15 @@ pub fn collapse(
     let mut warnings = observations.warnings.clone();
     warnings.extend(identifiability(&estimates, &correlation, &posterior, settings.within));
     let mut facts = vec![
-        ("tests".to_owned(), trials.len().to_string()),
+        ("tests".to_owned(), tests.len().to_string()),
         ("simulations".to_owned(), courses.len().to_string()),
         ("draws in effect".to_owned(), short(posterior.effective())),
         ("power of the likelihood".to_owned(), short(posterior.power)),
         ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
         ("seed".to_owned(), settings.seed.to_string()),
     ];
-    for (at, trial) in trials.iter().enumerate() {
-        let (name, share) = alike(trial, courses.iter().skip(at).step_by(trials.len()), &posterior);
+    for (at, test) in tests.iter().enumerate() {
+        let (name, share) = alike(test, courses.iter().skip(at).step_by(tests.len()), &posterior);
         if let Some(share) = share {
             facts.push((
                 format!("test {}: {name}", at + 1),
@@ -232,7 +232,7 @@ pub fn collapse(
         estimates,
         correlation,
         condition: None,
-        figures: picture::pictures(&trials, &courses, &posterior),
+        figures: picture::pictures(&tests, &courses, &posterior),
         facts,
         warnings,
     })
@@ -240,7 +240,7 @@ pub fn collapse(
 
 /// Pairs each test with its scenario, and checks that the scenarios agree with each other and with the
 /// observations.
-fn trials<'a>(
+fn prepared<'a>(
     observations: &'a Observations,
     scenarios: &[Scenario],
     parameters: &[Parameter],
@@ -253,14 +253,14 @@ fn trials<'a>(
             observations.tests.len()
         )));
     }
-    let mut trials: Vec<PreparedTest<'_>> = Vec::new();
+    let mut tests: Vec<PreparedTest<'_>> = Vec::new();
     for (at, (observed, scenario)) in observations.tests.iter().zip(scenarios).enumerate() {
         let tunable = Tunable::new(scenario, parameters)?;
         let scale = scenario.run.similitude;
         let mut scenario = scenario.clone();
         scenario.run.duration = Some(observed.until / scale.sqrt());
         scenario.run.stop_after_collapse = None;
-        if let Some(lead) = trials.first() {
+        if let Some(lead) = tests.first() {
             let differs = |p: &&Parameter| lead.tunable.start(**p) != tunable.start(**p);
             if let Some(parameter) = parameters.iter().find(differs) {
                 return Err(CalibrateError::Scenario(format!(
@@ -274,9 +274,9 @@ fn trials<'a>(
         check(at, observed, &scenario)?;
         let ground = Shaking::of(&scenario).map_err(RunFailure::from)?;
         let scatter = settings.placement / scale;
-        trials.push(PreparedTest { observed, tunable, scenario, ground, scatter });
+        tests.push(PreparedTest { observed, tunable, scenario, ground, scatter });
     }
-    Ok(trials)
+    Ok(tests)
 }
 
 /// Checks that the scenario of a test can be simulated, by a run of one millisecond, and that it contains the
@@ -367,11 +367,11 @@ fn identifiability(
 /// Returns the name of the observed mode of a test, and the weight of the simulations with this mode; `None`
 /// if no mode was observed.
 fn alike<'a>(
-    trial: &PreparedTest<'_>,
+    test: &PreparedTest<'_>,
     courses: impl Iterator<Item = &'a Option<Course>>,
     posterior: &Posterior,
 ) -> (String, Option<f64>) {
-    let Some(mode) = trial.observed.mode else { return (String::new(), None) };
+    let Some(mode) = test.observed.mode else { return (String::new(), None) };
     let name = match mode {
         Mode::Stands => "stands".to_owned(),
         Mode::Collapse(mode) => mode.name().to_owned(),

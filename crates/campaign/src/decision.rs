@@ -38,7 +38,7 @@ use crate::study::{
 pub(crate) use figures::{chance_axis, fitted, points, raw};
 pub use json::DecisionDocument;
 pub(crate) use json::bounds;
-pub(crate) use page::{heading, print, text};
+pub(crate) use page::{fingerprint, heading, text};
 pub(crate) use words::{fallen_at_rest, left_out, percent, range, refusal};
 
 pub use cases::{Cases, JudgedCase, Measure};

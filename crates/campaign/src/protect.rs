@@ -308,31 +308,33 @@ pub fn protect(
         Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
     let mut singles = singles(&base);
     // The stack as it is must stand; otherwise nothing else is tried.
-    let mut trials = vec![Candidate::new(&base, singles.remove(0))?];
-    trials.extend(search.trials(singles));
-    let mut open: Vec<usize> = (0..trials.len()).collect();
+    let mut candidates = vec![Candidate::new(&base, singles.remove(0))?];
+    candidates.extend(search.candidates(singles));
+    let mut open: Vec<usize> = (0..candidates.len()).collect();
     for round in 0..request.rounds {
-        search.round(&mut trials, &open, round)?;
-        open = contenders(&trials, &open, &weights);
+        search.round(&mut candidates, &open, round)?;
+        open = contenders(&candidates, &open, &weights);
         if round == 0 && request.rounds > 1 {
-            let pairs = pairs(&base, &best_of_kinds(&trials, &open, &weights));
-            let first = trials.len();
-            trials.extend(search.trials(pairs));
-            let added: Vec<usize> = (first..trials.len()).collect();
+            let pairs = pairs(&base, &best_of_kinds(&candidates, &open, &weights));
+            let first = candidates.len();
+            candidates.extend(search.candidates(pairs));
+            let added: Vec<usize> = (first..candidates.len()).collect();
             // Pairs run under the motions of the first round, as the single protections did, and half of all continue.
-            search.round(&mut trials, &added, 0)?;
+            search.round(&mut candidates, &added, 0)?;
             open.extend(added);
-            open = contenders(&trials, &open, &weights);
+            open = contenders(&candidates, &open, &weights);
         }
     }
-    let tries = trials.len() - 1;
-    let mut all: Vec<Ranked> =
-        trials.iter().map(|trial| ranked(trial, &trials[0], &weights, tries)).collect();
+    let tries = candidates.len() - 1;
+    let mut all: Vec<Ranked> = candidates
+        .iter()
+        .map(|candidate| ranked(candidate, &candidates[0], &weights, tries))
+        .collect();
     mark_front(&mut all);
-    let most = trials.iter().map(Candidate::barrels).fold(0.0, f64::max);
-    over_constants(&mut all, &trials, levels, &weights, most);
-    search.worn(&trials, &mut all, &weights)?;
-    // Trials that were dropped early ran under fewer motions, so that their means cannot be compared with the others.
+    let most = candidates.iter().map(Candidate::barrels).fold(0.0, f64::max);
+    over_constants(&mut all, &candidates, levels, &weights, most);
+    search.worn(&candidates, &mut all, &weights)?;
+    // Candidates that were dropped early ran under fewer motions, so that their means cannot be compared with the others.
     all.sort_by(|a, b| {
         let by_mean = a.fallen.mean.total_cmp(&b.fallen.mean).then(a.cost().total_cmp(&b.cost()));
         b.round.cmp(&a.round).then(by_mean)
@@ -346,30 +348,31 @@ pub fn protect(
     Ok(ranking)
 }
 
-/// Returns the indices of the trials that continue in the next round, among the trials `open`.
-fn contenders(trials: &[Candidate], open: &[usize], weights: &[f64]) -> Vec<usize> {
+/// Returns the indices of the candidates that continue in the next round, among the candidates `open`.
+fn contenders(candidates: &[Candidate], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
-        let trial = &trials[*at];
-        (&trial.runs[trial.worse(weights)], middle(&trial.protection))
+        let candidate = &candidates[*at];
+        (&candidate.runs[candidate.worse(weights)], middle(&candidate.protection))
     };
     let judged: Vec<(&Runs, f64)> = open.iter().map(judged).collect();
-    let most = trials.first().map_or(0.0, Candidate::barrels);
+    let most = candidates.first().map_or(0.0, Candidate::barrels);
     let kept = rank::contenders(&judged, weights, most);
     kept.into_iter().map(|at| open[at]).collect()
 }
 
 /// Returns, for each kind of protection, the two with which the fewest barrels fall.
 fn best_of_kinds<'a>(
-    trials: &'a [Candidate],
+    candidates: &'a [Candidate],
     open: &[usize],
     weights: &[f64],
 ) -> Vec<&'a Protection> {
-    let fallen =
-        |trial: &Candidate| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
-    let mut sorted: Vec<&Candidate> = open.iter().map(|at| &trials[*at]).collect();
+    let fallen = |candidate: &Candidate| {
+        candidate.runs[candidate.worse(weights)].estimate(FALLEN, weights, 1.0).mean
+    };
+    let mut sorted: Vec<&Candidate> = open.iter().map(|at| &candidates[*at]).collect();
     sorted.sort_by(|a, b| fallen(a).total_cmp(&fallen(b)));
     let mut best: Vec<&Protection> = Vec::new();
-    for protection in sorted.into_iter().map(|trial| &trial.protection) {
+    for protection in sorted.into_iter().map(|candidate| &candidate.protection) {
         if best.iter().filter(|known| known.kind == protection.kind).count() < 2 {
             best.push(protection);
         }
@@ -390,19 +393,19 @@ fn middle(protection: &Protection) -> f64 {
     0.5 * (protection.cost[0] + protection.cost[1])
 }
 
-fn ranked(trial: &Candidate, base: &Candidate, weights: &[f64], tries: usize) -> Ranked {
-    let worse = trial.worse(weights);
-    let view = &trial.stacks[worse].0;
-    let runs = &trial.runs[worse];
-    let most = trial.barrels();
+fn ranked(candidate: &Candidate, base: &Candidate, weights: &[f64], tries: usize) -> Ranked {
+    let worse = candidate.worse(weights);
+    let view = &candidate.stacks[worse].0;
+    let runs = &candidate.runs[worse];
+    let most = candidate.barrels();
     let before = &base.runs[base.worse(weights)];
     let saved = |tries: usize| {
-        let changed = trial.protection.kind != Kind::AsItIs;
+        let changed = candidate.protection.kind != Kind::AsItIs;
         let range = (weights, most.max(base.barrels()));
         changed.then(|| runs.less_than(before, FALLEN, range, tries)).flatten()
     };
     Ranked {
-        protection: trial.protection.clone(),
+        protection: candidate.protection.clone(),
         collapse: runs.estimate(|run| run.collapsed, weights, 1.0),
         fallen: runs.estimate(FALLEN, weights, most),
         burst: runs.estimate(|run| run.burst, weights, most),
@@ -410,10 +413,10 @@ fn ranked(trial: &Candidate, base: &Candidate, weights: &[f64], tries: usize) ->
         saved_together: saved(tries),
         direction: *view,
         motions: runs.motions(),
-        runs: trial.runs.iter().map(|runs| runs.count).sum(),
-        left_out: trial.runs.iter().map(|runs| runs.left_out).sum(),
-        fallen_at_rest: trial.runs.iter().map(|runs| runs.fallen_at_rest).sum(),
-        round: trial.round,
+        runs: candidate.runs.iter().map(|runs| runs.count).sum(),
+        left_out: candidate.runs.iter().map(|runs| runs.left_out).sum(),
+        fallen_at_rest: candidate.runs.iter().map(|runs| runs.fallen_at_rest).sum(),
+        round: candidate.round,
         on_front: false,
         worn: None,
         range: None,
@@ -426,17 +429,17 @@ fn ranked(trial: &Candidate, base: &Candidate, weights: &[f64], tries: usize) ->
 /// Adds the effect of the uncertain constants to the protections that were run in all rounds.
 fn over_constants(
     all: &mut [Ranked],
-    trials: &[Candidate],
+    candidates: &[Candidate],
     levels: &[f64],
     weights: &[f64],
     most: f64,
 ) {
-    let last = trials.iter().map(|trial| trial.round).max();
+    let last = candidates.iter().map(|candidate| candidate.round).max();
     let finalists: Vec<usize> =
-        (0..trials.len()).filter(|at| Some(trials[*at].round) == last).collect();
+        (0..candidates.len()).filter(|at| Some(candidates[*at].round) == last).collect();
     let over = |at: &usize| {
-        let trial = &trials[*at];
-        trial.runs[trial.worse(weights)].over_constants(levels, weights, most)
+        let candidate = &candidates[*at];
+        candidate.runs[candidate.worse(weights)].over_constants(levels, weights, most)
     };
     let found = pool::map(&finalists, over, &|_| ());
     for (at, over) in finalists.into_iter().zip(found) {

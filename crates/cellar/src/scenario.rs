@@ -321,7 +321,11 @@ impl Cellar {
     ///
     /// # Errors
     /// As for [`Cellar::load`].
-    pub fn parse_file(path: &Path, bytes: &[u8], changes: &[String]) -> Result<Self, ScenarioError> {
+    pub fn parse_file(
+        path: &Path,
+        bytes: &[u8],
+        changes: &[String],
+    ) -> Result<Self, ScenarioError> {
         Self::of(&Host::parse_file(path, bytes, changes, &LANGUAGE)?)
     }
 

@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Stop at a point of the work, WORK:THINGS:DONE, as Ctrl-C does; for tests.
-    #[arg(long, global = true, hide = true, value_name = "PLACE")]
+    #[arg(long, global = true, hide = true, value_name = "POINT")]
     pub(crate) stop_at: Option<crate::interrupt::StopPoint>,
 }
 

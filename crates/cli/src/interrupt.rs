@@ -46,7 +46,7 @@ pub(crate) struct Interrupt;
 static WORKS: AtomicUsize = AtomicUsize::new(0);
 
 /// Point of the work at which a test stops the program.
-static PLACE: OnceLock<Option<StopPoint>> = OnceLock::new();
+static STOP_POINT: OnceLock<Option<StopPoint>> = OnceLock::new();
 
 /// A point in the work of the program, independent of the machine load: `2:variants:3` is reached
 /// when three variants are finished in the second piece of work.
@@ -73,10 +73,10 @@ impl std::str::FromStr for StopPoint {
     }
 }
 
-/// Makes the program stop when its work reaches `place`, as if by a signal.
-pub(crate) fn stop_at(place: Option<StopPoint>) {
+/// Makes the program stop when its work reaches `point`, as if by a signal.
+pub(crate) fn stop_at(point: Option<StopPoint>) {
     // Only the first call has an effect, and there is only one.
-    let _ = PLACE.set(place);
+    let _ = STOP_POINT.set(point);
 }
 
 /// Installs the signal handler of the program; `json` is `true` if a document is printed.
@@ -194,10 +194,10 @@ impl Interrupt {
     /// Reports the progress of work on `things`, for tests that stop the work at a certain point.
     #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
-        let Some(Some(place)) = PLACE.get() else { return };
-        let here = place.work == WORKS.load(Ordering::Relaxed)
-            && things.contains(&place.things)
-            && done >= place.done;
+        let Some(Some(point)) = STOP_POINT.get() else { return };
+        let here = point.work == WORKS.load(Ordering::Relaxed)
+            && things.contains(&point.things)
+            && done >= point.done;
         if here && !REQUESTED.load(Ordering::Relaxed) {
             request_stop();
         }

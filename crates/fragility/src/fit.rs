@@ -226,13 +226,13 @@ pub(crate) fn likelihood<const N: usize>(
     ln_slope: f64,
     score: impl Fn(f64) -> Score<N>,
 ) -> Likelihood<N> {
-    let known = |capacity: Capacity| match capacity {
+    let observation = |capacity: Capacity| match capacity {
         Capacity::At(x) => Observation::At(score(ln(x)), ln(x) - ln_slope),
         Capacity::Below(x) => Observation::Below(score(ln(x))),
         Capacity::Above(x) => Observation::Above(score(ln(x))),
         Capacity::Between(low, high) => Observation::Between(score(ln(low)), score(ln(high))),
     };
-    let terms = evidence.iter().map(|item| (known(item.capacity), item.weight)).collect();
+    let terms = evidence.iter().map(|item| (observation(item.capacity), item.weight)).collect();
     Likelihood { terms, slope }
 }
 

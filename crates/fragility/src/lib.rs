@@ -84,7 +84,7 @@ pub use profile::{profile_band, profile_median};
 pub use proportion::{Interval, at_most, clopper_pearson, unobserved, wilson};
 pub use records::{LeaveOneOut, grouped_mean, leave_one_out, mean_difference};
 pub use unknowns::{
-    Conditional, DrawnRun, FEWEST_TRIALS, Influence, Intensities, Shaken, Shape, conditional,
+    Conditional, DrawnRun, FEWEST_RUNS, Influence, Intensities, Shaken, Shape, conditional,
     interval_of, shaken, share_less,
 };
 

@@ -79,9 +79,9 @@ const STEPS: usize = 200;
 
 impl<const N: usize> Likelihood<N> {
     /// Returns the log-likelihood of one observation with its derivatives.
-    pub(crate) fn term(&self, known: &Observation<N>, weight: f64, p: &[f64; N]) -> Shape<N> {
+    pub(crate) fn term(&self, observation: &Observation<N>, weight: f64, p: &[f64; N]) -> Shape<N> {
         let mut shape = Shape::ZERO;
-        match known {
+        match observation {
             Observation::At(score, ln_x) => {
                 let z = score.at(p);
                 shape.value = -weight * (0.5 * z * z + LN_ROOT_TAU + ln_x);
@@ -133,8 +133,8 @@ impl<const N: usize> Likelihood<N> {
     /// Returns the log-likelihood of all observations with its derivatives.
     pub(crate) fn shape(&self, p: &[f64; N]) -> Shape<N> {
         let mut sum = Shape::ZERO;
-        for (known, weight) in &self.terms {
-            let term = self.term(known, *weight, p);
+        for (observation, weight) in &self.terms {
+            let term = self.term(observation, *weight, p);
             sum.value += term.value;
             for i in 0..N {
                 sum.gradient[i] += term.gradient[i];

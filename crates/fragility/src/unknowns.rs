@@ -4,8 +4,8 @@ use crate::math::{exp, ln, normal, normal_quantile, quantile};
 use crate::proportion::Interval;
 use crate::sobol;
 
-/// Minimum number of trials to which a [`Conditional`] share is fitted.
-pub const FEWEST_TRIALS: usize = 16;
+/// Minimum number of runs to which a [`Conditional`] share is fitted.
+pub const FEWEST_RUNS: usize = 16;
 
 /// Points of the constants over which a share is averaged.
 const AVERAGED: usize = 32;
@@ -44,19 +44,19 @@ const MIDDLE: usize = 1;
 /// Standard deviation of `b` in its prior distribution, which is normal.
 const PRIOR_MIDDLE: f64 = 2.5;
 
-/// One trial: a run with randomly drawn constants.
+/// A run with randomly drawn constants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnRun {
     /// Values of the unknown constants, as standard normal deviates.
     pub deviates: Vec<f64>,
-    /// `true` if the trial belongs to the second half of the trials. The halves may differ on purpose, for
+    /// `true` if the run belongs to the second half of the runs. The halves may differ on purpose, for
     /// example in the component of the motion.
     pub second_half: bool,
-    /// `true` if the structure failed in the trial.
+    /// `true` if the structure failed in the run.
     pub failed: bool,
 }
 
-/// Share of failures for given constants. The uncertainty due to a finite number of trials is represented by
+/// Share of failures for given constants. The uncertainty due to a finite number of runs is represented by
 /// samples of the posterior distribution of a probit regression.
 ///
 /// ```text
@@ -64,7 +64,7 @@ pub struct DrawnRun {
 /// η(z)     = b + Σ aⱼ zⱼ + Σ cᵢⱼ (zᵢ zⱼ − δᵢⱼ),  i ≤ j
 /// ```
 ///
-/// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the trials.
+/// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the runs.
 /// Squares and products are needed: without them, the range of a stack of three levels contained 10 of 24 true
 /// shares; with them it contains 19, and all 24 within their error (`validation/statistics.md`).
 /// The posterior distribution is sampled by the method of Albert and Chib (1993).
@@ -88,30 +88,30 @@ pub struct Influence {
 }
 
 /// Fits the share of failures as a function of the unknown constants. Returns `None` if there are fewer than
-/// [`FEWEST_TRIALS`] trials, if there are no constants, or if trials differ in the number of their constants.
+/// [`FEWEST_RUNS`] runs, if there are no constants, or if runs differ in the number of their constants.
 ///
 /// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
-pub fn conditional(trials: &[DrawnRun], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
+pub fn conditional(runs: &[DrawnRun], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
     // Logarithms of it are finite.
     let mut uniform = || 1.0 - uniform();
-    let unknowns = trials.first()?.deviates.len();
-    if trials.len() < FEWEST_TRIALS
+    let unknowns = runs.first()?.deviates.len();
+    if runs.len() < FEWEST_RUNS
         || unknowns == 0
-        || trials.iter().any(|trial| trial.deviates.len() != unknowns)
+        || runs.iter().any(|run| run.deviates.len() != unknowns)
     {
         return None;
     }
-    let halves = trials.iter().any(|trial| trial.second_half != trials[0].second_half);
-    let side = |trial: &DrawnRun| match (halves, trial.second_half) {
+    let halves = runs.iter().any(|run| run.second_half != runs[0].second_half);
+    let side = |run: &DrawnRun| match (halves, run.second_half) {
         (false, _) => 0.0,
         (true, false) => -1.0,
         (true, true) => 1.0,
     };
-    let rows: Vec<Vec<f64>> = trials
+    let rows: Vec<Vec<f64>> = runs
         .iter()
-        .map(|trial| std::iter::once(side(trial)).chain(terms(&trial.deviates)).collect())
+        .map(|run| std::iter::once(side(run)).chain(terms(&run.deviates)).collect())
         .collect();
-    let failed: Vec<bool> = trials.iter().map(|trial| trial.failed).collect();
+    let failed: Vec<bool> = runs.iter().map(|run| run.failed).collect();
     let mut priors = vec![Prior::Student(PRIOR), Prior::Normal(PRIOR_MIDDLE)];
     priors.extend(priors_of_constants(unknowns));
     let samples = posterior(&rows, &failed, &priors, &mut uniform);
@@ -249,7 +249,7 @@ pub struct Intensities {
 }
 
 /// Fits the share of failures as a function of intensity and of the unknown constants. Returns `None` if there are
-/// fewer than [`FEWEST_TRIALS`] runs, if there are no constants, or if runs differ in the number of their constants.
+/// fewer than [`FEWEST_RUNS`] runs, if there are no constants, or if runs differ in the number of their constants.
 ///
 /// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
 pub fn shaken(
@@ -259,7 +259,7 @@ pub fn shaken(
 ) -> Option<Intensities> {
     let mut uniform = || 1.0 - uniform();
     let unknowns = runs.first()?.deviates.len();
-    if runs.len() < FEWEST_TRIALS
+    if runs.len() < FEWEST_RUNS
         || unknowns == 0
         || runs.iter().any(|run| run.deviates.len() != unknowns || run.intensity <= 0.0)
     {

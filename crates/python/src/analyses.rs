@@ -243,7 +243,7 @@ pub(crate) fn reproduce(
             "ours": one.ours,
             "difference": one.difference,
             "band": one.band,
-            "verdict": one.verdict.words(),
+            "verdict": one.agreement.words(),
             "why": one.why,
         })
     };

@@ -461,7 +461,8 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   function drawPaths({ context, frame }) {
     data.traces.forEach((trace, at) => {
       const [px, pz] = trace.point, [xs, zs, angles] = [0, 1, 2].map((c) => data.poses[3 * trace.body + c]);
-      // In space a path is that of a body's center.
+      // In space a path is that of a body's center, if the body exists.
+      if (!depth.plane && !depth.bodies[depth.paths[at]]) return;
       const center = depth.plane ? null : [0, 1, 2].map((c) => depth.poses[7 * depth.paths[at] + c]);
       context.beginPath();
       let open = false;

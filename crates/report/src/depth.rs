@@ -177,7 +177,7 @@ impl Depth {
             "moment": moment,
             "plane": plane,
             "poses": poses,
-            "paths": self.paths.iter().filter(|body| **body < self.bodies.len()).collect::<Vec<_>>(),
+            "paths": self.paths,
         })
     }
 

@@ -60,7 +60,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind => concat!("plan ", $class)),* }
             }
 
-            /// Letter of the region in a terminal.
+            /// Letter of the region in a terminal of plain characters.
             fn letter(self) -> char {
                 match self { $(Self::$kind => $letter),* }
             }
@@ -109,7 +109,7 @@ impl FloorPlan {
     pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
         let [length, depth] = self.size.map(|side| side.max(1e-3));
         let scale = (room.of(MOST[0], PHONE) / length).min(MOST[1] / depth);
-        let width = room.of(MOST[0], PHONE).max(length * scale) + 2.0 * MARGIN;
+        let width = room.of(MOST[0], PHONE) + 2.0 * MARGIN;
         let legend = self.legend(width - 2.0 * MARGIN);
         let floor = depth * scale;
         let height = floor + 2.0 * MARGIN + LINE * (legend.len() as f64 + 1.0);
@@ -190,18 +190,8 @@ impl FloorPlan {
             let words = format!("{}: up to 20, 40, 60, 80, 100 %", heat.label);
             entries.push((SHADE.to_vec(), words));
         }
-        let mut lines = vec![Vec::new()];
-        let mut used = 0.0;
-        for (classes, word) in entries {
-            let wide = entry(&classes, &word);
-            if used > 0.0 && used + wide > width {
-                lines.push(Vec::new());
-                used = 0.0;
-            }
-            used += wide;
-            lines.last_mut().expect("a line").push((classes, word));
-        }
-        lines
+        let wide = |(classes, word): &(Vec<&str>, String)| entry(classes, word);
+        wrapped(entries, width, wide)
     }
 
     pub(crate) fn to_csv(&self) -> String {
@@ -220,11 +210,10 @@ impl FloorPlan {
         for (point, name) in &self.marks {
             row("mark", name, *point, None);
         }
-        for (at, share) in self.heat.iter().flat_map(|heat| heat.shares.iter().enumerate()) {
-            let heat = self.heat.as_ref().expect("a heat map");
-            let (column, line) = (at % heat.columns.max(1), at / heat.columns.max(1));
-            let middle = [column, line].map(|cell| (cell as f64 + 0.5) * heat.cell);
-            if *share > 0.0 {
+        if let Some(heat) = &self.heat {
+            for (at, share) in heat.shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+                let (column, line) = (at % heat.columns.max(1), at / heat.columns.max(1));
+                let middle = [column, line].map(|cell| (cell as f64 + 0.5) * heat.cell);
                 row("cell", "", middle, Some(*share));
             }
         }
@@ -245,11 +234,7 @@ impl FloorPlan {
                 for (column, letter) in line.iter_mut().enumerate() {
                     let middle = [(column as f64 + 0.5) * cell, (row as f64 + 0.5) * 2.0 * cell];
                     if region.holds(middle) {
-                        *letter = match (characters, region.kind) {
-                            (Characters::Unicode, RegionKind::Stands) => '▒',
-                            (Characters::Unicode, RegionKind::Solid) => '█',
-                            (_, kind) => kind.letter(),
-                        };
+                        *letter = region.kind.character(characters);
                     }
                 }
             }
@@ -275,21 +260,31 @@ impl FloorPlan {
         let mut legend: Vec<String> = RegionKind::ALL
             .iter()
             .filter(|kind| self.regions.iter().any(|region| region.kind == **kind))
-            .map(|kind| {
-                let letter = match (characters, kind) {
-                    (Characters::Unicode, RegionKind::Stands) => '▒',
-                    (Characters::Unicode, RegionKind::Solid) => '█',
-                    _ => kind.letter(),
-                };
-                format!("{letter} {}", kind.word())
-            })
+            .map(|kind| format!("{} {}", kind.character(characters), kind.word()))
             .collect();
         if !self.marks.is_empty() {
             legend.push("@ place of people".to_owned());
         }
         legend.push(format!("one character is {} m wide", number::significant(cell, 2)));
-        lines.push(legend.join(", "));
+        let wide = |entry: &String| entry.chars().count() as f64 + 2.0;
+        // The edges of the plan, and the comma and the blank after the last entry of a line.
+        let mut legend = wrapped(legend, COLUMNS + 2.0 + 1.0, wide).into_iter().peekable();
+        while let Some(line) = legend.next() {
+            let comma = if legend.peek().is_some() { "," } else { "" };
+            lines.push(line.join(", ") + comma);
+        }
         lines
+    }
+}
+
+impl RegionKind {
+    /// Returns the character of the region in a terminal.
+    fn character(self, characters: Characters) -> char {
+        match (characters, self) {
+            (Characters::Unicode, Self::Stands) => '▒',
+            (Characters::Unicode, Self::Solid) => '█',
+            _ => self.letter(),
+        }
     }
 }
 
@@ -319,6 +314,22 @@ fn shade(share: f64) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded")]
     let step = (share * SHADES as f64).ceil().clamp(0.0, SHADES as f64) as usize;
     step.checked_sub(1)
+}
+
+/// Breaks entries into lines that are no wider than a width, unless a single entry is.
+fn wrapped<T>(entries: Vec<T>, width: f64, wide: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
+    let (mut lines, mut used) = (Vec::new(), f64::INFINITY);
+    for entry in entries {
+        used += wide(&entry);
+        match lines.last_mut() {
+            Some(line) if used <= width => Vec::push(line, entry),
+            _ => {
+                used = wide(&entry);
+                lines.push(vec![entry]);
+            }
+        }
+    }
+    lines
 }
 
 /// Returns the width (px) of an entry of the legend.
@@ -405,6 +416,20 @@ mod tests {
         assert!(lines.iter().all(|line| line.is_ascii() && line.len() <= 102), "{whole}");
         for letter in ['#', 'F', '.', '@'] {
             assert!(whole.contains(letter), "{whole}");
+        }
+        // With all kinds, the legend needs more than one line.
+        let all = RegionKind::ALL.iter().enumerate().map(|(at, kind)| {
+            Region::rectangle([at as f64, 0.0], [at as f64 + 0.9, 1.0], *kind, "")
+        });
+        let full = FloorPlan { regions: all.collect(), ..plan() };
+        for characters in [Characters::Ascii, Characters::Unicode] {
+            let lines = full.lines(characters);
+            let wide = |line: &String| line.chars().count() <= 102;
+            assert!(lines.iter().all(wide), "{}", lines.join("\n"));
+            for kind in RegionKind::ALL {
+                let entry = format!("{} {}", kind.character(characters), kind.word());
+                assert!(lines.iter().any(|line| line.contains(&entry)), "{entry}");
+            }
         }
         // The far side is above: the zone is in the upper half.
         let first = |letter: char| lines.iter().position(|line| line.contains(letter));

@@ -88,50 +88,50 @@ impl<'d> Walk<'d, '_> {
         style
     }
 
-    fn items(&mut self, items: &'d [Item], place: &Transform) {
+    fn items(&mut self, items: &'d [Item], transform: &Transform) {
         for item in items {
-            self.item(item, place);
+            self.item(item, transform);
         }
     }
 
-    fn item(&mut self, item: &'d Item, place: &Transform) {
+    fn item(&mut self, item: &'d Item, transform: &Transform) {
         match item {
             Item::Line { class, from, to } => {
-                let style = self.style(Tag::Shape, class, place.scale);
-                self.painter.lines(&place.runs(&vec![vec![*from, *to]]), false, &style);
+                let style = self.style(Tag::Shape, class, transform.scale);
+                self.painter.lines(&transform.runs(&vec![vec![*from, *to]]), false, &style);
             }
             Item::Rect { class, lower: [x, y], size: [w, h] } => {
                 let corners = vec![[*x, *y], [x + w, *y], [x + w, y + h], [*x, y + h]];
-                let style = self.style(Tag::Shape, class, place.scale);
-                self.painter.lines(&place.runs(&vec![corners]), true, &style);
+                let style = self.style(Tag::Shape, class, transform.scale);
+                self.painter.lines(&transform.runs(&vec![corners]), true, &style);
             }
             Item::Circle { class, center, radius } => {
-                let style = self.style(Tag::Shape, class, place.scale);
-                self.painter.circle(place.at(*center), radius * place.scale, &style);
+                let style = self.style(Tag::Shape, class, transform.scale);
+                self.painter.circle(transform.at(*center), radius * transform.scale, &style);
             }
             Item::Path { class, dash, runs, closed } => {
-                let mut style = self.style(Tag::Shape, class, place.scale);
+                let mut style = self.style(Tag::Shape, class, transform.scale);
                 if !dash.is_empty() {
-                    style.dash = dashes(dash).iter().map(|v| v * place.scale).collect();
+                    style.dash = dashes(dash).iter().map(|v| v * transform.scale).collect();
                 }
-                self.painter.lines(&place.runs(runs), *closed, &style);
+                self.painter.lines(&transform.runs(runs), *closed, &style);
             }
             Item::Outline { class, pen, runs, closed } => {
-                let mut style = self.style(Tag::Shape, class, place.scale);
-                style.stroke_width = pen * place.scale;
-                self.painter.lines(&place.runs(runs), *closed, &style);
+                let mut style = self.style(Tag::Shape, class, transform.scale);
+                style.stroke_width = pen * transform.scale;
+                self.painter.lines(&transform.runs(runs), *closed, &style);
             }
             Item::Text { class, at, anchor, degrees, text } => {
-                self.word(class, place.at(*at), *anchor, *degrees, text, place.scale);
+                self.word(class, transform.at(*at), *anchor, *degrees, text, transform.scale);
             }
             Item::Clip { lower, size, items, .. } => {
-                self.painter.clip(place.at(*lower), size.map(|side| side * place.scale));
-                self.items(items, place);
+                self.painter.clip(transform.at(*lower), size.map(|side| side * transform.scale));
+                self.items(items, transform);
                 self.painter.unclip();
             }
             Item::Nested { at, scale, drawing } => {
-                let scale = place.scale * scale;
-                let inner = Transform { origin: place.at(*at), scale, ..*place };
+                let scale = transform.scale * scale;
+                let inner = Transform { origin: transform.at(*at), scale, ..*transform };
                 let size = [drawing.width, drawing.height].map(|side| side * scale);
                 self.painter.clip(inner.origin, size);
                 self.items(&drawing.items, &inner);
@@ -141,8 +141,11 @@ impl<'d> Walk<'d, '_> {
                 self.bodies.extend(bodies.iter().map(|body| (body.id.as_str(), body)));
             }
             Item::Scene { scale, origin, bodies } => {
-                let world =
-                    Transform { origin: place.at(*origin), scale: place.scale * scale, ..*place };
+                let world = Transform {
+                    origin: transform.at(*origin),
+                    scale: transform.scale * scale,
+                    ..*transform
+                };
                 for placed in bodies {
                     self.placed(placed, &world);
                 }

@@ -123,6 +123,21 @@ impl Series {
         Self { label: label.into(), x, y, ..Self::default() }
     }
 
+    /// Creates a thick bar in each of the given rows of an axis with names, between its two ends on the x axis.
+    pub fn bars(
+        label: impl Into<String>,
+        bars: impl IntoIterator<Item = (usize, [f64; 2])>,
+    ) -> Self {
+        let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
+        let mut series = Self { style, ..Self::new(label, Vec::new(), Vec::new()) };
+        for (row, [from, to]) in bars {
+            // NaN breaks the line between one bar and the next.
+            series.x.extend([from, to, f64::NAN]);
+            series.y.extend([Axis::row(row); 3]);
+        }
+        series
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.x.len().min(self.y.len())
     }

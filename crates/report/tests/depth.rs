@@ -1,6 +1,8 @@
 //! Scenes in three dimensions: what the page gets of them.
 
 use crate::common::{document, payload, player, scene, unpack};
+use serde_json::json;
+
 use barrelstack_report::{
     Depth, DepthBody, DepthPoses, DepthTie, Moment, POSE_QUANTUM, Pose3, Role, Scene, Volume, html,
 };
@@ -48,6 +50,8 @@ fn equal_solids_are_written_once_and_a_moment_without_a_time_is_left_out() {
     );
     assert_eq!(depth["bodies"][1]["shape"], depth["bodies"][2]["shape"]);
     assert_eq!(depth["plane"], "across");
+    // A path belongs to the trace with its index, so a path of a body that is missing keeps its place.
+    assert_eq!(depth["paths"], json!([2, 3]));
     assert!(depth["poses"].is_null() && depth["moment"].is_null());
     assert_eq!(depth["events"][0]["text"], "B1 falls");
 }

@@ -1,4 +1,4 @@
-//! Comparison of one published result with ours, and its verdict.
+//! Comparison of one published result with ours, and their agreement.
 
 use std::fmt::Write as _;
 
@@ -21,7 +21,7 @@ pub enum Agreement {
 }
 
 impl Agreement {
-    /// Returns the text of the verdict in tables.
+    /// Returns the words for tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
@@ -48,8 +48,8 @@ pub struct Comparison {
     pub difference: Option<f64>,
     /// The wider band that the project accepts, in words, if there is one.
     pub band: Option<&'static str>,
-    /// The verdict.
-    pub verdict: Agreement,
+    /// Agreement of the two.
+    pub agreement: Agreement,
     /// Explanation of the difference, or method of measurement.
     pub why: String,
 }
@@ -75,7 +75,7 @@ pub(super) fn table(rows: &[Comparison]) -> String {
             &row.ours,
             &difference,
             row.band.unwrap_or("–"),
-            row.verdict.words(),
+            row.agreement.words(),
             &sentence(&row.why),
         ];
         let cells = cells.map(|cell| cell.replace('*', "\\*").replace('|', "\\|"));
@@ -105,7 +105,7 @@ pub(super) fn number(
 ) -> Comparison {
     let difference = ours.map(|ours| ours / published - 1.0);
     let within = |(low, high, _): Band| ours.is_some_and(|ours| (low..=high).contains(&ours));
-    let verdict = if difference.is_some_and(|d| d.abs() <= CLOSE) {
+    let agreement = if difference.is_some_and(|d| d.abs() <= CLOSE) {
         Agreement::Agrees
     } else if band.is_some_and(within) {
         Agreement::InBand
@@ -122,7 +122,7 @@ pub(super) fn number(
         ours: ours.map_or_else(|| "does not happen".to_owned(), shown),
         difference,
         band: band.map(|(_, _, words)| words),
-        verdict,
+        agreement,
         why: why.into(),
     }
 }
@@ -143,7 +143,7 @@ pub(super) fn finding(
         ours: ours.into(),
         difference: None,
         band: None,
-        verdict: if same { Agreement::Agrees } else { Agreement::Differs },
+        agreement: if same { Agreement::Agrees } else { Agreement::Differs },
         why: why.into(),
     }
 }
@@ -153,11 +153,11 @@ mod tests {
     use super::{Agreement, Band, number};
 
     fn judge(ours: Option<f64>, band: Option<Band>) -> Agreement {
-        number("", "", (10.0, "s"), ours, band, "").verdict
+        number("", "", (10.0, "s"), ours, band, "").agreement
     }
 
     #[test]
-    fn the_verdict_is_the_narrowest_band_that_holds() {
+    fn the_agreement_is_the_narrowest_band_that_holds() {
         let band = Some((5.0, 15.0, "5 to 15 s"));
         assert_eq!(judge(Some(11.9), band), Agreement::Agrees);
         assert_eq!(judge(Some(12.1), band), Agreement::InBand);

@@ -44,9 +44,9 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
     }
 }
 
-/// Summarizes the verdicts.
+/// Summarizes the agreement of all rows.
 pub(super) fn headline(rows: &[Comparison]) -> String {
-    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    let count = |agreement| rows.iter().filter(|row| row.agreement == agreement).count();
     let compared = rows.len() - count(Agreement::NotCompared);
     let agree = count(Agreement::Agrees);
     let mut text = if compared < rows.len() {
@@ -146,7 +146,7 @@ fn overview(rows: &[Comparison]) -> Table {
             ("ours", "", &|row| Cell::text(&row.ours)),
             ("difference", "", &|row| Cell::maybe(row.difference.map(percent))),
             ("band", "", &|row| Cell::maybe(row.band)),
-            ("verdict", "", &|row| Cell::text(row.verdict.words())),
+            ("verdict", "", &|row| Cell::text(row.agreement.words())),
         ],
     )
 }
@@ -157,7 +157,7 @@ fn reasons(rows: &[Comparison]) -> Table {
         rows,
         &[
             ("quantity", "", &|row| Cell::text(&row.quantity)),
-            ("verdict", "", &|row| Cell::text(row.verdict.words())),
+            ("verdict", "", &|row| Cell::text(row.agreement.words())),
             ("how and why", "", &|row| Cell::text(&row.why)),
         ],
     )

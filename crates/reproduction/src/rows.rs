@@ -195,7 +195,7 @@ fn six(results: &Results) -> Vec<Comparison> {
     ));
     if !results.motion.is_papers() {
         for row in &mut rows {
-            row.verdict = Agreement::NotCompared;
+            row.agreement = Agreement::NotCompared;
             row.ours = "–".into();
             row.difference = None;
             row.why = "needs the paper's record".into();
@@ -441,7 +441,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         ),
         difference: None,
         band: None,
-        verdict: Agreement::NotCompared,
+        agreement: Agreement::NotCompared,
         why: format!(
             "The calibrated values are 10 % and 16 % greater than the measured ones: 9.8 kN/cm / 1.10, 22.0 N s/cm / \
              1.16. The paper gives no result for the measured values; with the calibrated ones: {}, first fall {}.",

@@ -83,7 +83,7 @@ pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Com
         ours: value(run).map_or_else(|| "–".to_owned(), |value| significant(value, 3)),
         difference: None,
         band: None,
-        verdict: Agreement::NotCompared,
+        agreement: Agreement::NotCompared,
         why: format!("{meaning}; until the first loss of seat"),
     };
     DEFINITIONS.into_iter().map(row).collect()

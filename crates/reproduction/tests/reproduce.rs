@@ -49,7 +49,7 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
         // The paper states the measured parameters but no result for them.
         let unstated =
             row.quantity.ends_with("measured k and c") || row.quantity.contains("by definition");
-        assert_eq!(row.verdict == Agreement::NotCompared, six || unstated, "{}", row.quantity);
+        assert_eq!(row.agreement == Agreement::NotCompared, six || unstated, "{}", row.quantity);
         if six {
             assert_eq!(row.difference, None, "{}", row.quantity);
             assert!(
@@ -78,20 +78,20 @@ fn the_benchmarks_agree() {
         "the test at half scale: top level gone after",
         "along the barrels: collapse",
     ] {
-        assert_eq!(row(quantity).verdict, Agreement::Agrees, "{:?}", row(quantity));
+        assert_eq!(row(quantity).agreement, Agreement::Agrees, "{:?}", row(quantity));
     }
     // measured 4.78 s
     let along = row("along the barrels: stands for");
-    assert!(matches!(along.verdict, Agreement::Agrees | Agreement::InBand), "{along:?}");
+    assert!(matches!(along.agreement, Agreement::Agrees | Agreement::InBand), "{along:?}");
 }
 
 #[test]
 fn what_differs_is_said_to_differ() {
-    for row in found().comparisons.iter().filter(|row| row.verdict == Agreement::Differs) {
+    for row in found().comparisons.iter().filter(|row| row.agreement == Agreement::Differs) {
         assert!(!row.why.is_empty(), "{row:?}");
     }
     let headline = &found().document.verdict.headline;
-    let count = |verdict| found().comparisons.iter().filter(|r| r.verdict == verdict).count();
+    let count = |agreement| found().comparisons.iter().filter(|r| r.agreement == agreement).count();
     assert!(headline.contains(&format!("{} differ", count(Agreement::Differs))), "{headline}");
 }
 

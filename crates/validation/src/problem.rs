@@ -160,36 +160,36 @@ pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) ->
 }
 
 impl Setting {
-    /// Adds the requested quantity, its unit (empty for pure numbers), and the exact answer.
+    /// Adds the requested quantity, its unit (empty for pure numbers), and the answer with which it is compared.
     pub fn quantity(
         self,
         quantity: &'static str,
         unit: &'static str,
-        answer: Reference,
+        reference: Reference,
     ) -> Question {
-        Question { setting: self, quantity, unit, answer }
+        Question { setting: self, quantity, unit, reference }
     }
 }
 
-/// The exact or published answer with its tolerance.
+/// The exact or published answer with which a computed value is compared, and its tolerance.
 pub struct Reference {
     exact: f64,
     tolerance: Tolerance,
     fast: Option<Tolerance>,
 }
 
-/// Creates an answer with a relative tolerance.
+/// Creates a reference with a relative tolerance.
 pub fn relative(exact: f64, limit: f64) -> Reference {
     Reference { exact, tolerance: Tolerance::Relative(limit), fast: None }
 }
 
-/// Creates an answer with an absolute tolerance, in the unit of the quantity.
+/// Creates a reference with an absolute tolerance, in the unit of the quantity.
 pub fn absolute(exact: f64, limit: f64) -> Reference {
     Reference { exact, tolerance: Tolerance::Absolute(limit), fast: None }
 }
 
 impl Reference {
-    /// Returns the answer with a second limit, of the same kind, that applies at fast effort.
+    /// Returns the reference with a second limit, of the same kind, that applies at fast effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -205,7 +205,7 @@ pub struct Question {
     setting: Setting,
     quantity: &'static str,
     unit: &'static str,
-    answer: Reference,
+    reference: Reference,
 }
 
 impl Question {
@@ -214,8 +214,8 @@ impl Question {
         self,
         answer: impl Fn(Effort) -> Result<A, Failure> + Send + Sync + 'static,
     ) -> Problem {
-        let Self { setting: Setting { id, title, source }, quantity, unit, answer: wanted } = self;
-        let Reference { exact, tolerance, fast } = wanted;
+        let Self { setting: Setting { id, title, source }, quantity, unit, reference } = self;
+        let Reference { exact, tolerance, fast } = reference;
         let run: Run = Box::new(move |effort| answer(effort).map(Into::into));
         Problem { id, title, source, quantity, unit, exact, tolerance, fast, run }
     }
@@ -225,7 +225,7 @@ impl Question {
         self,
         answer: impl Fn(Effort, i32) -> Result<f64, Failure> + Send + Sync + 'static,
     ) -> Problem {
-        let exact = self.answer.exact;
+        let exact = self.reference.exact;
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
@@ -236,7 +236,7 @@ impl Question {
         share: f64,
         above: impl Fn(f64) -> Result<bool, Failure> + Send + Sync + 'static,
     ) -> Problem {
-        let exact = self.answer.exact;
+        let exact = self.reference.exact;
         let bracket = ((1.0 - share) * exact, (1.0 + share) * exact);
         self.by(move |effort| border(bracket, halvings(effort), &above))
     }

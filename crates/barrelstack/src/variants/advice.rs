@@ -104,21 +104,15 @@ impl Remedy {
     }
 
     /// Plots the share of variants that falls after every change; `as_it_is` is the share of the stack as it is.
-    pub fn figure(&self, as_it_is: Option<f64>) -> Figure {
+    fn figure(&self, as_it_is: Option<f64>) -> Figure {
         let percent = |share: f64| 100.0 * share;
         let counted = |one: &Tried| percent(f64::from(one.failed) / f64::from(one.variants.max(1)));
-        let rows = || self.tried.iter().enumerate().map(|(at, one)| (Axis::row(at), one));
-        let mut bars =
-            Series::new("95 % interval, for all changes at once", Vec::new(), Vec::new());
-        for (row, interval) in rows().filter_map(|(row, one)| Some((row, one.interval?))) {
-            // NaN breaks the line between one bar and the next.
-            bars.x.extend(interval.map(percent).into_iter().chain([f64::NAN]));
-            bars.y.extend([row; 3]);
-        }
-        bars.style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
+        let rows = || self.tried.iter().enumerate();
+        let intervals = rows().filter_map(|(row, one)| Some((row, one.interval?.map(percent))));
+        let bars = Series::bars("95 % interval, for all changes at once", intervals);
         let points = |label: &str, index: usize, known: bool| {
             let shown = rows().filter(|(_, one)| one.share.is_some() == known);
-            let (x, y) = shown.map(|(row, one)| (counted(one), row)).unzip();
+            let (x, y) = shown.map(|(row, one)| (counted(one), Axis::row(row))).unzip();
             let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
             Series { style, ..Series::new(label, x, y) }
         };

@@ -368,7 +368,7 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
         return None;
     }
     let constants = drawn(&stack.interfaces, unknowns, stack.rack.posts.is_some());
-    let trial = |(number, result): (u32, &CaseResult)| DrawnRun {
+    let run = |(number, result): (u32, &CaseResult)| DrawnRun {
         deviates: constants
             .iter()
             .map(|one| draw::deviate(imperfections, one.axis, number))
@@ -376,9 +376,9 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
         second_half: plane.exchanged.is_some() && plane.is_exchanged(number),
         failed: collapsed(result),
     };
-    let trials: Vec<DrawnRun> = (1..).zip(variants).map(trial).collect();
+    let runs: Vec<DrawnRun> = (1..).zip(variants).map(run).collect();
     let mut random = Random::new(u64::from(imperfections.seed));
-    let fitted = conditional(&trials, || random.uniform())?;
+    let fitted = conditional(&runs, || random.uniform())?;
     let constants: Vec<Constant<'_>> = constants.iter().map(Drawn::constant).collect();
     Some(Fitted::of(&fitted, &constants))
 }

@@ -1,6 +1,6 @@
 //! Figures of collapses: observations compared with simulations at the estimated values.
 
-use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
+use barrelstack_report::{Axis, Figure, Plot, Series};
 
 use super::ensemble::Course;
 use super::observed::Time;
@@ -13,11 +13,11 @@ const MIDDLE: [f64; 2] = [0.05, 0.95];
 
 /// Draws the posterior weight of the observed modes, and the times of the observed events.
 pub(super) fn pictures(
-    trials: &[PreparedTest<'_>],
+    tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Vec<Figure> {
-    [modes(trials, courses, posterior), times(trials, courses, posterior)]
+    [modes(tests, courses, posterior), times(tests, courses, posterior)]
         .into_iter()
         .flatten()
         .collect()
@@ -27,20 +27,20 @@ pub(super) fn pictures(
 fn of<'a>(
     courses: &'a [Option<Course>],
     at: usize,
-    trials: &[PreparedTest<'_>],
+    tests: &[PreparedTest<'_>],
 ) -> impl Iterator<Item = &'a Option<Course>> {
-    courses.iter().skip(at).step_by(trials.len())
+    courses.iter().skip(at).step_by(tests.len())
 }
 
 /// Draws the weight of the courses with the observed mode; `None` if no mode was observed.
 fn modes(
-    trials: &[PreparedTest<'_>],
+    tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Option<Figure> {
     let mut rows = Rows::default();
-    for (at, trial) in trials.iter().enumerate() {
-        let (name, share) = alike(trial, of(courses, at, trials), posterior);
+    for (at, test) in tests.iter().enumerate() {
+        let (name, share) = alike(test, of(courses, at, tests), posterior);
         if let Some(share) = share {
             rows.bar(format!("test {}: {name}", at + 1), [0.0, share]);
         }
@@ -53,19 +53,19 @@ fn modes(
 
 /// Draws the times of events; `None` if no time was observed.
 fn times(
-    trials: &[PreparedTest<'_>],
+    tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Option<Figure> {
     let mut rows = Rows::default();
     let mut observed = Vec::new();
-    for (at, trial) in trials.iter().enumerate() {
-        let test = trial.observed;
+    for (at, test) in tests.iter().enumerate() {
+        let test = test.observed;
         let loss = |course: &Course| Some(course.loss);
         let first = |course: &Course| course.first_fall().map(|(_, time)| Time::At(time));
         let mut row = |name: &str, time: Time, simulated: &dyn Fn(&Course) -> Option<Time>| {
             let Time::At(time) = time else { return };
-            let weighed = of(courses, at, trials).zip(&posterior.weights);
+            let weighed = of(courses, at, tests).zip(&posterior.weights);
             let weighed = weighed.filter_map(|(course, weight)| {
                 let Some(Time::At(time)) = simulated(course.as_ref()?) else { return None };
                 Some((time, *weight))
@@ -107,15 +107,12 @@ fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
 #[derive(Default)]
 struct Rows {
     names: Vec<String>,
-    x: Vec<f64>,
-    y: Vec<f64>,
+    bars: Vec<[f64; 2]>,
 }
 
 impl Rows {
-    fn bar(&mut self, name: String, [from, to]: [f64; 2]) {
-        // NaN breaks the line between one bar and the next.
-        self.x.extend([from, to, f64::NAN]);
-        self.y.extend([Axis::row(self.names.len()); 3]);
+    fn bar(&mut self, name: String, bar: [f64; 2]) {
+        self.bars.push(bar);
         self.names.push(name);
     }
 
@@ -128,8 +125,7 @@ impl Rows {
         observed: Option<Vec<f64>>,
     ) -> Option<Figure> {
         let rows = (0..self.names.len()).map(Axis::row).collect();
-        let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
-        let bars = Series { style, ..Series::new("simulated", self.x, self.y) };
+        let bars = Series::bars("simulated", self.bars.into_iter().enumerate());
         let observed = observed.map(|times| measured("observed", times, rows, 1));
         let plot = Plot {
             x,

@@ -204,17 +204,12 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
 
 /// Plots the effects of the factors on the share of collapse (tornado diagram).
 pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
-    let (mut x, mut y) = (Vec::new(), Vec::new());
-    for (row, effect) in effects.iter().enumerate() {
+    let bar = |effect: &Effect| {
         let shares = || effect.groups.iter().map(Group::share);
-        let (low, high) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
-        // NaN breaks the line between one bar and the next.
-        x.extend([low, high, f64::NAN]);
-        y.extend([Axis::row(row); 3]);
-    }
-    let bars = SeriesStyle { bar: true, ..style(0) };
-    let series =
-        vec![Series { style: bars, ..Series::new("lowest to highest share of collapse", x, y) }];
+        [shares().fold(1.0, f64::min), shares().fold(0.0, f64::max)]
+    };
+    let bars = effects.iter().map(bar).enumerate();
+    let series = vec![Series::bars("lowest to highest share of collapse", bars)];
     Figure::new(
         "tornado",
         "Effect of the varied quantities: the share of collapse at their least and their most favorable value \

@@ -36,7 +36,7 @@ pub(crate) fn heading(text: &str) -> Block {
 }
 
 /// Returns the fingerprint of a scenario as text.
-pub(crate) fn print(scenario: &Scenario) -> String {
+pub(crate) fn fingerprint(scenario: &Scenario) -> String {
     format!("{:016x}", scenario.fingerprint())
 }
 

@@ -7,7 +7,7 @@ use barrelstack_report::{
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
-use crate::decision::{fallen_at_rest, heading, left_out, percent, points, print, text};
+use crate::decision::{fallen_at_rest, fingerprint, heading, left_out, percent, points, text};
 
 pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
     let mut blocks = before_and_after;
@@ -33,7 +33,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
         },
         blocks,
         provenance: vec![
-            ("scenario fingerprint".into(), print(&all.request.scenario)),
+            ("scenario fingerprint".into(), fingerprint(&all.request.scenario)),
             ("protections tried (not counting the stack as it is)".into(), all.tries().to_string()),
             ("runs".into(), all.runs.to_string()),
             ("seed".into(), all.request.seed.to_string()),

@@ -225,12 +225,12 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
     (0..levels.len()).map(|at| hazard.expected(1.0, |x| share(at, x)).low).collect()
 }
 
-/// Returns the indices of the trials that continue in the next round.
+/// Returns the indices of the candidates that continue in the next round.
 ///
-/// Trials that are significantly worse than a cheaper trial are dropped. Of the others, the half with the
-/// smaller means continues, but at least four trials do. The first trial, the unprotected stack, always
-/// continues. Each trial is given by its runs and the midpoint of its cost range; `most` is the largest
-/// possible number of fallen barrels in one run. The tests of significance hold for all pairs of trials
+/// Candidates that are significantly worse than a cheaper candidate are dropped. Of the others, the half with the
+/// smaller means continues, but at least four candidates do. The first candidate, the unprotected stack, always
+/// continues. Each candidate is given by its runs and the midpoint of its cost range; `most` is the largest
+/// possible number of fallen barrels in one run. The tests of significance hold for all pairs of candidates
 /// simultaneously.
 pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;

@@ -1,4 +1,4 @@
-//! Trials of a ranking. A trial is a protected stack in every direction, which is run in rounds of studies.
+//! Candidates of a ranking. A candidate is a protected stack in every direction, which is run in rounds of studies.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -17,7 +17,7 @@ use crate::scenario::Scenario;
 use crate::study::{RunOptions, Study, StudyError};
 use crate::system;
 
-/// Protection under trial, with its stacks and runs.
+/// A protection that is tried, with its stacks and runs.
 pub(super) struct Candidate {
     pub(super) protection: Protection,
     /// Scenario of the protected stack in each direction.
@@ -52,7 +52,7 @@ impl Candidate {
     }
 }
 
-/// State shared by all trials of a search.
+/// State shared by all candidates of a search.
 pub(super) struct Search<'a> {
     pub(super) request: &'a Request,
     pub(super) base: &'a Scenario,
@@ -64,10 +64,10 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns trials of the protections that can be built and do not exceed the budget; records the reasons
+    /// Returns candidates of the protections that can be built and do not exceed the budget; records the reasons
     /// for the others.
-    pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Candidate> {
-        let mut trials = Vec::new();
+    pub(super) fn candidates(&mut self, protections: Vec<Protection>) -> Vec<Candidate> {
+        let mut candidates = Vec::new();
         for protection in protections {
             let name = protection.name.clone();
             let cost = middle(&protection);
@@ -77,7 +77,7 @@ impl Search<'_> {
                 continue;
             }
             match Candidate::new(self.base, protection) {
-                Ok(trial) => trials.push(trial),
+                Ok(candidate) => candidates.push(candidate),
                 // The location in a generated text is of no use to the reader, so only the first line is kept.
                 Err(error) => {
                     let reason = error.to_string();
@@ -86,22 +86,22 @@ impl Search<'_> {
                 }
             }
         }
-        trials
+        candidates
     }
 
-    /// Runs a round of the trials with the indices `open`.
+    /// Runs a round of the candidates with the indices `open`.
     pub(super) fn round(
         &self,
-        trials: &mut [Candidate],
+        candidates: &mut [Candidate],
         open: &[usize],
         round: u32,
     ) -> Result<(), ProtectError> {
         let mut studies = Vec::new();
         for at in open {
-            for (direction, (shaken, stack)) in trials[*at].stacks.iter().enumerate() {
+            for (direction, (shaken, stack)) in candidates[*at].stacks.iter().enumerate() {
                 let study = plan::study(self.request, stack, self.levels, round)?;
-                let below =
-                    Path::new(&trials[*at].protection.key).join(plan::name(shaken.name(), round));
+                let below = Path::new(&candidates[*at].protection.key)
+                    .join(plan::name(shaken.name(), round));
                 let folder = self.folder.join(&below);
                 system::folder_below(self.folder, &below)
                     .map_err(StudyError::system("create the folder", &folder))?;
@@ -126,8 +126,8 @@ impl Search<'_> {
         let found = pool::map(&studies, work, &|_| ());
         for ((at, direction, _, study), found) in studies.iter().zip(found) {
             let (collected, cases) = found?;
-            trials[*at].runs[*direction].add((study, &collected), &cases, self.levels);
-            trials[*at].round = round + 1;
+            candidates[*at].runs[*direction].add((study, &collected), &cases, self.levels);
+            candidates[*at].round = round + 1;
         }
         Ok(())
     }
@@ -135,13 +135,13 @@ impl Search<'_> {
     /// Runs the protections on the Pareto front in their worn states, under the motions of the first round.
     pub(super) fn worn(
         &mut self,
-        trials: &[Candidate],
+        candidates: &[Candidate],
         all: &mut [Ranked],
         weights: &[f64],
     ) -> Result<(), ProtectError> {
-        for (trial, found) in trials.iter().zip(all).filter(|(_, found)| found.on_front) {
-            for (words, worn) in trial.protection.worn() {
-                let mut one = self.trials(vec![worn]);
+        for (candidate, found) in candidates.iter().zip(all).filter(|(_, found)| found.on_front) {
+            for (words, worn) in candidate.protection.worn() {
+                let mut one = self.candidates(vec![worn]);
                 let open: Vec<usize> = (0..one.len()).collect();
                 self.round(&mut one, &open, 0)?;
                 let Some(one) = one.first() else { continue };

@@ -8,7 +8,7 @@ use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, to_
 use barrelstack_report::{Block, Cell, Document, Table, Verdict};
 
 use super::{Prepared, Protocol, ScoreError, Sheet, page, prepared};
-use crate::decision::{heading, percent, print, text};
+use crate::decision::{fingerprint, heading, percent, text};
 use crate::direction::Direction;
 use crate::protect::{Kind, changed, singles, slug};
 use crate::scenario::{Scenario, StackSpec, catalog};
@@ -217,7 +217,7 @@ fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Docume
         provenance: vec![
             ("protocol".into(), protocol.name.clone()),
             ("stack".into(), scenario.title.clone()),
-            ("scenario fingerprint".into(), print(scenario)),
+            ("scenario fingerprint".into(), fingerprint(scenario)),
             ("runs".into(), runs.to_string()),
             ("seed".into(), protocol.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),

@@ -10,7 +10,7 @@ use barrelstack_input::listing::Source;
 
 use super::{Capacity, Protocol, Scored, Sheet};
 use crate::decision::{
-    chance_axis, fallen_at_rest, fitted, heading, left_out, percent, print, raw, text,
+    chance_axis, fallen_at_rest, fingerprint, fitted, heading, left_out, percent, raw, text,
 };
 use crate::direction::Direction;
 
@@ -42,7 +42,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         ],
         provenance: vec![
             ("protocol".into(), protocol.name.clone()),
-            ("scenario fingerprint".into(), print(&sheet.scenario)),
+            ("scenario fingerprint".into(), fingerprint(&sheet.scenario)),
             ("runs".into(), sheet.rows.iter().map(|row| row.runs).sum::<usize>().to_string()),
             ("seed".into(), protocol.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
@@ -88,18 +88,13 @@ fn scale_of(sheet: &Sheet) -> Figure {
 
 /// Draws scores on a scale, each with its range over the uncertain constants.
 pub(super) fn scale(caption: &str, rows: &[OnScale]) -> Figure {
-    let mut bars = Series::new("range over the uncertain constants", Vec::new(), Vec::new());
-    let mut scores = Series::new("score", Vec::new(), Vec::new());
-    for (at, (_, score, range)) in rows.iter().enumerate() {
-        if let Some([low, high]) = range {
-            // NaN breaks the line between one bar and the next.
-            bars.x.extend([f64::from(*low), f64::from(*high), f64::NAN]);
-            bars.y.extend([Axis::row(at); 3]);
-        }
-        scores.x.push(f64::from(*score));
-        scores.y.push(Axis::row(at));
-    }
-    bars.style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
+    let ranges = rows.iter().enumerate();
+    let ranges =
+        ranges.filter_map(|(row, (_, _, range))| Some((row, range.map(|r| r.map(f64::from))?)));
+    let bars = Series::bars("range over the uncertain constants", ranges);
+    let scored = rows.iter().enumerate();
+    let (x, y) = scored.map(|(row, (_, score, _))| (f64::from(*score), Axis::row(row))).unzip();
+    let mut scores = Series::new("score", x, y);
     scores.style = SeriesStyle { points: true, index: Some(1), ..SeriesStyle::default() };
     Figure::new(
         "scale",

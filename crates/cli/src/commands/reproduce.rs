@@ -62,7 +62,7 @@ fn print(found: &Reproduction) -> anyhow::Result<()> {
             row.published.clone(),
             row.ours.clone(),
             difference.unwrap_or_default(),
-            row.verdict.words().to_owned(),
+            row.agreement.words().to_owned(),
         ]
     };
     let mut table = Table::new(5, ["quantity", "published", "ours", "difference", "verdict"]);

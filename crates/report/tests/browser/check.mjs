@@ -133,19 +133,19 @@ for (const [name, file, compared] of [
   ["study", "study/decision.json", ofStudy],
   ["reproduce", null, ofReproduction],
 ]) {
-  await checkOn("states the numbers of its JSON", name, (page) =>
+  await checkOn(file ? "states the numbers of its JSON" : "its headline counts the rows of its table", name, (page) =>
     compared(page, file && JSON.parse(readFileSync(join(pages, file)))));
 }
-await checkOn("wrong numbers are seen", "demo", async (page) => {
+await checkOn("wrong numbers are detected", "demo", async (page) => {
   const spoil = (change) => {
     const summary = JSON.parse(readFileSync(join(pages, "demo/summary.json")));
     change(summary);
     return ofRun(page, summary).then(() => false, () => true);
   };
-  demand(await spoil(({ ensemble }) => { ensemble.collapsed += 1; }), "one collapse more is not seen");
-  demand(await spoil(({ ensemble }) => { ensemble.range[0] += 0.02; }), "another range is not seen");
-  demand(await spoil(({ bodies }) => { bodies.at(-2).peak_slip += 0.01; }), "another slip is not seen");
-  demand(await spoil(({ remedy }) => { remedy.tried[0].failed += 1; }), "another count of a change is not seen");
+  demand(await spoil(({ ensemble }) => { ensemble.collapsed += 1; }), "one collapse more is not detected");
+  demand(await spoil(({ ensemble }) => { ensemble.range[0] += 0.02; }), "another range is not detected");
+  demand(await spoil(({ bodies }) => { bodies.at(-2).peak_slip += 0.01; }), "another slip is not detected");
+  demand(await spoil(({ remedy }) => { remedy.tried[0].failed += 1; }), "another count of a change is not detected");
 });
 await suite.check("axe finds what is wrong with a spoiled page", () => on("eight", {}, spoiled));
 // Pictures.
@@ -153,6 +153,6 @@ await goldens.tools();
 await twoAtATime(looks(), ([name, variant]) =>
   suite.check(`${name}: looks as kept, ${variant}`, () => goldens.check(name, variant)));
 await suite.check("every kept picture belongs to a page", async () => goldens.orphans());
-await suite.check("small defects of a page are seen", () => goldens.defects());
+await suite.check("small defects of a page are detected", () => goldens.defects());
 await browser.close();
 process.exit(suite.close() ? 0 : 1);

@@ -77,8 +77,8 @@ pub use free::{
     Boundary, ChosenNode, FreeBody, FreeInterface, FreeScene, Ground, Nodes, PartShape, Viscous,
 };
 pub use imperfections::Imperfections;
-pub use load::bytes_of;
 pub use interface::{Basis, Damping, Friction, Interface, NormalLaw};
+pub use load::bytes_of;
 pub use motion::{
     Amplitude, Direction, MeasuredOn, MotionSource, MotionSpec, Processing, Pulse, PulseKind,
     RecordMotion, RecordSource, Scale, Sine, Vertical,

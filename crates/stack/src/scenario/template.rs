@@ -153,7 +153,10 @@ impl Host {
     ) -> Result<Self, ScenarioError> {
         let Some(text) = (language.builtin)(name) else {
             let place = Place::Whole { file: name.to_owned() };
-            return Err(ScenarioError::new(load::unknown_builtin("scenario", name, language), place));
+            return Err(ScenarioError::new(
+                load::unknown_builtin("scenario", name, language),
+                place,
+            ));
         };
         Self::parse(&format!("{name}.toml"), text.as_bytes(), overrides, language)
     }

@@ -123,7 +123,7 @@ pub struct Fates<R: Real = f64> {
 
 /// Kind and supports of a body, equal in all lanes.
 #[derive(Clone, Debug)]
-struct Supported {
+struct BodySupport {
     kind: PartKind,
     carrier: Option<BodyId>,
     supports: Vec<BodyId>,
@@ -133,9 +133,9 @@ struct Supported {
     foot: Option<f64>,
 }
 
-lanewise!(same Supported);
+lanewise!(same BodySupport);
 lanewise!(struct Followed<R> {
-    place, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, fall_force, drop,
+    support, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, fall_force, drop,
     peak_displacement, residual_displacement, displacement_at_collapse, peak_slip, residual_slip,
     peak_tilt, peak_uplift, whole_run
 });
@@ -144,7 +144,7 @@ lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 /// A body with its limits and its fate so far.
 #[derive(Clone, Debug)]
 struct Followed<R: Real> {
-    place: Supported,
+    support: BodySupport,
     /// Position at rest (m), relative to the ground.
     rest: Vec2<R>,
     /// Limit (m) of the displacement of the body on its support.
@@ -194,7 +194,7 @@ impl Fates {
             let most_tilt =
                 if foot { thresholds.overturning_angle } else { thresholds.rocking_angle };
             Followed {
-                place: Supported {
+                support: BodySupport {
                     kind: part.kind,
                     carrier: part.carrier,
                     supports: part.supports.clone(),
@@ -298,7 +298,7 @@ impl<R: Real> Fates<R> {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.stands();
         for i in 0..self.bodies.len() {
-            if self.bodies[i].place.kind == PartKind::Ground {
+            if self.bodies[i].support.kind == PartKind::Ground {
                 continue;
             }
             let moved = state.poses[i].position - ground - self.bodies[i].rest;
@@ -307,7 +307,7 @@ impl<R: Real> Fates<R> {
             raise(&mut body.drop, -moved.z);
             raise(&mut body.whole_run.displacement, moved.x.abs());
             raise(&mut body.whole_run.slip, slip.x.abs());
-            if body.place.kind == PartKind::Rack {
+            if body.support.kind == PartKind::Rack {
                 raise(&mut body.whole_run.tilt, state.poses[i].orientation.abs());
             }
             body.residual_displacement = moved.x;
@@ -318,7 +318,7 @@ impl<R: Real> Fates<R> {
                 raise(&mut body.peak_displacement, masked(standing, moved.x.abs()));
                 raise(&mut body.peak_slip, masked(standing, slip.x.abs()));
                 raise(&mut body.peak_uplift, masked(standing, moved.z));
-                if body.place.kind == PartKind::Rack {
+                if body.support.kind == PartKind::Rack {
                     raise(&mut body.peak_tilt, masked(standing, state.poses[i].orientation.abs()));
                 }
             }
@@ -328,7 +328,7 @@ impl<R: Real> Fates<R> {
                 body.fell_at = R::select(first, state.time, body.fell_at);
                 let down = body.fell_at.lt(R::splat(f64::INFINITY));
                 raise(&mut body.fall_force, masked(down, scratch.wrenches[i].force.length()));
-                if body.place.kind == PartKind::Barrel {
+                if body.support.kind == PartKind::Barrel {
                     let first = first & !self.first_fall.lt(R::splat(f64::INFINITY));
                     self.first_fall = R::select(first, state.time, self.first_fall);
                 }
@@ -354,14 +354,14 @@ impl<R: Real> Fates<R> {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
         let fell = body.fell_at.lt(never);
-        let (slid, tilted) = match body.place.kind {
+        let (slid, tilted) = match body.support.kind {
             PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => return,
             PartKind::Barrel => {
                 ((body.most_slip * body.most_slip).lt(slip.dot(slip)), R::Mask::default())
             }
             PartKind::Rack => {
                 let below =
-                    body.place.below.map_or(R::zero(), |rack| state.poses[rack].orientation);
+                    body.support.below.map_or(R::zero(), |rack| state.poses[rack].orientation);
                 let tilt = (state.poses[i].orientation - below).abs();
                 (body.most_slip.lt(slip.x.abs()), body.most_tilt.lt(tilt))
             }
@@ -374,7 +374,7 @@ impl<R: Real> Fates<R> {
         for lane in (0..R::LANES).filter(|lane| left.lane(*lane)) {
             let body = &mut self.bodies[i];
             body.loss[lane] = match (slid.lane(lane), tilted.lane(lane)) {
-                (true, _) if body.place.kind == PartKind::Barrel => Loss::Displaced,
+                (true, _) if body.support.kind == PartKind::Barrel => Loss::Displaced,
                 (true, _) => Loss::Slid,
                 (false, true) => Loss::Tilted,
                 (false, false) => Loss::Dropped,
@@ -398,24 +398,24 @@ impl<R: Real> Fates<R> {
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
-        if let Some(rack) = body.place.carrier {
+        if let Some(rack) = body.support.carrier {
             let place = scratch.rotations[rack].unapply(here - state.poses[rack].position);
             return place - (body.rest - self.bodies[rack].rest);
         }
-        if body.place.supports.is_empty() {
+        if body.support.supports.is_empty() {
             return here - state.poses[Assembly::GROUND].position - body.rest;
         }
-        if let (Some(rack), Some(foot)) = (body.place.below, body.place.foot) {
+        if let (Some(rack), Some(foot)) = (body.support.below, body.support.foot) {
             // Measured in this frame, racks that lean together or rock on the posts of another do not slide.
             let foot = Vec2::new(R::zero(), R::splat(-foot));
             let from = here + scratch.rotations[i].apply(foot) - state.poses[rack].position;
             let rest = body.rest + foot - self.bodies[rack].rest;
             return scratch.rotations[rack].unapply(from) - rest;
         }
-        let share = R::splat(1.0 / body.place.supports.len() as f64);
+        let share = R::splat(1.0 / body.support.supports.len() as f64);
         let mut below = Vec2::default();
         let mut below_rest = Vec2::default();
-        for support in &body.place.supports {
+        for support in &body.support.supports {
             below += state.poses[*support].position * share;
             below_rest += self.bodies[*support].rest * share;
         }

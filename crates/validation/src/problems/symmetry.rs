@@ -34,11 +34,11 @@ pub(super) fn problems() -> Vec<Problem> {
 fn problem<S: Space<Real = f64>>(
     name: &str,
     title: &str,
-    answer: Reference,
+    reference: Reference,
     scenes: fn(Effort) -> Vec<Order<S>>,
 ) -> Problem {
     setting(format!("symmetry/{name}"), title, "symmetry of mechanics")
-        .quantity("largest difference between the two orders within one second", "m", answer)
+        .quantity("largest difference between the two orders within one second", "m", reference)
         .by(move |effort| {
             let (scenes, mut worst) = (scenes(effort), (0.0_f64, String::new()));
             let count = scenes.len();

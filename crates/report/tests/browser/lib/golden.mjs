@@ -160,7 +160,7 @@ export class Goldens {
     demand(orphans.length === 0, `kept, but of no page: ${orphans.join(", ")}`);
   }
 
-  /** Spoils a page in small ways and demands that each is seen. */
+  /** Spoils a page in small ways and demands that each defect is detected. */
   async defects() {
     const spoilers = {
       "the lines of a plot are gone": () => { document.querySelector("#figure-displacements .live .canvas").style.visibility = "hidden"; },
@@ -175,7 +175,7 @@ export class Goldens {
       demand(faults.length > 0, `nobody sees that ${name}: ${(100 * worst).toFixed(2)} % of a block changed`);
       seen.push(`${(100 * worst).toFixed(1)} %`);
     }
-    return `${seen.length} defects seen (${seen.join(", ")})`;
+    return `${seen.length} defects detected (${seen.join(", ")})`;
   }
 }
 

@@ -45,7 +45,7 @@ enum CellRange {
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: BodyId,
-    place: CellRange,
+    range: CellRange,
     /// `true` if the body is the target of the pair; contact points are stated in the frame of the target's surface.
     is_target: bool,
 }
@@ -100,9 +100,9 @@ impl Bounds {
 impl<R: Real> Bounds<R> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
-    fn hold(&self, place: CellRange, point: Vec2<R>) -> R::Mask {
+    fn hold(&self, range: CellRange, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
-        match place {
+        match range {
             CellRange::Everywhere => above,
             CellRange::Wedge => {
                 (from.z * point.x).le(from.x * point.z) & (point.z * to.x).lt(point.x * to.z)
@@ -171,12 +171,12 @@ impl StressWatch {
         let watched = !stresses.envelopes.is_empty();
         for pair in assembly.model.pairs().take_while(|_| watched) {
             let side = |(body, is_target): (BodyId, bool)| {
-                let place = match stresses.of(body)?.cells {
+                let range = match stresses.of(body)?.cells {
                     Cells::Around(_) => CellRange::Wedge,
                     Cells::Along(_) => CellRange::Strip,
                     Cells::Nodes => CellRange::Everywhere,
                 };
-                Some(Side { body, place, is_target })
+                Some(Side { body, range, is_target })
             };
             let body = |id: BodyId| &assembly.model.bodies()[id];
             let placed = &body(pair.target).surfaces[pair.surface];
@@ -392,7 +392,7 @@ impl<R: Real> StressWatch<R> {
                 let point = pair.in_body(*side, contact.point, state, scratch);
                 let bounds = &mut self.bounds[at];
                 let presses = self.watched & contact.touching;
-                let here = presses & bounds.hold(side.place, point);
+                let here = presses & bounds.hold(side.range, point);
                 let more = here & bounds.most.lt(contact.normal_force);
                 if more.any() {
                     bounds.most = R::select(more, contact.normal_force, bounds.most);

@@ -56,26 +56,26 @@ fn integer(name: impl Into<String>, value: Option<usize>) -> Cell {
     (spec(name.into(), "", Role::Motion, ValueKind::Integer), value)
 }
 
-/// Returns all columns in order, with the values of a row if `found` is given.
-pub(super) fn cells(found: Option<&RecordData<'_>>, periods: &[f64]) -> Vec<Cell> {
-    let mut cells = header(found);
-    let horizontal = |k: usize| found.and_then(|f| f.measured.horizontals.get(k));
+/// Returns all columns in order, with the values of a row if `data` is given.
+pub(super) fn cells(data: Option<&RecordData<'_>>, periods: &[f64]) -> Vec<Cell> {
+    let mut cells = header(data);
+    let horizontal = |k: usize| data.and_then(|f| f.measured.horizontals.get(k));
     for (k, place) in ["h1", "h2"].into_iter().enumerate() {
-        let (file, component) = found.and_then(|f| f.place(k)).unzip();
+        let (file, component) = data.and_then(|f| f.place(k)).unzip();
         cells.push(text(&format!("file_{place}"), file));
         cells.push(text(&format!("place_{place}"), component));
     }
     component(&mut cells, "h1", horizontal(0));
-    pulse(&mut cells, "baker_h1", found.and_then(|_| horizontal(0)?.pulse.as_ref()));
+    pulse(&mut cells, "baker_h1", data.and_then(|_| horizontal(0)?.pulse.as_ref()));
     component(&mut cells, "h2", horizontal(1));
-    pulse(&mut cells, "baker_h2", found.and_then(|_| horizontal(1)?.pulse.as_ref()));
-    component(&mut cells, "v", found.and_then(|f| f.measured.vertical.as_ref()));
-    let pair = found.and_then(|f| f.measured.pair.as_ref());
+    pulse(&mut cells, "baker_h2", data.and_then(|_| horizontal(1)?.pulse.as_ref()));
+    component(&mut cells, "v", data.and_then(|f| f.measured.vertical.as_ref()));
+    let pair = data.and_then(|f| f.measured.pair.as_ref());
     let im = Role::Intensity;
     cells.push(number("pga_rotd50", "m/s2", im, pair.map(|pair| pair.peaks[0])));
     cells.push(number("pgv_rotd50", "m/s", im, pair.map(|pair| pair.peaks[1])));
     let both = pair.and_then(|pair| pair.pulse.as_ref());
-    let why = found.and_then(|f| f.measured.no_pair.clone());
+    let why = data.and_then(|f| f.measured.no_pair.clone());
     cells.push(number("pga_rotd100", "m/s2", im, pair.map(|pair| pair.largest[0])));
     cells.push(number("pgv_rotd100", "m/s", im, pair.map(|pair| pair.largest[1])));
     cells.push(text("no_rotd50_because", why));
@@ -99,14 +99,14 @@ pub(super) fn cells(found: Option<&RecordData<'_>>, periods: &[f64]) -> Vec<Cell
 
 /// Returns the columns that describe a record and its processing; a flatfile takes precedence over
 /// a header.
-fn header(found: Option<&RecordData<'_>>) -> Vec<Cell> {
-    let record = found.map(|f| &f.worked.record);
+fn header(data: Option<&RecordData<'_>>) -> Vec<Cell> {
+    let record = data.map(|f| &f.worked.record);
     let first = record.and_then(|record| record.channels.first());
-    let flat = found.and_then(|f| f.flat);
+    let flat = data.and_then(|f| f.flat);
     let either = |flat: Option<&String>, header: Option<&String>| {
         flat.filter(|text| !text.is_empty()).or(header).cloned()
     };
-    let files = found.map(|f| {
+    let files = data.map(|f| {
         let paths = f.source.paths();
         paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join("; ")
     });
@@ -118,7 +118,7 @@ fn header(found: Option<&RecordData<'_>>) -> Vec<Cell> {
     vec![
         (
             spec("record".to_owned(), "", Role::Key, ValueKind::Text),
-            found.map(|f| Value::Text(f.source.record.name.clone())),
+            data.map(|f| Value::Text(f.source.record.name.clone())),
         ),
         text("files", files),
         text("format", record.map(|record| record.format.to_owned())),
@@ -127,11 +127,11 @@ fn header(found: Option<&RecordData<'_>>) -> Vec<Cell> {
         text("sensor", site.map(|site| site.sensor.clone())),
         text("start", first.and_then(|c| c.start).map(|start| start.to_string())),
         text("components", names),
-        text("stage", found.map(|f| stage_of(f.worked).0)),
-        text("processing", found.map(|f| stage_of(f.worked).1.to_owned())),
+        text("stage", data.map(|f| stage_of(f.worked).0)),
+        text("processing", data.map(|f| stage_of(f.worked).1.to_owned())),
         number("latitude", "deg", facts, site.and_then(|site| site.latitude)),
         number("longitude", "deg", facts, site.and_then(|site| site.longitude)),
-        integer("rsn", found.and_then(|f| f.number).and_then(|n| usize::try_from(n).ok())),
+        integer("rsn", data.and_then(|f| f.number).and_then(|n| usize::try_from(n).ok())),
         number(
             "magnitude",
             "",

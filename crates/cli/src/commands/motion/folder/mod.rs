@@ -316,8 +316,8 @@ fn entry(
             let flat = flatfile.and_then(|(flatfile, _)| {
                 number.and_then(|n| flatfile.get(n)).or_else(|| flatfile.of_record(&worked.record))
             });
-            let found = RecordData { source, worked: &worked, measured: &measured, number, flat };
-            Ok(cells(Some(&found), periods).into_iter().map(|(_, value)| value).collect())
+            let data = RecordData { source, worked: &worked, measured: &measured, number, flat };
+            Ok(cells(Some(&data), periods).into_iter().map(|(_, value)| value).collect())
         });
     match row {
         Ok(row) => entry.row = Some(row),
