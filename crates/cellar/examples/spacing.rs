@@ -17,8 +17,13 @@ use barrelstack_fragility::wilson;
 /// Free distances (m) between neighbors, in the rows and between them.
 const SPACINGS: [f64; 3] = [0.05, 0.3, 1.0];
 
-/// Returns the room of two rows of five stacks, or of a single stack.
+/// Time (s) after which the runs of a room end.
+const END: f64 = 15.0;
+
+/// Returns the room of two rows of five stacks, or of a single stack, which is followed until nothing moves.
 fn room(rows: u32, stacks: u32, spacing: f64, variants: u32) -> String {
+    let end =
+        if rows * stacks == 1 { String::new() } else { format!("[run]\nduration = \"{END} s\"\n") };
     format!(
         r#"schema = 1
 kind = "cellar"
@@ -37,7 +42,7 @@ spacing = "{spacing} m"
 between_rows = "{spacing} m"
 [record]
 frame_rate = "1 Hz"
-[imperfections]
+{end}[imperfections]
 variants = {variants}
 "#
     )
@@ -97,6 +102,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let alone = run(&room(1, 1, 1.0, variants))?;
     line("a stack alone", &alone);
+    let last = alone.stacks.iter().filter_map(|stack| stack.falls_at.as_ref()).map(|at| at.most);
+    let last = last.reduce(f64::max);
     let mut free = None;
     for spacing in SPACINGS {
         let summary = run(&room(2, 5, spacing, variants))?;
@@ -110,6 +117,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!();
+    if let Some(last) = last {
+        println!(
+            "The runs of a room end after {END} s. A stack alone is followed until nothing moves; if it falls, it loses \
+             its first seat after {last:.1} s at the latest.\n"
+        );
+    }
     match free {
         Some((spacing, runs)) => {
             let high = wilson(0, runs, LEVEL).high;
