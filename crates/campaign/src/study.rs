@@ -100,6 +100,7 @@ pub struct Study {
     /// Files for the motion of the base scenario whose contents are held in memory.
     held: Vec<FileRef>,
     factors: Vec<Factor>,
+    correlations: Vec<Correlation>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
     /// `true` if some cases simulate the stack in space.
@@ -131,6 +132,21 @@ struct Factor {
     structural: bool,
     /// `true` if at least one of the values makes the stack be simulated in space.
     in_space: bool,
+}
+
+/// Group of factors whose values are drawn with a correlation.
+#[derive(Clone, Debug, PartialEq)]
+struct Correlation {
+    /// Names of the factors.
+    factors: Vec<String>,
+    /// Correlation of the standard normal deviates of any two of the factors.
+    coefficient: f64,
+}
+
+impl Correlation {
+    fn contains(&self, factor: &str) -> bool {
+        self.factors.iter().any(|name| name == factor)
+    }
 }
 
 /// How a factor is varied: by listed values or by a distribution.
@@ -224,6 +240,15 @@ impl Study {
             let field = factor.fields.first()?;
             Some((&*factor.name, &**field, &*factor.column.unit, distribution))
         })
+    }
+
+    /// Returns the correlation of the standard normal deviates of two factors, by the names of their columns.
+    pub(crate) fn correlation(&self, factors: [&str; 2]) -> f64 {
+        if factors[0] == factors[1] {
+            return 1.0;
+        }
+        let both = |group: &&Correlation| factors.iter().all(|factor| group.contains(factor));
+        self.correlations.iter().find(both).map_or(0.0, |group| group.coefficient)
     }
 
     /// Returns the number of motions.

@@ -74,6 +74,8 @@ pub(crate) struct Sample {
     motions: Vec<String>,
     runs: Vec<Shaken>,
     seed: u64,
+    /// Correlations of the deviates of the constants.
+    correlations: Vec<Vec<f64>>,
     /// `true` if a run has no verdict, or none of its constants is known.
     incomplete: bool,
 }
@@ -91,6 +93,9 @@ impl Sample {
     pub(crate) fn add(&mut self, study: &Study, collected: &Collected, cases: &Cases) {
         if self.runs.is_empty() {
             (self.constants, self.seed) = (drawn(study), study.seed);
+            let columns = || self.constants.iter().map(|one| &*one.column);
+            let row = |one| columns().map(|other| study.correlation([one, other])).collect();
+            self.correlations = columns().map(row).collect();
         }
         let columns = self.constants.iter().map(|one| collected.table.column(&one.column));
         let Some(columns) = columns.collect::<Option<Vec<_>>>() else {
@@ -140,7 +145,8 @@ impl Sample {
             return None;
         }
         let mut random = Random::new(self.seed);
-        shaken(&self.runs, shape, || random.uniform())
+        let fitted = shaken(&self.runs, shape, || random.uniform())?;
+        Some(fitted.correlated(self.correlations.clone()))
     }
 
     /// Returns the range of a share, and the constants that decide it.
@@ -214,6 +220,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_correlation_of_friction_reaches_the_fit() {
+        let changes = ["stack.view=transverse", "unknowns.friction_correlation=0.4"];
+        let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned)).unwrap();
+        let motion = "[[motion]]\nbundled = \"napa-college-2014\"\n\n";
+        let study = shaken("s", (&scenario, Until::Verdict), 1, motion, &[0.3]).unwrap();
+        let columns = ["friction rack-ground", "friction barrel-rack", "stiffness barrel-rack"];
+        assert_eq!(study.correlation([columns[0], columns[1]]), 0.4);
+        assert_eq!(study.correlation([columns[1], columns[2]]), 0.0);
+        assert_eq!(study.correlation([columns[2], columns[2]]), 1.0);
     }
 
     #[test]

@@ -22,7 +22,7 @@ fn toml(value: &str) -> String {
 }
 
 /// Returns the `[[factor]]` tables of a scenario, which vary the friction, stiffness and damping of its seats
-/// around the stated values.
+/// around the stated values, and the correlation of the factors of friction.
 ///
 /// The text is empty for a free scene, and for a scenario in which no constants are
 /// drawn.
@@ -34,6 +34,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
     }
     let settings = scenario.settings();
     let of = |path: &str| settings.iter().find(|setting: &&Setting| setting.path == path);
+    let mut friction_factors = Vec::new();
     for (pair, fallen) in SEATS {
         // Racks stand on each other only if they have posts.
         if pair == "rack-rack" && stack.rack.posts.is_none() {
@@ -41,7 +42,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
         }
         let path = |field: &str| format!("interface.{pair}.{field}");
         let mut factor = |name: &str, field: &str, also: &[String], dispersion: f64, cut: &str| {
-            let Some(median) = of(&path(field)).filter(|_| dispersion > 0.0) else { return };
+            let Some(median) = of(&path(field)).filter(|_| dispersion > 0.0) else { return false };
             let also: Vec<String> = also.iter().map(|path| format!("\"{path}\"")).collect();
             let also = also.join(", ");
             let also = if also.is_empty() { also } else { format!("also = [{also}]\n") };
@@ -53,6 +54,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
                 path(field),
                 toml(&median.value)
             );
+            true
         };
         let friction = "friction.coefficient";
         // Static friction takes the same value, so that it does not fall below kinetic friction. The friction of fallen
@@ -75,7 +77,9 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
             "barrel-rack" => spread.friction_of_barrels(),
             _ => spread.friction,
         };
-        factor("friction", friction, &also, dispersion, "");
+        if factor("friction", friction, &also, dispersion, "") {
+            friction_factors.push(format!("\"friction {pair}\""));
+        }
         factor("stiffness", "stiffness", &[], spread.stiffness, "");
         factor("damping", "damping", &[], spread.damping, "");
         // The logarithm of a restitution is proportional to the damping ratio as long as the ratio is small.
@@ -84,6 +88,14 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
             let dispersion = -spread.damping * libm::log(restitution);
             factor("restitution", "restitution", &[], dispersion, ", greatest = 1");
         }
+    }
+    if spread.friction_correlation > 0.0 && friction_factors.len() > 1 {
+        let _ = write!(
+            text,
+            "[[correlation]]\nfactors = [{}]\ncoefficient = {}\n\n",
+            friction_factors.join(", "),
+            spread.friction_correlation
+        );
     }
     text
 }

@@ -14,7 +14,7 @@ use crate::world::World;
 /// Distance (m) of two bodies up to which they are in the list.
 const MARGIN: f64 = 0.4;
 
-/// Displacement (m) of a body after which the list is made anew.
+/// Displacement (m) of a body after which the list is rebuilt.
 const STALE: f64 = 0.1;
 
 /// Distance (m) that a body that is near no other may move in a window; it corresponds to 45 m/s.

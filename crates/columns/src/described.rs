@@ -15,7 +15,7 @@ pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.
 pub trait Described {
-    /// Returns the schema of the type, and adds to `objects` those to which the schema refers. The
+    /// Returns the schema of the type, and adds the schemas that it refers to to `objects`. The
     /// unit of a number is stated under the key `unit`.
     fn schema(objects: &mut Objects) -> Value;
 }

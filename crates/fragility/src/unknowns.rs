@@ -74,7 +74,8 @@ pub struct Conditional {
     samples: Vec<Vec<f64>>,
     /// Values of the constants that are drawn with each sample, as standard normal deviates.
     points: Vec<Vec<f64>>,
-    unknowns: usize,
+    /// Correlations of the deviates.
+    correlations: Vec<Vec<f64>>,
 }
 
 /// Influence of one constant on the share of failures.
@@ -115,7 +116,13 @@ pub fn conditional(runs: &[DrawnRun], mut uniform: impl FnMut() -> f64) -> Optio
     let mut priors = vec![Prior::Student(PRIOR), Prior::Normal(PRIOR_MIDDLE)];
     priors.extend(priors_of_constants(unknowns));
     let samples = posterior(&rows, &failed, &priors, &mut uniform);
-    Some(Conditional::new(samples, unknowns))
+    Some(Conditional::new(samples, independent(unknowns)))
+}
+
+/// Returns the correlations of constants that are independent of each other.
+fn independent(unknowns: usize) -> Vec<Vec<f64>> {
+    let row = |i| (0..unknowns).map(|j| f64::from(u8::from(i == j))).collect();
+    (0..unknowns).map(row).collect()
 }
 
 /// Prior distribution of a coefficient, with mean 0.
@@ -245,7 +252,8 @@ pub struct Intensities {
     /// `x₀`.
     middle: f64,
     shape: Shape,
-    unknowns: usize,
+    /// Correlations of the deviates.
+    correlations: Vec<Vec<f64>>,
 }
 
 /// Fits the share of failures as a function of intensity and of the unknown constants. Returns `None` if there are
@@ -285,7 +293,7 @@ pub fn shaken(
     priors.extend(priors_of_constants(unknowns));
     priors.extend(motions.iter().map(|_| Prior::Group));
     let samples = posterior(&rows, &failed, &priors, &mut uniform);
-    Some(Intensities { samples, levels, middle, shape, unknowns })
+    Some(Intensities { samples, levels, middle, shape, correlations: independent(unknowns) })
 }
 
 /// Returns the terms of `b(x)`.
@@ -302,6 +310,12 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 impl Intensities {
+    /// Returns the share for constants whose deviates have the given correlations, as in [`Conditional::correlated`].
+    #[must_use]
+    pub fn correlated(self, correlations: Vec<Vec<f64>>) -> Self {
+        Self { correlations, ..self }
+    }
+
     /// Returns the share of failures at an intensity as a function of the constants; `None` for an intensity without
     /// runs, unless the share follows a curve.
     pub fn at(&self, intensity: f64) -> Option<Conditional> {
@@ -317,7 +331,7 @@ impl Intensities {
             let factors = std::iter::once(&middle).chain(constants).map(|factor| scale * factor);
             std::iter::once(0.0).chain(factors).collect()
         };
-        Some(Conditional::new(self.samples.iter().map(of).collect(), self.unknowns))
+        Some(Conditional::new(self.samples.iter().map(of).collect(), self.correlations.clone()))
     }
 
     /// Returns, in every draw of [`Conditional::shares`], the intensity between two others at which the share of
@@ -363,12 +377,33 @@ pub fn share_less(first: &[f64], second: &[f64]) -> f64 {
 impl Conditional {
     /// Creates the share from samples of its coefficients, with values of the constants that depend only on the
     /// number of a sample: the same number of another share has the same values.
-    fn new(samples: Vec<Vec<f64>>, unknowns: usize) -> Self {
+    fn new(samples: Vec<Vec<f64>>, correlations: Vec<Vec<f64>>) -> Self {
+        let lower = cholesky(correlations.clone());
         let point = |point| {
-            (0..unknowns).map(|axis| normal_quantile(sobol::padded(axis, point, 0))).collect()
+            let own: Vec<f64> = (0..lower.len())
+                .map(|axis| normal_quantile(sobol::padded(axis, point, 0)))
+                .collect();
+            lower.iter().map(|row| dot(row, &own)).collect()
         };
         let points = (0_u32..).zip(&samples).map(|(number, _)| point(number)).collect();
-        Self { samples, points, unknowns }
+        Self { samples, points, correlations }
+    }
+
+    /// Returns the share for constants whose deviates have the given correlations: a positive definite matrix, 1 on its
+    /// diagonal. Without this, the constants are independent of each other.
+    #[must_use]
+    pub fn correlated(self, correlations: Vec<Vec<f64>>) -> Self {
+        Self::new(self.samples, correlations)
+    }
+
+    /// Returns a point with one constant fixed at a deviate. The other constants move with it as far as they are
+    /// correlated with it.
+    fn fixed(&self, point: &[f64], unknown: usize, deviate: f64) -> Vec<f64> {
+        let change = deviate - point[unknown];
+        let moved = point.iter().zip(&self.correlations[unknown]);
+        let mut fixed: Vec<f64> = moved.map(|(value, along)| value + along * change).collect();
+        fixed[unknown] = deviate;
+        fixed
     }
 
     /// Returns the share in every draw. A draw is a sample of the posterior distribution and values of the
@@ -388,7 +423,7 @@ impl Conditional {
 
     /// Returns the posterior mean of the share with all constants at their medians.
     pub fn at_medians(&self) -> f64 {
-        let none = vec![0.0; self.unknowns];
+        let none = vec![0.0; self.correlations.len()];
         mean(self.samples.iter().map(|sample| share(sample, &none)))
     }
 
@@ -426,10 +461,8 @@ impl Conditional {
     /// Returns the share in every [`THINNED`]th sample of the posterior distribution with one constant at a
     /// deviate, averaged over all other constants.
     fn shares_at(&self, unknown: usize, deviate: f64) -> Vec<f64> {
-        let mut points = self.points[..AVERAGED].to_vec();
-        for point in &mut points {
-            point[unknown] = deviate;
-        }
+        let points = self.points[..AVERAGED].iter();
+        let points: Vec<_> = points.map(|point| self.fixed(point, unknown, deviate)).collect();
         let of = |sample: &Vec<f64>| mean(points.iter().map(|point| share(sample, point)));
         self.samples.iter().step_by(THINNED).map(of).collect()
     }
@@ -439,11 +472,7 @@ impl Conditional {
         let mut shares: Vec<f64> = match known {
             None => self.shares(),
             Some((unknown, deviate)) => sampled
-                .map(|(sample, point)| {
-                    let mut point = point.clone();
-                    point[unknown] = deviate;
-                    share(sample, &point)
-                })
+                .map(|(sample, point)| share(sample, &self.fixed(point, unknown, deviate)))
                 .collect(),
         };
         shares.sort_by(f64::total_cmp);
@@ -457,23 +486,34 @@ impl Conditional {
         let mean_share = |deviates: &[f64]| {
             mean(self.samples.iter().step_by(thinned).map(|sample| share(sample, deviates)))
         };
+        let unknowns = self.correlations.len();
         let other = |unknown: usize, point: u32| {
-            normal_quantile(sobol::padded(self.unknowns + unknown, point, 0))
+            normal_quantile(sobol::padded(unknowns + unknown, point, 0))
         };
         let points = &self.points[..POINTS as usize];
         let shares: Vec<f64> = points.iter().map(|point| mean_share(point)).collect();
         let middle = mean(shares.iter().copied());
         let variance = mean(shares.iter().map(|share| (share - middle) * (share - middle)));
         let total = |unknown: usize| {
+            // The constant is drawn anew while all others are known; in this order of the constants, the last row of
+            // the factor states how it depends on them.
+            let order: Vec<usize> =
+                (0..unknowns).filter(|at| *at != unknown).chain([unknown]).collect();
+            let row = |i: &usize| order.iter().map(|j| self.correlations[*i][*j]).collect();
+            let lower = cholesky(order.iter().map(row).collect());
             let squares = (0..POINTS).zip(points).zip(&shares).map(|((point, deviates), share)| {
                 let mut changed = deviates.clone();
-                changed[unknown] = other(unknown, point);
+                let known: Vec<f64> =
+                    order[..unknowns - 1].iter().map(|at| deviates[*at]).collect();
+                let last = &lower[unknowns - 1];
+                changed[unknown] = dot(last, &forward(&lower, &known))
+                    + last[unknowns - 1] * other(unknown, point);
                 let change = mean_share(&changed) - share;
                 0.5 * change * change
             });
             if variance > 0.0 { (mean(squares) / variance).min(1.0) } else { 0.0 }
         };
-        (0..self.unknowns).map(total).collect()
+        (0..unknowns).map(total).collect()
     }
 }
 
@@ -536,25 +576,10 @@ fn above(bound: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
 
 /// Draws from the normal distribution with the precision matrix `P` and the mean `P⁻¹ s`, by Cholesky
 /// factorization of `P`.
-fn sampled(
-    mut precision: Vec<Vec<f64>>,
-    sums: &[f64],
-    uniform: &mut impl FnMut() -> f64,
-) -> Vec<f64> {
+fn sampled(precision: Vec<Vec<f64>>, sums: &[f64], uniform: &mut impl FnMut() -> f64) -> Vec<f64> {
     let size = sums.len();
-    for j in 0..size {
-        for i in j..size {
-            let known: f64 = (0..j).map(|k| precision[i][k] * precision[j][k]).sum();
-            let rest = precision[i][j] - known;
-            precision[i][j] = if i == j { rest.sqrt() } else { rest / precision[j][j] };
-        }
-    }
-    let lower = precision;
-    let mut forward = vec![0.0; size];
-    for i in 0..size {
-        let known: f64 = (0..i).map(|k| lower[i][k] * forward[k]).sum();
-        forward[i] = (sums[i] - known) / lower[i][i];
-    }
+    let lower = cholesky(precision);
+    let mut forward = forward(&lower, sums);
     for value in &mut forward {
         *value += deviate(uniform);
     }
@@ -562,6 +587,31 @@ fn sampled(
     for i in (0..size).rev() {
         let known: f64 = (i + 1..size).map(|k| lower[k][i] * found[k]).sum();
         found[i] = (forward[i] - known) / lower[i][i];
+    }
+    found
+}
+
+/// Returns the lower triangle `L` of `L Lᵀ = M`, for a symmetric positive definite matrix `M`; zero above its diagonal.
+fn cholesky(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for j in 0..matrix.len() {
+        for i in j..matrix.len() {
+            let known: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
+            let rest = matrix[i][j] - known;
+            matrix[i][j] = if i == j { rest.sqrt() } else { rest / matrix[j][j] };
+        }
+    }
+    for (i, row) in matrix.iter_mut().enumerate() {
+        row[i + 1..].fill(0.0);
+    }
+    matrix
+}
+
+/// Returns the solution `x` of the first rows of `L x = s`.
+fn forward(lower: &[Vec<f64>], sums: &[f64]) -> Vec<f64> {
+    let mut found = Vec::with_capacity(sums.len());
+    for (row, sum) in lower.iter().zip(sums) {
+        let known = dot(row, &found);
+        found.push((sum - known) / row[found.len()]);
     }
     found
 }

@@ -137,6 +137,43 @@ fn the_constant_that_decides_comes_first() {
     assert!((fitted.at_medians() - normal(0.3)).abs() < 0.05);
 }
 
+/// Correlated constants give the range, the effect and the index of their joint distribution.
+#[test]
+fn correlated_constants_move_together() {
+    let mut random = Random::new(6);
+    let truth: Truth = Box::new(|z, _| normal(0.7 * z[0] + 0.7 * z[1]));
+    let trials = trials(&truth, 3, 4096, 3, &mut random);
+    let independent = conditional(&trials, || random.uniform()).unwrap();
+    for along in [0.0, 0.8] {
+        let mut correlations = vec![vec![0.0; 3]; 3];
+        for (i, row) in correlations.iter_mut().enumerate() {
+            row[i] = 1.0;
+        }
+        (correlations[0][1], correlations[1][0]) = (along, along);
+        let fitted = independent.clone().correlated(correlations);
+        // The argument of Φ has the variance 0.7² (2 + 2 ρ).
+        let range = fitted.range(LEVEL);
+        let exact = normal(1.96 * 0.7 * (2.0 + 2.0 * along).sqrt());
+        let low = fitted.at(0, 1.645, LEVEL).0;
+        // With z₁ = 1.645, z₂ has the mean 1.645 ρ and the variance 1 − ρ².
+        let at = normal(0.7 * 1.645 * (1.0 + along) / (1.0 + 0.49 * (1.0 - along * along)).sqrt());
+        println!("{along}: {range:?}, exact {exact:.3}; at 1.645 {low:.3}, exact {at:.3}");
+        // Ends are rounded outward to hundredths. Measured: 0.006 and 0.016.
+        assert!((range.high - exact).abs() < 0.03 && (range.low - (1.0 - exact)).abs() < 0.03);
+        assert!((low - at).abs() < 0.03);
+        // The variance of a constant that the other leaves is 1 − ρ² of its own.
+        let all = fitted.influences(LEVEL);
+        println!("{all:?}");
+        assert!((all[0].total - all[1].total).abs() < 0.1 && all[2].total < 0.03, "{all:?}");
+        assert!(if along > 0.0 { all[0].total < 0.2 } else { all[0].total > 0.4 }, "{all:?}");
+    }
+    // Without correlation, the values are those of independent constants to the bit.
+    let unit = (0..3).map(|i| (0..3).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    let same = independent.clone().correlated(unit);
+    assert_eq!(same.shares(), independent.shares());
+    assert_eq!(same.influences(LEVEL), independent.influences(LEVEL));
+}
+
 /// A share that rises to both sides is not taken for one that does not change.
 #[test]
 fn a_share_with_its_minimum_in_the_middle_keeps_it() {

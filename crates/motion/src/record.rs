@@ -308,7 +308,10 @@ impl Record {
     pub(crate) fn warn_of_start(&mut self, line: usize, stated: &str, start: Option<Utc>) {
         if start.is_none() && !stated.trim().is_empty() {
             let stated = format::quoted(stated);
-            self.warn(line + 1, format!("{stated} is not a date and time of the first sample"));
+            self.warn(
+                line + 1,
+                format!("{stated} is not a valid date and time of the first sample"),
+            );
         }
     }
 

@@ -38,7 +38,7 @@ pub(crate) enum Item {
         runs: Runs,
         closed: bool,
     },
-    /// Polylines in the units of a body (m), with the pen width in the same units.
+    /// Polylines in the coordinates of the body (m); the pen width is in meters, too.
     Outline {
         class: String,
         pen: f64,

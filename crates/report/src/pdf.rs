@@ -72,7 +72,7 @@ struct File {
 struct Used {
     /// Used glyphs of each font weight; the key is `true` for bold.
     fonts: BTreeMap<bool, Glyphs>,
-    /// Used opacities, in percent.
+    /// Opacities in use, in percent.
     opacities: BTreeSet<u8>,
 }
 

@@ -61,8 +61,8 @@ fn opened_index() -> String {
         .to_owned()
 }
 
-/// Adds the file of a time (s) to the index; if a time has several parts, each part has its own
-/// file.
+/// Adds the file of one instant (s) to the index; if an instant has several parts, each part has its
+/// own file.
 fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
     // Writing to a String cannot fail, here and below.
     let _ = writeln!(

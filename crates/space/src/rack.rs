@@ -25,7 +25,7 @@ use std::f64::consts::FRAC_PI_2;
 pub(crate) struct Tubes {
     /// The tubes, with masses (kg) that add up to the mass of the rack. Chocks come last and have no mass.
     pub(crate) parts: Vec<Part>,
-    /// For every beam, the row in the rack of the barrels that the beam carries and lies on, and the index of the tube.
+    /// For every beam, the index of its tube, and the row in the rack: of the barrels on the beam and of those beneath it.
     pub(crate) beams: Vec<(u32, usize)>,
     /// For every post, the column and the row in the rack of the barrel that the post carries, and the index of the
     /// tube.

@@ -143,7 +143,7 @@ struct Pace {
     step: f64,
     /// Number of substeps during impacts.
     substeps: f64,
-    /// Largest penetration (m) that whole steps resolve, for each law by its name.
+    /// Largest penetration (m) that steps of full length resolve, by the name of the contact law.
     depths: BTreeMap<String, f64>,
     /// [`Substepping::resting_allowance`]: the smallest value of all plane models.
     resting_allowance: f64,

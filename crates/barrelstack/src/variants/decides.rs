@@ -39,7 +39,7 @@ described! {
         /// Total-effect index: fraction of the variance of the share that remains if all other
         /// constants are known.
         pub total: f64 as "1",
-        /// Average width of the range of the share that remains if this constant is measured
+        /// Average width of the range that the share would still have if this constant were measured
         /// exactly.
         pub width_if_measured: f64 as "1",
     }
@@ -356,6 +356,17 @@ impl Fitted {
     }
 }
 
+/// Returns the correlations of the deviates of constants, of which those of friction are correlated.
+fn correlations(constants: &[Drawn], of_friction: f64) -> Vec<Vec<f64>> {
+    let between = |i: usize, j: usize| match (i == j, [i, j].map(|at| constants[at].axis)) {
+        (true, _) => 1.0,
+        (false, axes) if axes.iter().all(|axis| axis.is_friction()) => of_friction,
+        (false, _) => 0.0,
+    };
+    let all = 0..constants.len();
+    all.clone().map(|i| all.clone().map(|j| between(i, j)).collect()).collect()
+}
+
 /// Fits the share of collapses to the results of the nominal case and of its variants, which are in
 /// the order of their numbers. Returns `None` if the variants do not differ in their constants,
 /// if a variant has no verdict, or if there are too few variants.
@@ -371,14 +382,15 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     let run = |(number, result): (u32, &CaseResult)| DrawnRun {
         deviates: constants
             .iter()
-            .map(|one| draw::deviate(imperfections, one.axis, number))
+            .map(|one| draw::deviate(imperfections, unknowns, one.axis, number))
             .collect(),
         second_half: plane.exchanged.is_some() && plane.is_exchanged(number),
         failed: collapsed(result),
     };
     let runs: Vec<DrawnRun> = (1..).zip(variants).map(run).collect();
     let mut random = Random::new(u64::from(imperfections.seed));
-    let fitted = conditional(&runs, || random.uniform())?;
+    let fitted = conditional(&runs, || random.uniform())?
+        .correlated(correlations(&constants, unknowns.friction_correlation));
     let constants: Vec<Constant<'_>> = constants.iter().map(Drawn::constant).collect();
     Some(Fitted::of(&fitted, &constants))
 }

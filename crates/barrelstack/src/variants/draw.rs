@@ -29,6 +29,21 @@ pub(super) enum Shared {
     StaticFriction = 1 << 20,
     Stick,
     RailSpacing,
+    Friction,
+}
+
+impl Shared {
+    /// Returns `true` if the quantity is a friction coefficient.
+    pub(super) fn is_friction(self) -> bool {
+        matches!(
+            self,
+            Self::FrictionGround
+                | Self::FrictionBarrelRack
+                | Self::FrictionRackRack
+                | Self::FrictionBarrelBarrel
+                | Self::FrictionBarrelGround
+        )
+    }
 }
 
 /// Truncation of normal deviates, in standard deviations.
@@ -53,9 +68,20 @@ impl Point {
         normal_quantile(self.uniform(axis)).clamp(-FARTHEST, FARTHEST)
     }
 
+    /// Returns the deviate of a constant; those of all friction coefficients have a common part.
+    fn constant(&self, axis: Shared, unknowns: &Unknowns) -> f64 {
+        let own = self.normal(axis as usize);
+        if !axis.is_friction() {
+            return own;
+        }
+        let common = self.normal(Shared::Friction as usize);
+        let along = unknowns.friction_correlation;
+        (along.sqrt() * common + (1.0 - along).sqrt() * own).clamp(-FARTHEST, FARTHEST)
+    }
+
     /// Returns a lognormal factor with median 1 and the given dispersion.
-    fn lognormal(&self, axis: Shared, dispersion: f64) -> f64 {
-        libm::exp(dispersion * self.normal(axis as usize))
+    fn lognormal(&self, axis: Shared, unknowns: &Unknowns, dispersion: f64) -> f64 {
+        libm::exp(dispersion * self.constant(axis, unknowns))
     }
 }
 
@@ -65,9 +91,14 @@ pub(super) fn excess(largest: f64, deviate: f64) -> f64 {
     1.0 + largest * normal(deviate)
 }
 
-/// Returns the standard normal deviate of a shared quantity in a variant, by its number from 1.
-pub(super) fn deviate(imperfections: &Imperfections, axis: Shared, number: u32) -> f64 {
-    Point::of(imperfections, number).normal(axis as usize)
+/// Returns the standard normal deviate of a constant in a variant, by its number from 1.
+pub(super) fn deviate(
+    imperfections: &Imperfections,
+    unknowns: &Unknowns,
+    axis: Shared,
+    number: u32,
+) -> f64 {
+    Point::of(imperfections, number).constant(axis, unknowns)
 }
 
 /// Returns a variant by its number, starting from 1; a free scene has no variants and is returned
@@ -96,7 +127,7 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
 /// the same friction factor.
 fn constants(laws: &mut StackInterfaces, spread: &Unknowns, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
-        let factor = point.lognormal(axis, dispersion);
+        let factor = point.lognormal(axis, spread, dispersion);
         for interface in interfaces {
             interface.roughen(factor);
         }
@@ -114,9 +145,9 @@ fn constants(laws: &mut StackInterfaces, spread: &Unknowns, point: &Point) {
         (Shared::SeatStiffness, spread.stiffness),
         (Shared::ImpactStiffness, spread.impact_stiffness),
     ]
-    .map(|(axis, dispersion)| point.lognormal(axis, dispersion));
-    let damping = point.lognormal(Shared::SeatDamping, spread.damping);
-    let stick = point.lognormal(Shared::Stick, spread.stick);
+    .map(|(axis, dispersion)| point.lognormal(axis, spread, dispersion));
+    let damping = point.lognormal(Shared::SeatDamping, spread, spread.damping);
+    let stick = point.lognormal(Shared::Stick, spread, spread.stick);
     let hold = excess(spread.static_friction, point.normal(Shared::StaticFriction as usize));
     for wood in [&mut laws.barrel_rack, &mut laws.fallen_barrel_rack] {
         wood.hold(hold);
@@ -290,6 +321,31 @@ mod tests {
             off / 64.0
         });
         assert!(mean.sum::<f64>().abs() < 1e-4);
+    }
+
+    #[test]
+    fn frictions_are_correlated_as_stated() {
+        let change = ["unknowns.friction_correlation=0.6"];
+        let logs = |number: u32| {
+            let one = drawn(&change, number);
+            let laws = &one.stack().unwrap().interfaces;
+            [&laws.barrel_rack, &laws.rack_ground].map(|law| match law.friction {
+                Friction::Coulomb { coefficient, .. } => coefficient.ln(),
+                Friction::Regularized { .. } | Friction::None => panic!("no Coulomb friction"),
+            })
+        };
+        let all: Vec<[f64; 2]> = (1..=512).map(logs).collect();
+        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| all.iter().map(of).sum::<f64>() / 512.0;
+        let means = [0, 1].map(|at| mean(&|one| one[at]));
+        let product = |i: usize, j: usize| mean(&|one| (one[i] - means[i]) * (one[j] - means[j]));
+        let found = product(0, 1) / (product(0, 0) * product(1, 1)).sqrt();
+        assert!((found - 0.6).abs() < 0.02, "{found}"); // MEASURED
+        assert!((product(0, 0).sqrt() / 0.25 - 1.0).abs() < 0.02, "{}", product(0, 0).sqrt()); // MEASURED
+        // Positions and all other constants are those of independent factors.
+        let (plain, one) = (drawn(&[], 3), drawn(&change, 3));
+        let (plain, one) = (plain.stack().unwrap(), one.stack().unwrap());
+        assert_eq!(plain.overrides, one.overrides);
+        assert_eq!(plain.interfaces.barrel_rack.normal, one.interfaces.barrel_rack.normal);
     }
 
     #[test]

@@ -173,7 +173,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
                         .to_owned()
                 }
                 BandKind::Likelihood => {
-                    "The band is that of the profile likelihood of independent cases.".to_owned()
+                    "The band comes from the profile likelihood, with the cases treated as independent.".to_owned()
                 }
             });
         }

@@ -137,6 +137,16 @@ table! {
 }
 
 table! {
+    /// A group of factors that are drawn with a correlation. Factors are independent of each other without it.
+    static CORRELATION = "correlation";
+    /// Names of the factors, each with a continuous distribution.
+    factors = Kind::Texts, Default::Required;
+    /// Correlation of any two of the factors, each expressed as a standard normal deviate (for lognormal factors, the
+    /// correlation of their logarithms).
+    coefficient = Kind::Number(Range::between(0.0, 0.95)), Default::Required;
+}
+
+table! {
     /// The intensity to which motions are scaled. All components of a motion are scaled by one factor.
     static INTENSITY = "intensity";
     /// Intensity measure of the horizontal component that shakes the stack: pga, pgv, pgd, arias, cav, sa(0.5), …
@@ -233,6 +243,8 @@ table! {
     base = Kind::Table(&ROOT), Default::Required;
     /// Varied quantities.
     factor = Kind::Tables(&FACTOR), Default::Nothing;
+    /// Groups of factors that are correlated with each other.
+    correlation = Kind::Tables(&CORRELATION), Default::Nothing;
     /// Ground motions.
     motion = Kind::Tables(&MOTIONS), Default::Derived("the motion of the base");
     /// Intensity to which motions are scaled.

@@ -23,7 +23,7 @@ use super::prepare::runs;
 use super::setting::{Domain, Setting, required};
 use factor::{LOW, Room, clash, read_factor, read_variation};
 
-use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
+use super::{Correlation, Factor, Intensity, Levels, Study, Variation, ensembles};
 
 /// Maximum number of cases of a design.
 const MOST_CASES: u64 = 10_000_000;
@@ -178,6 +178,10 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         return Err(top.inconsistent("intensity", message).into());
     }
     let in_space = scenario.is_spatial() || factors.iter().any(|factor| factor.in_space);
+    let mut correlations = Vec::new();
+    for reader in top.sections("correlation")? {
+        correlations.push(read_correlation(reader, &factors, &correlations)?);
+    }
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
     // Cases in space do not run in lockstep, and each takes as long as many cases in a plane.
     let usual = if in_space || matches!(design, Design::Ida(_)) { FEW } else { Sizes::Growing };
@@ -197,6 +201,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         template,
         held: Vec::new(),
         factors,
+        correlations,
         motions,
         intensity,
         in_space,
@@ -215,6 +220,15 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
             "nothing varies: a sensitivity design needs a [[factor]], or several motions or levels"
                 .to_owned(),
         ));
+    }
+    if !study.correlations.is_empty()
+        && matches!(study.design, Design::Saltelli { .. } | Design::OneAtATime { .. })
+    {
+        return Err(refused(format!(
+            "the design \"{}\" changes factors separately, so that they cannot be correlated: remove [[correlation]], \
+             or use a sampled design such as \"sobol\"",
+            study.design.name()
+        )));
     }
     let cases = study.cases();
     if cases > MOST_CASES {
@@ -309,6 +323,46 @@ fn dimension_of(measure: IntensityMeasure) -> Option<&'static [Dimension]> {
         "m" => Some(&[Dimension::LENGTH]),
         _ => None,
     }
+}
+
+/// Reads a group of factors that are correlated with each other.
+fn read_correlation(
+    reader: Reader<'_>,
+    factors: &[Factor],
+    others: &[Correlation],
+) -> Result<Correlation, ScenarioError> {
+    let names = reader.texts("factors")?;
+    let coefficient = reader.number("coefficient")?;
+    let refused = |message: String| Err(reader.inconsistent("factors", message));
+    for (at, name) in names.iter().enumerate() {
+        let Some(factor) = factors.iter().find(|factor| factor.name == *name) else {
+            let known: Vec<&str> = factors.iter().map(|factor| &*factor.name).collect();
+            return refused(format!(
+                "there is no factor \"{name}\": use one of {}",
+                known.join(", ")
+            ));
+        };
+        let drawn = match &factor.variation {
+            Variation::Distribution(distribution) => distribution.settings().is_none(),
+            Variation::Values(_) => false,
+        };
+        if !drawn {
+            return refused(format!(
+                "the factor \"{name}\" has no continuous distribution, so that it cannot be correlated with others: \
+                 give it one, or remove its name here"
+            ));
+        }
+        if names[..at].contains(name) || others.iter().any(|other| other.contains(name)) {
+            return refused(format!(
+                "the factor \"{name}\" is listed twice: keep its name in one [[correlation]]"
+            ));
+        }
+    }
+    if names.len() < 2 {
+        return refused("a correlation needs the names of at least two factors".to_owned());
+    }
+    reader.finish();
+    Ok(Correlation { factors: names, coefficient })
 }
 
 fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {

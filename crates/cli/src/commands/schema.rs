@@ -61,7 +61,7 @@ documents! {
     "study-plan" StudyPlan: "study plan --json";
     "study-result" StudyResult: "study --json and study collect --json";
     "study-status" StudyStatus: "study status --json";
-    "decision" DecisionDocument: "study report --json, and decision.json of --out";
+    "decision" DecisionDocument: "study report --json, and the file decision.json that --out writes";
     "calibration" CalibrationDocument: "calibrate --json";
     "motion-info" MotionInfo: "motion info --json";
     "error" ErrorDocument: "any command with --json that fails";

@@ -14,7 +14,8 @@ section! {
     pub struct Unknowns;
     /// Uncertainty of constants that nobody has measured on this stack. Every variant draws a factor of each constant,
     /// lognormal around the stated value and cut off at three standard deviations, and the whole stack shares the
-    /// factor; factors of different fields are independent of each other. 0 keeps a constant as stated.
+    /// factor. Factors are independent of each other, except those of friction if a correlation is stated. 0 keeps a
+    /// constant as stated.
     pub static UNKNOWNS = "unknowns";
     /// True to draw the constants; false to keep all of them as stated in all variants.
     drawn: bool = Kind::Flag, Default::Value("true");
@@ -30,6 +31,9 @@ section! {
     /// Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily; steel
     /// on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the number is an assumption).
     friction_ground: f64 = DISPERSION, Default::Value("0.2");
+    /// Correlation of ln μ between any two of these pairs of materials (a wet cellar is wet everywhere, but steel,
+    /// wood and floors differ in roughness; nobody has measured it, and 0 is an assumption).
+    friction_correlation: f64 = Kind::Number(Range::between(0.0, 0.95)), Default::Value("0");
     /// Standard deviation of ln k, one draw for all seats (nobody has measured these racks; with 0.6, nineteen in
     /// twenty variants lie within a factor of 3.2, which reaches from the value measured by Candia, de la Llera and
     /// Almazán 2008 to the value of a stave clamped between hoops).

@@ -345,7 +345,7 @@ fn posterior(given: &str, draws: &[[f64; UNKNOWNS]], weights: &[f64]) -> Posteri
     }
 }
 
-/// Edges of equal ratios over the range of friction barrel–rack.
+/// Edges of bins, with equal ratios, over the range of the friction of barrels on racks.
 fn bins(count: usize) -> Vec<f64> {
     let [low, high] = weigh::RANGES[0];
     (0..=count).map(|at| low * libm::pow(high / low, at as f64 / count as f64)).collect()

@@ -53,7 +53,9 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
                     Condition::at_epsilon(period, median[place], sigma[place], epsilon)
                 }
                 (None, None) => {
-                    bail!("--at: give Sa at that period, with --level \"0.6 g\" or --epsilon 2")
+                    bail!(
+                        "--at: state the target of Sa at the period of --at, with --level \"0.6 g\" or --epsilon 2"
+                    )
                 }
             })
         }
