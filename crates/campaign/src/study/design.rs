@@ -449,7 +449,7 @@ mod tests {
             "kind = \"stripes\"",
             "kind = \"sobol\"\ncount = 400",
             "kind = \"latin-hypercube\"\ncount = 400",
-            "kind = \"monte-carlo\"\ncount = 400",
+            "kind = \"monte-carlo\"\nmost = 400",
         ] {
             let intensity = if design.contains("stripes") {
                 "[intensity]\nlevels = [\"50 cm/s\"]\n"
