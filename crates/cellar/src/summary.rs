@@ -49,8 +49,12 @@ described! {
         pub inspection: Vec<String>,
         /// The run that is shown.
         pub shown: ShownRoom,
-        /// Ground motion.
+        /// Component of the ground motion along x.
         pub motion: Option<MotionSummary>,
+        /// Component of the ground motion along y; null where the motion has only one horizontal component.
+        pub other_component: Option<MotionSummary>,
+        /// Vertical component of the ground motion; null where the motion has none.
+        pub vertical_component: Option<VerticalMotion>,
         /// Time in the record at which the shaking starts.
         pub onset: f64 as "s",
         /// Warnings, one sentence each.
@@ -63,6 +67,17 @@ described! {
         pub provenance: Vec<String>,
         /// Wall-clock time of the work; null if not measured.
         pub wall_seconds: Option<f64> as "s",
+    }
+
+    /// The vertical component of a ground motion.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct VerticalMotion {
+        /// Name of the motion.
+        pub name: String,
+        /// Peak acceleration.
+        pub pga: f64 as "m/s2",
+        /// Peak velocity.
+        pub pgv: f64 as "m/s",
     }
 
     /// A count out of the variants, with the 95 % interval of the share in all such rooms (Wilson 1927).
@@ -364,6 +379,8 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     let of_cases = cases.iter().flat_map(|case| &case.warnings);
     let warnings = grouped(run.warnings.iter().chain(of_cases));
     let motion = prepared.ground.first.motion.as_ref();
+    let other = prepared.ground.second.as_ref().and_then(|ground| ground.motion.as_ref());
+    let vertical = motion.and_then(|motion| Some((&motion.name, motion.vertical.as_ref()?)));
     let mut summary = CellarSummary {
         schema: "cellar/1",
         title: prepared.cellar.title.clone(),
@@ -381,6 +398,12 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         inspection: Vec::new(),
         shown: shown_room(prepared, case, run),
         motion: motion.map(MotionSummary::of),
+        other_component: other.map(MotionSummary::of),
+        vertical_component: vertical.map(|(name, history)| VerticalMotion {
+            name: name.clone(),
+            pga: history.pga(),
+            pgv: history.pgv(),
+        }),
         onset: prepared.onset,
         warnings,
         program: "barrelstack",

@@ -185,11 +185,17 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         ),
     }];
     if let Some(motion) = &summary.motion {
+        let other = summary.other_component.as_ref();
+        let other = other
+            .map(|other| format!("; along y as {}, {}", other.name, peaks(other.pga, other.pgv)));
+        let vertical = summary.vertical_component.as_ref();
+        let vertical = vertical.map(|up| format!("; vertically {}", peaks(up.pga, up.pgv)));
         all.push(format!(
-            "Along x the ground moves as {}, up to {:.2} g and {:.0} cm/s.",
+            "Along x the ground moves as {}, {}{}{}.",
             motion.name,
-            motion.pga / STANDARD_GRAVITY,
-            100.0 * motion.pgv
+            peaks(motion.pga, motion.pgv),
+            other.unwrap_or_default(),
+            vertical.unwrap_or_default(),
         ));
     }
     if let Some(spread) = room.spread.filter(|_| plan.stacks > 1) {
@@ -240,6 +246,11 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         ));
     }
     all
+}
+
+/// Returns the peaks of a component of the ground motion from its acceleration (m/s²) and its velocity (m/s).
+fn peaks(acceleration: f64, velocity: f64) -> String {
+    format!("up to {:.2} g and {:.0} cm/s", acceleration / STANDARD_GRAVITY, 100.0 * velocity)
 }
 
 /// Returns the sentence on an aisle over a number of variants.

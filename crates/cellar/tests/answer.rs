@@ -44,6 +44,15 @@ fn every_number_of_the_page_is_that_of_the_document() {
     assert_eq!(json["schema"], "cellar/1");
     assert_eq!(json["headline"], page.verdict.headline.as_str());
     assert_eq!(json["counted"], 2);
+    // The record has three components; the sentence states the peaks of each.
+    let sentences = page.verdict.sentences.join(" ");
+    for key in ["motion", "other_component", "vertical_component"] {
+        let component = &json[key];
+        assert!(component["name"].is_string(), "{key}: {component}");
+        let [pga, pgv] = ["pga", "pgv"].map(|key| component[key].as_f64().unwrap());
+        let peaks = format!("up to {:.2} g and {:.0} cm/s", pga / 9.80665, 100.0 * pgv);
+        assert!(sentences.contains(&peaks), "{key}: {peaks}: {sentences}");
+    }
     let tables = tables(&page.blocks);
     let stacks = tables.iter().find(|table| table.columns[1].name == "falls").unwrap();
     let shown = stacks.to_csv();

@@ -65,8 +65,8 @@ def test_lines_of_code_are_counted_without_imports_and_comments() -> None:
     assert code_lines("from os import (\n    path,\n)\nif 1:\n    x = 1\n") == {4, 5}
 
 
-def test_there_are_at_least_fifteen_research_tasks() -> None:
-    assert len(TASKS) >= 15
+def test_there_are_sixteen_research_tasks() -> None:
+    assert len(TASKS) == 16
 
 
 @pytest.mark.parametrize("path", TASKS, ids=lambda path: path.stem)

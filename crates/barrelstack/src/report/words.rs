@@ -161,16 +161,17 @@ pub fn device(Device { words, elements }: &Device) -> Option<String> {
     })
 }
 
-/// Describes the ground motion.
+/// States the ground motion and its components.
 fn shaking(motion: &MotionSummary) -> String {
     // Formulas have common nouns as names, such as "sine", and need an article.
     let formula = motion.name.chars().all(char::is_lowercase);
     let name = if formula { format!("a {}", motion.name) } else { motion.name.clone() };
-    match (motion.pga == 0.0, motion.vertical) {
-        (true, _) => format!("It is shaken up and down only, by {name}."),
-        (false, true) => format!("It is shaken sideways and up and down by {name}."),
-        (false, false) => format!("It is shaken sideways by {name}."),
-    }
+    let components = match (motion.pga == 0.0, motion.vertical) {
+        (true, _) => "vertical only",
+        (false, true) => "horizontal and vertical",
+        (false, false) => "horizontal only",
+    };
+    format!("The motion is {name}, {components}.")
 }
 
 /// Returns further details: strength of the motion, number of the shown variant, and how the

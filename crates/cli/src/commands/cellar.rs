@@ -50,9 +50,13 @@ fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     for model in &cellar.models {
         let found =
             barrelstack_space::check(model).map_err(|error| placed(error.into(), cellar, args))?;
-        let heading = model.stack().filter(|_| cellar.models.len() > 1);
-        let heading = heading.map(|stack| format!("a stack of {} levels:", stack.levels));
-        printer::lines(heading.unwrap_or_else(|| "each stack:".to_owned()).lines())?;
+        let heading = match model.stack() {
+            Some(stack) if cellar.models.len() > 1 => {
+                format!("a stack of {} levels:", stack.levels)
+            }
+            _ => "each stack:".to_owned(),
+        };
+        printer::lines([heading])?;
         printer::lines(found.lines())?;
     }
     Ok(())

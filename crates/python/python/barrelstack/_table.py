@@ -127,11 +127,12 @@ class Columns:
         data = {name: one for name, one in variables.items() if name != dimension}
         return xarray.Dataset(data, coordinates, {"source": "barrelstack"})
 
-
     def to_excel(self, path: str | os.PathLike[str]) -> None:
-        """Writes a workbook that spreadsheet programs open, in which numbers are numbers in every language.
+        """Writes the columns as a workbook (``.xlsx``) of two sheets, by openpyxl.
 
-        The sheet ``values`` has the unit of each column in its heading, and the sheet ``columns`` states the meanings.
+        The sheet ``values`` has the names of the columns with their SI units in its first row, and the values below. The
+        sheet ``columns`` has a row for every column: its name, unit, kind and meaning. Numbers are cells with numbers,
+        which every language of a spreadsheet program shows in its own notation; a missing number is an empty cell.
 
         Parameters
         ----------
