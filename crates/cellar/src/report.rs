@@ -409,13 +409,12 @@ impl Answer {
     pub fn state(&self) -> String {
         let pose = |one: &BodyEnd, at: usize| Cell::text(one.own[at].to_string());
         let shown = &self.shown;
-        let stack = |one: &&BodyEnd| Cell::text(&shown.stacks[one.stack].name);
         let [x, y, z, w, a, b, c] = POSE;
         let table = Table::of(
             "",
-            &shown.bodies.iter().collect::<Vec<_>>(),
+            &shown.bodies,
             &[
-                ("stack", "", &stack),
+                ("stack", "", &|one| Cell::text(&shown.stacks[one.stack].name)),
                 ("body", "", &|one| Cell::text(&one.name)),
                 (x, "", &|one| pose(one, 0)),
                 (y, "", &|one| pose(one, 1)),

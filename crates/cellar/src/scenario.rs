@@ -8,7 +8,7 @@ use barrelstack::ground::{GroundError, from_disk};
 use barrelstack::scenario::error::ScenarioError;
 use barrelstack::scenario::field::{Default, Kind, Range, names};
 use barrelstack::scenario::imperfections::IMPERFECTIONS;
-use barrelstack::scenario::motion::{MOTION, MotionSpec, read_shock, write_sequence};
+use barrelstack::scenario::motion::{MOTION, MotionSpec, Scale, read_shock, write_sequence};
 use barrelstack::scenario::pair::INTERFACES;
 use barrelstack::scenario::reader::Reader;
 use barrelstack::scenario::run::{OUTCOME, RECORD, RUN};
@@ -19,7 +19,7 @@ use barrelstack::scenario::unknowns::UNKNOWNS;
 use barrelstack::scenario::{Dimension, Scenario, Until};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::writer::{Writer, to_toml};
-use barrelstack_input::{fnv1a, named, section, table};
+use barrelstack_input::{FileRef, fnv1a, named, section, table};
 
 use crate::start::{START, StartSpec};
 
@@ -394,6 +394,41 @@ impl Cellar {
             }
         }
         self
+    }
+
+    /// Returns the cellar with an aftershock: after its motion follows the same motion, or a record in its place, scaled by a
+    /// factor.
+    ///
+    /// # Errors
+    /// If the cellar states a sequence, or a scale that is not proportional to the motion.
+    pub fn with_aftershock(
+        mut self,
+        factor: f64,
+        record: Option<&Path>,
+    ) -> Result<Self, ScenarioError> {
+        if !self.later.is_empty() {
+            let message =
+                "the motion is a sequence already: add a shock to it, and run it".to_owned();
+            return Err(self.host.error(&["motion.sequence"], message));
+        }
+        let mut shock = self.stated().motion.clone();
+        if let Some(record) = record {
+            let file = FileRef::of_caller(record.display().to_string());
+            shock = self.stated().with_record_file(&file).motion;
+            shock.scale = Scale::Factor(1.0);
+        }
+        shock.scale = match shock.scale {
+            Scale::Factor(own) => Scale::Factor(factor * own),
+            Scale::Pga(own) => Scale::Pga(factor * own),
+            Scale::Pgv(own) => Scale::Pgv(factor * own),
+            Scale::Measure { .. } => {
+                let message = "an aftershock needs a motion that is scaled by `factor`, `pga` or `pgv`: state one of them in place of \
+                               `measure`";
+                return Err(self.host.error(&["motion.scale.measure"], message.to_owned()));
+            }
+        };
+        self.later.push(shock);
+        Ok(self)
     }
 
     /// Returns the cellar as TOML text that reads back equal, with all defaults written out and all quantities in SI.
