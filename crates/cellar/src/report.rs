@@ -298,7 +298,8 @@ fn contacts(touched: &[&ShownStack]) -> Table {
 /// Returns the table of the shocks of a sequence.
 pub fn shocks(summary: &CellarSummary) -> Table {
     Table::of(
-        "Shocks of the sequence. Every shock starts where the one before has left the bodies, at rest. Numbers of stacks are means          over the variants; shares of variants have their 95 % interval.",
+        "Shocks of the sequence. Every shock starts where the one before has left the bodies, at rest. Numbers of stacks are means \
+         over the variants; shares of variants have their 95 % interval.",
         &summary.shocks,
         &[
             ("shock", "", &|one| Cell::text(one.shock.to_string())),

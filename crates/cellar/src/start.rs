@@ -132,7 +132,8 @@ pub(crate) fn begins(
         let name = file.resolve().display().to_string();
         let bytes = file.read(LIMIT).map_err(|reason| {
             wrong(format!(
-                "cannot read {name}: {reason}; correct the path, which is relative to this file"
+                "cannot read {name}: {reason}; correct the path, which is relative to \
+ this file"
             ))
         })?;
         let text = std::str::from_utf8(&bytes)
@@ -214,7 +215,12 @@ fn of_file(
     let mut lines = (1..).zip(text.trim_start_matches('\u{feff}').lines());
     let mut lines = lines.by_ref().filter(|(_, line)| !line.trim().is_empty());
     let Some((first, header)) = lines.next() else {
-        return Err((1, "the file is empty: its first line names the columns `stack`, `body` and those of shifts or poses".to_owned()));
+        return Err((
+            1,
+            "the file is empty: its first line names the columns `stack`, `body` and \
+ those of shifts or poses"
+                .to_owned(),
+        ));
     };
     let header = cells(header);
     let column = |name: &str| header.iter().position(|known| known == name);
@@ -242,7 +248,8 @@ fn of_file(
         return Err((
             first,
             format!(
-                "a file of poses has the columns stack, body, {}, and no others",
+                "a file of poses has the columns stack, body, {}, and no \
+ others",
                 POSE.join(", ")
             ),
         ));
@@ -250,7 +257,11 @@ fn of_file(
     if !poses && shift_at.iter().all(Option::is_none) {
         return Err((
             first,
-            format!("there is no column of shifts: state at least one of {}", SHIFTED.join(", ")),
+            format!(
+                "there is no column of shifts: state at least \
+ one of {}",
+                SHIFTED.join(", ")
+            ),
         ));
     }
     let mut found: BTreeMap<String, (BTreeMap<usize, [f64; 7]>, usize)> = BTreeMap::new();
@@ -260,7 +271,8 @@ fn of_file(
             return Err((
                 line,
                 format!(
-                    "there are {} cells, but {} columns: fill every cell, with 0 where nothing moved",
+                    "there are {} cells, but {} columns: fill every cell, with 0 where \
+ nothing moved",
                     row.len(),
                     header.len()
                 ),
@@ -269,7 +281,16 @@ fn of_file(
         let number = |at: Option<usize>, name: &str| -> Result<f64, (usize, String)> {
             let Some(at) = at else { return Ok(0.0) };
             let value = row[at].parse::<f64>().ok().filter(|value| value.abs() <= FAR);
-            value.ok_or_else(|| (line, format!("column \"{name}\": expected a number up to {FAR} in magnitude, found \"{}\"", row[at])))
+            value.ok_or_else(|| {
+                (
+                    line,
+                    format!(
+                        "column \"{name}\": expected a number up to {FAR} in magnitude, \
+ found \"{}\"",
+                        row[at]
+                    ),
+                )
+            })
         };
         let name = &row[stack_at];
         let (standing, model) = stack_named(name, stacks, models)
@@ -302,7 +323,8 @@ fn of_file(
             return Err((
                 line,
                 format!(
-                    "columns qw, qx, qy, qz: expected a quaternion of length one, found length {size}"
+                    "columns qw, qx, qy, qz: expected a quaternion of length one, \
+ found length {size}"
                 ),
             ));
         }
@@ -312,7 +334,8 @@ fn of_file(
             return Err((
                 line,
                 format!(
-                    "a second pose of body \"{}\" of stack \"{name}\": leave one of them out",
+                    "a second pose of body \"{}\" of stack \"{name}\": leave one of \
+ them out",
                     model.stack.parts[body + 1].name
                 ),
             ));
@@ -325,7 +348,8 @@ fn of_file(
             return Err((
                 line,
                 format!(
-                    "stack \"{name}\": there is no pose of body \"{}\"; state the poses of all its bodies",
+                    "stack \"{name}\": there is no pose of body \"{}\"; state the poses \
+ of all its bodies",
                     model.stack.parts[body + 1].name
                 ),
             ));

@@ -202,15 +202,15 @@ fn survival(shock: &ShockAnswer, of: u32) -> String {
         return "no stack stands before it in any variant".to_owned();
     };
     format!(
-        "all stacks that stand before it survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1}          are knocked over; {} of them survive (95 % interval {} to {}). {} barrels fall",
+        "all stacks that stand before it survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
+         are knocked over; {} of them survive (95 % interval {} to {}). {barrels} barrels fall",
         share(&shock.all_survive, of),
         shock.stood,
         shock.by_themselves,
         shock.knocked_over,
         percent(survive.mean),
         percent(survive.interval[0]),
-        percent(survive.interval[1]),
-        capital(barrels)
+        percent(survive.interval[1])
     )
 }
 
@@ -250,7 +250,8 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
         return Some(format!("No stack stands after the main shock in any of {of} variants."));
     };
     Some(format!(
-        "Of {stacks} stacks {:.1} stand after the main shock on average; {strength} is survived by all of them in {}, and by {} of          them on average (95 % interval {} to {}).",
+        "Of {stacks} stacks {:.1} stand after the main shock on average; {strength} is survived by all of them in {}, and by {} of \
+         them on average (95 % interval {} to {}).",
         shock.stood,
         share(&shock.all_survive, of),
         percent(survive.mean),

@@ -87,7 +87,7 @@ fn a_sequence_is_read_written_and_refused_at_its_place() {
     let again = Cellar::parse("again.toml", stated.to_resolved_toml().as_bytes(), &[]).unwrap();
     assert_eq!(again.fingerprint(), stated.fingerprint());
     assert_eq!(
-        (again.later, again.stated().motion.clone()),
+        (again.later.clone(), again.stated().motion.clone()),
         (stated.later.clone(), stated.stated().motion.clone())
     );
     assert_ne!(stated.fingerprint(), cellar(TWICE, &[]).fingerprint());
@@ -108,7 +108,7 @@ fn a_sequence_is_read_written_and_refused_at_its_place() {
     refused("[motion]\nsequence = \"twice\"\n", &["mine.toml:8:", "sequence"]);
     refused(
         &format!("{shock}[motion.sequence.scale]\npga = \"-1 g\"\n"),
-        &["mine.toml:11:", "pga"],
+        &["mine.toml:10:", "pga"],
     );
     // A stack alone has one shock.
     let alone = format!("schema = 1\nextends = \"demo-napa\"\n{shock}");
@@ -165,13 +165,13 @@ fn a_surveyed_room_starts_from_its_displacements() {
         "{said}"
     );
     for (text, place, words) in [
-        ("[[start.shift]]\nstack = \"3-1\"\n", "mine.toml:9:", "there is no stack \"3-1\""),
+        ("[[start.shift]]\nstack = \"3-1\"\n", "mine.toml:8:", "there is no stack \"3-1\""),
         (
             "[[start.shift]]\nstack = \"1-1\"\nbody = \"B9.1\"\n",
-            "mine.toml:10:",
+            "mine.toml:9:",
             "has no body \"B9.1\"",
         ),
-        ("[start]\nfile = \"nowhere.csv\"\n", "mine.toml:9:", "nowhere.csv"),
+        ("[start]\nfile = \"nowhere.csv\"\n", "mine.toml:8:", "nowhere.csv"),
     ] {
         let said = places(text);
         assert!(said.contains(place) && said.contains(words), "{said}");

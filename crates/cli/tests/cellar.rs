@@ -145,7 +145,10 @@ fn the_second_shock_from_the_state_after_the_first_has_the_bits_of_the_sequence(
         assert_eq!(shock["shown"]["end_time"], alone["shown"]["end_time"]);
     }
     let fallen = |one: &Value| -> u64 {
-        ["by_themselves", "knocked_over"].iter().map(|key| one["shown"][key].as_u64().unwrap()).sum()
+        ["by_themselves", "knocked_over"]
+            .iter()
+            .map(|key| one["shown"][key].as_u64().unwrap())
+            .sum()
     };
     assert_eq!(second["shown"]["fallen_before"], fallen(&first));
     // Nothing is overwritten, and a stack alone has no such file.
@@ -160,7 +163,8 @@ fn the_second_shock_from_the_state_after_the_first_has_the_bits_of_the_sequence(
 fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let name = folder.path().join("mine.toml").display().to_string();
-    fs::write(&name, "schema = 1\nextends = \"demo-cellar\"\n[start]\nfile = \"survey.csv\"\n").unwrap();
+    fs::write(&name, "schema = 1\nextends = \"demo-cellar\"\n[start]\nfile = \"survey.csv\"\n")
+        .unwrap();
     let head = "stack,body,x (m),y (m),z (m),qw,qx,qy,qz\n";
     for (text, words) in [
         ("", "the file is empty"),
@@ -170,7 +174,10 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         ("stack,dx (m)\n1-1,far\n", "survey.csv:2: column \"dx (m)\": expected a number"),
         ("stack,dx (m)\n1-1,inf\n", "expected a number"),
         ("stack,dx (m)\n\n9-1,0.1\n", "survey.csv:3: column \"stack\": there is no stack \"9-1\""),
-        ("stack,body,dx (m)\n1-1,B9.9,0.1\n", "survey.csv:2: column \"body\": stack \"1-1\" has no body"),
+        (
+            "stack,body,dx (m)\n1-1,B9.9,0.1\n",
+            "survey.csv:2: column \"body\": stack \"1-1\" has no body",
+        ),
         ("stack,dx (m)\n1-1\n", "survey.csv:2: there are 1 cells"),
         (&format!("{head}1-1,B1.1,0,0,0,2,0,0,0\n"), "survey.csv:2: columns qw, qx, qy, qz"),
         (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n"), "there is no pose of body"),
@@ -184,26 +191,40 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         assert!(said.contains(&format!("{name}:4:")) && said.contains(words), "{text}: {said}");
     }
     // The overlap is found when the stacks are built.
-    fs::write(folder.path().join("survey.csv"), "stack,body,dx (m)\n1-1,,0.02\n1-1,B1.1,0.05\n").unwrap();
+    fs::write(folder.path().join("survey.csv"), "stack,body,dx (m)\n1-1,,0.02\n1-1,B1.1,0.05\n")
+        .unwrap();
     let output = barrelstack(["run", &name, "--variants=0", "-q"]);
     assert_eq!(output.status.code(), Some(2));
     let said = stderr(&output);
-    assert!(said.contains(":4:") && said.contains("line 3 of the file") && said.contains("overlap"), "{said}");
+    assert!(
+        said.contains(":4:") && said.contains("line 3 of the file") && said.contains("overlap"),
+        "{said}"
+    );
 }
 
 #[test]
 fn an_aftershock_is_answered_in_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let small = ["--variants=2", "-q", "--set=stack.levels=2", "--set=block.1.rows=1", "--set=run.duration=6 s"];
+    let small = [
+        "--variants=2",
+        "-q",
+        "--set=stack.levels=2",
+        "--set=block.1.rows=1",
+        "--set=run.duration=6 s",
+    ];
     let place = out.display().to_string();
     let strong = ["--set=motion.scale.factor=2.5", "--scale=0.4", "--out", &place];
     let output = barrelstack([&["aftershock", "demo-cellar"][..], &small, &strong].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let said = stdout(&output);
-    let summary: Value = serde_json::from_slice(&fs::read(out.join("cellar.json")).unwrap()).unwrap();
+    let summary: Value =
+        serde_json::from_slice(&fs::read(out.join("cellar.json")).unwrap()).unwrap();
     let first = said.lines().next().unwrap();
-    let begins = format!("Of 2 stacks {:.1} stand after the main shock", summary["shocks"][1]["stood"].as_f64().unwrap());
+    let begins = format!(
+        "Of 2 stacks {:.1} stand after the main shock",
+        summary["shocks"][1]["stood"].as_f64().unwrap()
+    );
     assert!(first.starts_with(&begins) || first.starts_with("No stack stands"), "{first}");
     let pga = |shock: usize| summary["shocks"][shock]["motion"]["pga"].as_f64().unwrap();
     assert!((pga(1) / pga(0) - 0.4).abs() < 1e-9);
