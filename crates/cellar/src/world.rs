@@ -175,8 +175,10 @@ fn start_from(
 ) -> Result<(), RoomFailure> {
     let name = || placed.name.clone();
     let deepest = |state: &State<Spatial>| {
-        let mut scratch = Scratch::new(&stack.model);
-        evaluate(&stack.model, state, &mut scratch);
+        // The list of contact elements is that of the poses before.
+        let (mut state, mut scratch) = (state.clone(), Scratch::new(&stack.model));
+        state.contact_elements.make_exhaustive(&stack.model, &state.poses);
+        evaluate(&stack.model, &state, &mut scratch);
         deepest_overlap(stack, &scratch)
     };
     let expected = state.poses.len() - 1;
