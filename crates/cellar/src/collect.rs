@@ -38,6 +38,7 @@ pub(crate) fn result(
         end_time: 0.0,
         interrupted,
         warnings: world.room.ground.warnings.iter().map(|text| (None, text.clone())).collect(),
+        shocks: Vec::new(),
     };
     let mut energy = Some(EnergySummary::default());
     for island in islands.iter().flatten() {
@@ -85,6 +86,7 @@ pub(crate) fn result(
             bodies: first..run.bodies.len(),
             ending,
             end_time: island.time(),
+            moving: island.moving(at),
         });
         run.end_time = run.end_time.max(island.time());
     }
@@ -115,7 +117,8 @@ fn bodies_of(of: &StackOf<'_>, stack: usize, island: &Island, member: usize) -> 
     };
     let parts = of.stack.parts.iter().enumerate().skip(1);
     let ends = parts.map(|(body, part)| {
-        let (own, from) = (relative(&poses, body), relative(&of.at_rest.poses, body));
+        let [own, from, start] =
+            [&poses, &of.at_rest.poses, &of.running.state.poses].map(|poses| relative(poses, body));
         BodyEnd {
             stack,
             name: part.name.clone(),
@@ -124,6 +127,7 @@ fn bodies_of(of: &StackOf<'_>, stack: usize, island: &Island, member: usize) -> 
             wine: part.wine,
             fate: fates[body],
             from: numbers(of.frame.pose(from)),
+            start: numbers(of.frame.pose(start)),
             to: numbers(of.frame.pose(own)),
             own: numbers(own),
         }

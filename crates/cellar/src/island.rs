@@ -257,6 +257,12 @@ impl Island {
         all
     }
 
+    /// Returns the number of bodies of a member that move.
+    pub(crate) fn moving(&self, member: usize) -> usize {
+        let (poses, twists) = self.own(member);
+        self.live.watches[member].rest.moving((&poses, &twists)).count()
+    }
+
     /// Starts a window in which bodies may move as far as their tubes; `keeps` is `true` if the island may have to
     /// return to its start.
     pub(crate) fn open(&mut self, keeps: bool) {

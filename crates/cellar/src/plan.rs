@@ -10,6 +10,7 @@ use barrelstack_space::{Stack, mesh};
 
 use crate::geometry::{Convex, Grid, PASSAGE, Point};
 use crate::scenario::{Cellar, Door, RoomSpec, Side, Standing};
+use crate::start::begins;
 use crate::words::plural;
 
 /// Depth (m) in front of a door that is to stay free, so that a person can enter.
@@ -159,6 +160,9 @@ impl Plan {
             .map(|one| models[one.model].footprint.placed(one.at, one.azimuth))
             .collect();
         let mut problems = Vec::new();
+        if let Err(error) = begins(&cellar.start, &cellar.host, &stacks, &models) {
+            problems.push((error, Vec::new()));
+        }
         let nearest_stacks = neighbors(cellar, &stacks, &footprints, &mut problems);
         let nearest_wall = walls(cellar, &stacks, &footprints, &mut problems);
         columns(cellar, &stacks, &footprints, &mut problems);

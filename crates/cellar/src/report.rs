@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use barrelstack::motion::STANDARD_GRAVITY;
 use barrelstack::report::WORDS;
 use barrelstack::variants::words::percent;
 use barrelstack::variants::{FEW, Range};
@@ -13,8 +14,10 @@ use barrelstack_space::drawing::{Shown, Sight, together};
 
 use crate::answer::Answer;
 use crate::plan::liters;
+use crate::result::BodyEnd;
 use crate::sample::CELL;
-use crate::summary::{CellarSummary, Count, ShownStack, counted};
+use crate::start::POSE;
+use crate::summary::{CellarSummary, Count, ShockAnswer, ShockStack, ShownStack, counted};
 use crate::words::{sentences, shown_run, span, span_of_shares, tone};
 
 /// Returns the plan of a cellar with the fates of the stacks in the run that is shown, and the places where barrels end
@@ -90,9 +93,15 @@ fn players(answer: &Answer) -> Option<Block> {
         id: "players".into(),
         caption: format!(
             "The run that is shown ({}), in a view that can be turned, or from the front and from above. Its clock is that \
-             of the record: the shaking starts at {:.2} s.",
+             of the {}record: the shaking starts at {:.2} s.{}",
             shown_run(summary),
-            summary.onset
+            if summary.shocks.is_empty() { "" } else { "first " },
+            summary.onset,
+            if summary.shocks.is_empty() {
+                ""
+            } else {
+                " It runs on through the sequence, without the quiet between the shocks."
+            }
         ),
         panes: vec![
             pane(Sight::Across, "X", "From the front"),
@@ -135,6 +144,10 @@ pub fn document(answer: &Answer) -> Document {
     if !touched.is_empty() {
         blocks.push(heading("What strikes what"));
         blocks.push(Block::Table(contacts(&touched)));
+    }
+    if !summary.shocks.is_empty() {
+        blocks.push(heading("Shock by shock"));
+        blocks.push(Block::Table(shocks(summary)));
     }
     blocks.push(heading("Stack by stack"));
     blocks.push(Block::Table(stacks(summary)));
@@ -258,6 +271,7 @@ fn contacts(touched: &[&ShownStack]) -> Table {
         Cell::text(match one.fate {
             "stands" => "stands",
             "knocked-over" => "is knocked over",
+            "fallen-before" => "had fallen before",
             _ => "falls by itself",
         })
     };
@@ -277,6 +291,34 @@ fn contacts(touched: &[&ShownStack]) -> Table {
             ("impulse before it falls", "N s", &|one| Cell::number(one.impulse, 2)),
             ("first loss of seat", "s", &|one| time(one.falls_at)),
             ("outcome", "", &fate),
+        ],
+    )
+}
+
+/// Returns the table of the shocks of a sequence.
+pub fn shocks(summary: &CellarSummary) -> Table {
+    Table::of(
+        "Shocks of the sequence. Every shock starts where the one before has left the bodies, at rest. Numbers of stacks are means \
+         over the variants; shares of variants have their 95 % interval.",
+        &summary.shocks,
+        &[
+            ("shock", "", &|one| Cell::text(one.shock.to_string())),
+            ("largest acceleration along x", "g", &|one| {
+                Cell::measured(one.motion.as_ref().map(|motion| motion.pga / STANDARD_GRAVITY), 2)
+            }),
+            ("stacks standing before", "", &|one| Cell::Measured(one.stood, 1)),
+            ("fall by themselves", "", &|one| Cell::Measured(one.by_themselves, 1)),
+            ("knocked over", "", &|one| Cell::Measured(one.knocked_over, 1)),
+            ("all survive", "", &|one| count(&one.all_survive)),
+            ("barrels fallen", "", &|one| {
+                Cell::text(span(&one.barrels_fallen, summary.counted, 0, "").trim_end())
+            }),
+            ("aisles blocked after it", "", &|one| {
+                let shares = one.blocked.iter().filter_map(|count| count.share);
+                let shares: Vec<String> = shares.map(percent).collect();
+                Cell::maybe((!shares.is_empty()).then(|| shares.join(", ")))
+            }),
+            ("bodies still move at its end", "", &|one| count(&one.restless)),
         ],
     )
 }
@@ -350,14 +392,64 @@ impl Answer {
         let document = document(self);
         let page = barrelstack_report::html(&document);
         let plan = Figure::new("plan", "The room from above.", picture(self));
-        Ok(vec![
+        let mut files = vec![
             ("report.html".to_owned(), page.into_bytes()),
             ("cellar.json".to_owned(), (described::to_json(&self.summary)? + "\n").into_bytes()),
             ("stacks.csv".to_owned(), stacks_csv(&self.summary).to_csv().into_bytes()),
             ("plan.svg".to_owned(), plan.to_svg().into_bytes()),
             ("cellar.toml".to_owned(), self.prepared.cellar.to_resolved_toml().into_bytes()),
-        ])
+        ];
+        if !self.summary.shocks.is_empty() {
+            let shocks = shocks_csv(&self.summary).to_csv();
+            files.push(("shocks.csv".to_owned(), shocks.into_bytes()));
+        }
+        Ok(files)
     }
+
+    /// Returns the poses of all bodies at the end of the run that is shown, as a file from which another cellar can start.
+    pub fn state(&self) -> String {
+        let pose = |one: &BodyEnd, at: usize| Cell::text(one.own[at].to_string());
+        let shown = &self.shown;
+        let [x, y, z, w, a, b, c] = POSE;
+        let table = Table::of(
+            "",
+            &shown.bodies,
+            &[
+                ("stack", "", &|one| Cell::text(&shown.stacks[one.stack].name)),
+                ("body", "", &|one| Cell::text(&one.name)),
+                (x, "", &|one| pose(one, 0)),
+                (y, "", &|one| pose(one, 1)),
+                (z, "", &|one| pose(one, 2)),
+                (w, "", &|one| pose(one, 3)),
+                (a, "", &|one| pose(one, 4)),
+                (b, "", &|one| pose(one, 5)),
+                (c, "", &|one| pose(one, 6)),
+            ],
+        );
+        table.to_csv()
+    }
+}
+
+/// Returns the table of all stacks in all shocks with one number in each cell, for programs.
+fn shocks_csv(summary: &CellarSummary) -> Table {
+    let stacks = |shock: &ShockAnswer| {
+        let shock = shock.clone();
+        shock.stacks.into_iter().map(move |stack| (shock.shock, stack)).collect::<Vec<_>>()
+    };
+    let rows: Vec<(u32, ShockStack)> = summary.shocks.iter().flat_map(stacks).collect();
+    let count = |count: &Count| Cell::Number(f64::from(count.of_variants), 6);
+    Table::of(
+        "",
+        &rows,
+        &[
+            ("shock", "", &|(shock, _)| Cell::Number(f64::from(*shock), 6)),
+            ("stack", "", &|(_, one)| Cell::text(&one.name)),
+            ("stands before", "variants", &|(_, one)| count(&one.stood)),
+            ("falls by itself", "variants", &|(_, one)| count(&one.by_itself)),
+            ("knocked over", "variants", &|(_, one)| count(&one.knocked_over)),
+            ("barrels fallen", "1", &|(_, one)| Cell::Number(one.barrels_fallen, 6)),
+        ],
+    )
 }
 
 /// Returns the table of all stacks with one number in each cell, for programs.

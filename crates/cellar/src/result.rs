@@ -27,6 +27,8 @@ pub struct BodyEnd {
     pub fate: Fate,
     /// Pose at rest before the shaking, in the room: position (m) and quaternion `w`, `x`, `y`, `z`.
     pub from: [f64; 7],
+    /// Pose at the start of the run, in the room: that of `from`, unless another start is stated.
+    pub start: [f64; 7],
     /// Pose at the end, in the room.
     pub to: [f64; 7],
     /// Pose at the end in the frame of its stack, from which another run may start.
@@ -70,6 +72,20 @@ pub struct StackEnd {
     pub ending: Ending,
     /// Time (s) of its end: when its bodies came to rest, or the end of the run.
     pub end_time: f64,
+    /// Number of its bodies that still move at its end; barrels that roll away freely do not delay the end.
+    pub moving: usize,
+}
+
+impl StackEnd {
+    /// `true` if the stack had lost a seat before the run started.
+    pub fn was_down(&self) -> bool {
+        self.lost_seat.is_some_and(|(time, _)| time <= 0.0)
+    }
+
+    /// `true` if the stack was at rest at its end.
+    pub fn rests(&self) -> bool {
+        self.ending == Ending::Rest && self.moving == 0
+    }
 }
 
 /// A meeting of two stacks: their bodies have touched.
@@ -139,4 +155,6 @@ pub struct RoomRun {
     pub interrupted: bool,
     /// Warnings, one sentence each, with the name of the stack that a warning concerns.
     pub warnings: Vec<(Option<String>, String)>,
+    /// For a sequence, the runs of its shocks, each with its own clock; empty for a single shock.
+    pub shocks: Vec<RoomRun>,
 }

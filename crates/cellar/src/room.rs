@@ -22,12 +22,26 @@ pub struct Placed {
     /// [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest; losses of seats still count from the places as
     /// built, so a seat that was lost before is lost at time zero. `None` to start as built.
     pub start: Option<Vec<[f64; 7]>>,
+    /// Shifts of bodies before the run, in this order, from the poses at rest or from those of `start`.
+    pub shifts: Vec<Shift>,
+}
+
+/// A shift of a body, or of a whole stack, before a run. The bodies start at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shift {
+    /// Index of the body in the order of the stack, without the ground; `None` for all bodies of the stack.
+    pub body: Option<usize>,
+    /// Displacement (m) along the axes of the stack.
+    pub by: [f64; 3],
+    /// Angle (rad), counterclockwise from above, by which the body is turned about the vertical through its center of
+    /// mass, and a whole stack about the middle of its footprint.
+    pub turn: f64,
 }
 
 impl Placed {
     /// Creates a stack whose axes are those of the room, at a position (m).
     pub fn new(name: &str, scenario: Scenario, at: [f64; 2]) -> Self {
-        Self { name: name.to_owned(), scenario, at, azimuth: 0.0, start: None }
+        Self { name: name.to_owned(), scenario, at, azimuth: 0.0, start: None, shifts: Vec::new() }
     }
 }
 
@@ -148,7 +162,20 @@ pub enum RoomFailure {
         /// Number of the body, counted from 1.
         body: usize,
     },
-    /// Bodies of two stacks, or a body and an obstacle, overlap from the start.
+    /// A shift refers to a body that the stack does not have.
+    #[error(
+        "stack \"{name}\" has {bodies} bodies, but body {body} is to be shifted: name one of its bodies"
+    )]
+    Shift {
+        /// Name of the stack.
+        name: String,
+        /// Number of the body, counted from 1.
+        body: usize,
+        /// Number of bodies.
+        bodies: usize,
+    },
+    /// Bodies of two stacks, or a body and an obstacle, overlap from the start; also two bodies of a stack that does not
+    /// start as built.
     #[error(
         "\"{first}\" and \"{second}\" overlap by {:.1} mm before the ground moves: move them apart",
         1e3 * depth

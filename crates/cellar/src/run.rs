@@ -17,7 +17,7 @@ use crate::merge::merged;
 use crate::nearby::{Nearby, Places, gap, locate};
 use crate::result::RoomRun;
 use crate::room::{Room, RoomFailure, Settings};
-use crate::world::World;
+use crate::world::{PRESSED, World};
 
 /// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
 const WINDOW: f64 = 2e-3;
@@ -86,12 +86,14 @@ impl Running<'_> {
     /// Rejects a room whose bodies overlap.
     fn check_overlaps(&mut self) -> Result<(), RoomFailure> {
         let Self { world, islands, places, nearby, .. } = self;
+        let stated = world.room.stacks.iter().any(|placed| placed.start.is_some());
+        let limit = if stated { PRESSED } else { ALLOWED };
         nearby.refresh(world, islands);
         let meetings = nearby.meetings(world, islands, places, WINDOW);
-        let depth = |bodies: &[Owner; 2]| -gap(world, islands, places, *bodies, ALLOWED);
+        let depth = |bodies: &[Owner; 2]| -gap(world, islands, places, *bodies, limit);
         let deepest = meetings.iter().map(|bodies| (depth(bodies), bodies));
         match deepest.max_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((depth, bodies)) if depth > ALLOWED => {
+            Some((depth, bodies)) if depth > limit => {
                 let [first, second] = bodies.map(|owner| world.name(owner));
                 Err(RoomFailure::Overlap { first, second, depth })
             }

@@ -1,5 +1,6 @@
 //! Variants of a room: every stack draws its own imperfections, and all share the motion and the unknown constants.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -7,6 +8,7 @@ use barrelstack::assemble::{PartKind, law_in_space};
 use barrelstack::breakage::Breakage;
 use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
+use barrelstack::run::{check_kept, end_time};
 use barrelstack::scenario::{Friction, Interface, NormalLaw, Scene};
 use barrelstack::variants::planes;
 use barrelstack::{RunFailure, Scenario, pool};
@@ -16,10 +18,12 @@ use barrelstack_space::Ground;
 
 use crate::geometry::{Convex, Grid};
 use crate::plan::{Obstacles, Plan, moved, outline_in_plan};
-use crate::result::{RoomRun, StackEnd};
+use crate::result::{BodyEnd, RoomRun, StackEnd};
 use crate::room::{Obstacle, Placed, Room, RoomFailure, Settings};
 use crate::run::{Advance, run};
 use crate::scenario::{Cellar, Standing};
+use crate::sequence::{after, goes_on, joined};
+use crate::start::{Begin, begins};
 
 /// Error of a cellar that is to be run.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +56,19 @@ pub struct Prepared {
     pub ground: Ground,
     /// Time (s) at which the shaking starts: the first at which the horizontal acceleration exceeds 0.02 g.
     pub onset: f64,
+    /// The shocks of a sequence after the first.
+    pub later: Vec<Later>,
+    begins: BTreeMap<String, Begin>,
     obstacles: Vec<Obstacle>,
+}
+
+/// A shock after the first.
+#[derive(Clone, Debug)]
+pub struct Later {
+    /// The ground motion along the axes of the room.
+    pub ground: Ground,
+    /// Time (s) of its record at which the shaking starts.
+    pub onset: f64,
 }
 
 /// Horizontal acceleration (m/s²) at which the shaking starts.
@@ -81,9 +97,16 @@ impl Prepared {
         let plan = Plan { problems: Vec::new(), ..plan };
         let mut ground = Ground::of_spec(&cellar.stated().motion, 1.0)?;
         ground.warnings.splice(0..0, cellar.stated().warnings().iter().cloned());
-        let onset = onset(&ground);
+        let onset_of = onset;
+        let onset = onset_of(&ground);
+        let later = |motion| -> Result<Later, CellarFailure> {
+            let ground = Ground::of_spec(motion, 1.0)?;
+            Ok(Later { onset: onset_of(&ground), ground })
+        };
+        let later = cellar.later.iter().map(later).collect::<Result<_, _>>()?;
+        let begins = begins(&cellar.start, &cellar.host, &plan.stacks, &plan.models)?;
         let obstacles = obstacles(&cellar)?;
-        Ok(Self { cellar, plan, ground, onset, obstacles })
+        Ok(Self { cellar, plan, ground, onset, later, begins, obstacles })
     }
 
     /// Returns the number of variants, without the room as stated.
@@ -97,12 +120,14 @@ impl Prepared {
     /// If the motion cannot be read.
     pub fn room(&self, variant: u32) -> Result<Room, CellarFailure> {
         let stacks = self.plan.stacks.iter().map(|standing| {
+            let begin = self.begins.get(&standing.name).cloned().unwrap_or_default();
             Ok(Placed {
                 name: standing.name.clone(),
                 scenario: self.drawn(standing, variant)?,
                 at: standing.at,
                 azimuth: standing.azimuth,
-                start: None,
+                start: begin.poses,
+                shifts: begin.shifts,
             })
         });
         Ok(Room {
@@ -151,7 +176,60 @@ impl Prepared {
         observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
     ) -> Result<RoomRun, CellarFailure> {
         let settings = Settings { threads, frames: true };
-        Ok(run(&self.room(variant)?, &settings, observer)?)
+        let mut room = self.room(variant)?;
+        self.check_kept(&room)?;
+        let first = run(&room, &settings, observer).map_err(|failure| self.placed(failure))?;
+        let mut shocks = vec![first];
+        for Later { ground, .. } in &self.later {
+            let Some(before) = shocks.last().filter(|run| goes_on(run)) else { break };
+            room = after(Room { ground: ground.clone(), ..room }, before);
+            let from: f64 = shocks.iter().map(|run| run.end_time).sum();
+            let mut look = |now: &Advance| {
+                let [time, end_time] = [now.time, now.end_time].map(|time| from + time);
+                observer(&Advance { time, end_time, ..now.clone() })
+            };
+            shocks.push(run(&room, &settings, &mut look)?);
+        }
+        match shocks.len() {
+            0 | 1 => shocks.pop(),
+            _ => joined(shocks),
+        }
+        .ok_or(CellarFailure::Room(RoomFailure::Empty))
+    }
+
+    /// Checks the memory for the frames of all shocks, which are kept by shock and as one run.
+    fn check_kept(&self, room: &Room) -> Result<(), CellarFailure> {
+        if self.later.is_empty() {
+            return Ok(());
+        }
+        let stated = self.cellar.stated();
+        let mut frames = 0.0;
+        let later = self.later.iter().map(|later| &later.ground);
+        for ground in std::iter::once(&self.ground).chain(later) {
+            frames += end_time(stated, ground.motion_end(), 1.0)? * stated.record.frame_rate + 1.0;
+        }
+        let bodies = usize::try_from(room.bodies()).unwrap_or(usize::MAX);
+        Ok(check_kept((2.0 * frames, bodies, 8), (0.0, 0))?)
+    }
+
+    /// Returns the failure of a room, at the place in the file that states where the stack starts that it concerns.
+    fn placed(&self, failure: RoomFailure) -> CellarFailure {
+        let RoomFailure::Overlap { first, second, depth } = &failure else {
+            return failure.into();
+        };
+        let of = |body: &String| self.begins.get(body.split(' ').next().unwrap_or_default());
+        let Some(begin) =
+            of(first).into_iter().chain(of(second)).max_by_key(|begin| (&begin.path, begin.line))
+        else {
+            return failure.into();
+        };
+        let line = begin.line.map_or_else(String::new, |line| format!("line {line} of the file: "));
+        let message = format!(
+            "{line}\"{first}\" and \"{second}\" overlap by {:.1} mm at the start: shift them apart, or shift the bodies that \
+             they carry or rest on as well",
+            1e3 * depth
+        );
+        self.cellar.host.error(&[&begin.path], message).into()
     }
 
     /// Runs variants, several at a time; `None` for one that was interrupted.
@@ -196,11 +274,22 @@ impl Prepared {
 
     /// Returns the result of a run of a variant.
     pub fn case(&self, variant: u32, run: &RoomRun) -> Case {
-        let outlines = self.outlines(run);
+        let onsets = std::iter::once(self.onset).chain(self.later.iter().map(|later| later.onset));
+        let shocks =
+            run.shocks.iter().zip(onsets).map(|(run, onset)| self.shock(variant, run, onset));
+        Case { shocks: shocks.collect(), ..self.shock(variant, run, self.onset) }
+    }
+
+    /// Returns the result of a run of a shock whose shaking starts at a time (s).
+    fn shock(&self, variant: u32, run: &RoomRun, onset: f64) -> Case {
+        let outlines = self.outlines(run, |body| &body.to);
         let stacks: Vec<StackCase> = run.stacks.iter().map(|end| stack_case(run, end)).collect();
         let taken = Obstacles { cellar: &self.cellar, taken: outlines.iter().collect() };
-        let aisles =
-            self.cellar.aisles.iter().map(|aisle| self.aisle(aisle.from, aisle.to, run, &taken));
+        let aisles = self
+            .cellar
+            .aisles
+            .iter()
+            .map(|aisle| self.aisle(aisle.from, aisle.to, run, &taken, onset));
         let fallen = run.bodies.iter().zip(&outlines);
         let fallen =
             fallen.filter(|(body, _)| body.kind == PartKind::Barrel && body.fate.fell_at.is_some());
@@ -222,8 +311,10 @@ impl Prepared {
                 .collect(),
             map: map.cells().to_vec(),
             end_time: run.end_time,
+            restless: run.stacks.iter().filter(|stack| !stack.rests()).count(),
             stacks,
             warnings: run.warnings.clone(),
+            shocks: Vec::new(),
         }
     }
 
@@ -232,25 +323,32 @@ impl Prepared {
         Grid::new([0.0; 2], [self.cellar.room.length, self.cellar.room.width], CELL)
     }
 
-    /// Returns the bodies at the end of a run, from above.
-    fn outlines(&self, run: &RoomRun) -> Vec<Convex> {
+    /// Returns the bodies of a run in some poses, from above.
+    fn outlines(&self, run: &RoomRun, pose: fn(&BodyEnd) -> &[f64; 7]) -> Vec<Convex> {
         let of = |(at, end): (usize, &StackEnd)| {
             let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;
             let bodies = &run.bodies[end.bodies.clone()];
-            bodies.iter().zip(surfaces).map(|(body, points)| outline_in_plan(points, &body.to))
+            bodies.iter().zip(surfaces).map(|(body, points)| outline_in_plan(points, pose(body)))
         };
         run.stacks.iter().enumerate().flat_map(|stack| of(stack).collect::<Vec<_>>()).collect()
     }
 
     /// Returns what happens in an aisle.
-    fn aisle(&self, from: [f64; 2], to: [f64; 2], run: &RoomRun, end: &Obstacles<'_>) -> AisleCase {
+    fn aisle(
+        &self,
+        from: [f64; 2],
+        to: [f64; 2],
+        run: &RoomRun,
+        end: &Obstacles<'_>,
+        onset: f64,
+    ) -> AisleCase {
         let inside = |pose: &[f64; 7]| {
             (from[0]..=to[0]).contains(&pose[0]) && (from[1]..=to[1]).contains(&pose[1])
         };
         let (mut first, mut fastest) = (None::<f64>, None::<f64>);
         for (frames, stack) in run.frames.iter().zip(&run.stacks) {
             for (at, body) in run.bodies[stack.bodies.clone()].iter().enumerate() {
-                if body.kind != PartKind::Barrel || inside(&body.from) {
+                if body.kind != PartKind::Barrel || inside(&body.start) {
                     continue;
                 }
                 for (frame, time) in frames.times.iter().enumerate() {
@@ -263,10 +361,10 @@ impl Prepared {
             }
         }
         AisleCase {
-            first: first.map(|time| time - self.onset),
+            first: first.map(|time| time - onset),
             fastest,
             covered: end.covered(from, to),
-            blocked_at: self.blocked_at(from, to, run, end).map(|time| time - self.onset),
+            blocked_at: self.blocked_at(from, to, run, end, onset).map(|time| time - onset),
         }
     }
 
@@ -278,16 +376,19 @@ impl Prepared {
         to: [f64; 2],
         run: &RoomRun,
         end: &Obstacles<'_>,
+        onset: f64,
     ) -> Option<f64> {
         // No body reaches farther than this distance (m) from its middle.
         const REACH: f64 = 2.0;
-        let standing =
-            Obstacles { cellar: &self.cellar, taken: self.plan.footprints.iter().collect() };
+        let placed = run.bodies.iter().any(|body| body.start != body.from);
+        let bodies = if placed { self.outlines(run, |body| &body.start) } else { Vec::new() };
+        let taken = if placed { &bodies } else { &self.plan.footprints };
+        let standing = Obstacles { cellar: &self.cellar, taken: taken.iter().collect() };
         if end.is_passable(from, to) {
             return None;
         }
         if !standing.is_passable(from, to) {
-            return Some(self.onset);
+            return Some(onset);
         }
         let near = |pose: &[f64; 7]| {
             [0, 1]
@@ -414,8 +515,12 @@ pub struct Case {
     pub map: Vec<bool>,
     /// Time (s) at which the last body came to rest.
     pub end_time: f64,
+    /// Number of stacks of which a body still moved at the end.
+    pub restless: usize,
     /// Warnings, one sentence each, with the name of the stack that a warning concerns.
     pub warnings: Vec<(Option<String>, String)>,
+    /// For a sequence, the results of its shocks, each with its own clock; empty for a single shock.
+    pub shocks: Vec<Self>,
 }
 
 /// A stack in one variant.
@@ -423,6 +528,8 @@ pub struct Case {
 pub struct StackCase {
     /// `false` if its computation failed.
     pub valid: bool,
+    /// `true` if it had fallen before the run; it does not fall again.
+    pub down: bool,
     /// Time (s) of the first loss of seat, if the stack falls.
     pub fell_at: Option<f64>,
     /// `true` if it falls after a body of another stack touched it.
@@ -474,16 +581,19 @@ pub struct ObstacleCase {
 
 fn stack_case(run: &RoomRun, end: &StackEnd) -> StackCase {
     let bodies = &run.bodies[end.bodies.clone()];
-    let falls = matches!(end.outcome, Outcome::Collapse { .. });
+    let collapsed = matches!(end.outcome, Outcome::Collapse { .. });
+    let (down, falls) = (collapsed && end.was_down(), collapsed && !end.was_down());
     let fallen: Vec<_> = bodies
         .iter()
-        .filter(|body| body.kind == PartKind::Barrel && body.fate.fell_at.is_some())
+        .filter(|body| body.kind == PartKind::Barrel)
+        .filter(|body| body.fate.fell_at.is_some_and(|time| time > 0.0))
         .collect();
     let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
         fallen.iter().map(|body| of(body.fate.drop, body.wine)).sum()
     };
     StackCase {
         valid: !matches!(end.outcome, Outcome::Invalid { .. }),
+        down,
         fell_at: end.lost_seat.map(|(time, _)| time).filter(|_| falls),
         knocked: falls && end.knocked_over,
         touched: end.touched.map(|touch| (touch.time, run.bodies[touch.by].stack, touch.impulse)),

@@ -9,7 +9,7 @@ use barrelstack::scenario::bytes_of;
 use barrelstack::scenario::error::ScenarioError;
 use barrelstack::scenario::field::{Default, Kind, Range, names};
 use barrelstack::scenario::imperfections::IMPERFECTIONS;
-use barrelstack::scenario::motion::MOTION;
+use barrelstack::scenario::motion::{MOTION, MotionSpec, Scale, read_shock, write_sequence};
 use barrelstack::scenario::pair::INTERFACES;
 use barrelstack::scenario::reader::Reader;
 use barrelstack::scenario::run::{OUTCOME, RECORD, RUN};
@@ -20,7 +20,9 @@ use barrelstack::scenario::unknowns::UNKNOWNS;
 use barrelstack::scenario::{Dimension, Scenario, Until};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::writer::{Writer, to_toml};
-use barrelstack_input::{fnv1a, named, section, table};
+use barrelstack_input::{FileRef, fnv1a, named, section, table};
+
+use crate::start::{START, StartSpec};
 
 /// A length of at most a kilometer.
 const LENGTH: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1000.0));
@@ -215,7 +217,9 @@ table! {
     stack = Kind::Table(&STACK), Default::Required;
     /// Contact laws by pair of bodies; bodies of two stacks touch as bodies that have fallen.
     interface = Kind::Table(&INTERFACES), Default::Nothing;
-    /// The ground motion along the axes of the room.
+    /// Places from which bodies start, such as surveyed after an earthquake.
+    start = Kind::Table(&START), Default::Nothing;
+    /// The ground motion along the axes of the room, or a sequence of shocks.
     motion = Kind::Table(&MOTION), Default::Required;
     /// Settings of the run.
     run = Kind::Table(&RUN), Default::Nothing;
@@ -230,7 +234,7 @@ table! {
 }
 
 /// Fields of a cellar that a scenario does not have.
-const OWN: [&str; 7] = ["kind", "room", "column", "door", "aisle", "place", "block"];
+const OWN: [&str; 8] = ["kind", "room", "column", "door", "aisle", "place", "block", "start"];
 
 macro_rules! cellars {
     ($($name:literal),* $(,)?) => {
@@ -264,6 +268,9 @@ pub const MOST_BARRELS: u64 = 10_000;
 
 /// Maximum number of columns, doors, aisles and places, each.
 const MOST_ITEMS: usize = 1000;
+
+/// Maximum number of shocks of a sequence, each of which takes the time of a run.
+pub const MOST_SHOCKS: usize = 20;
 
 /// A stack in its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -301,6 +308,10 @@ pub struct Cellar {
     pub places: Vec<Place>,
     /// Blocks of stacks.
     pub blocks: Vec<Block>,
+    /// Places from which bodies start.
+    pub start: StartSpec,
+    /// The shocks of a sequence after the first, which is the motion of the stack as stated.
+    pub later: Vec<MotionSpec>,
     /// Scenarios of the stacks as stated, one for each number of levels.
     pub models: Vec<Scenario>,
     /// For every block and row, the index of the model.
@@ -380,6 +391,10 @@ impl Cellar {
         for model in &mut held.models {
             *model = model.with_records(&mut from_disk)?;
         }
+        held.start.hold();
+        for shock in &mut held.later {
+            *shock = shock.clone().with_files(&mut from_disk)?;
+        }
         Ok(held)
     }
 
@@ -394,6 +409,41 @@ impl Cellar {
         self
     }
 
+    /// Returns the cellar with an aftershock: after its motion follows the same motion, or a record in its place, scaled by a
+    /// factor.
+    ///
+    /// # Errors
+    /// If the cellar states a sequence, or a scale that is not proportional to the motion.
+    pub fn with_aftershock(
+        mut self,
+        factor: f64,
+        record: Option<&Path>,
+    ) -> Result<Self, ScenarioError> {
+        if !self.later.is_empty() {
+            let message =
+                "the motion is a sequence already: add a shock to it, and run it".to_owned();
+            return Err(self.host.error(&["motion.sequence"], message));
+        }
+        let mut shock = self.stated().motion.clone();
+        if let Some(record) = record {
+            let file = FileRef::of_caller(record.display().to_string());
+            shock = self.stated().with_record_file(&file).motion;
+            shock.scale = Scale::Factor(1.0);
+        }
+        shock.scale = match shock.scale {
+            Scale::Factor(own) => Scale::Factor(factor * own),
+            Scale::Pga(own) => Scale::Pga(factor * own),
+            Scale::Pgv(own) => Scale::Pgv(factor * own),
+            Scale::Measure { .. } => {
+                let message = "an aftershock needs a motion that is scaled by `factor`, `pga` or `pgv`: state one of them in place of \
+                               `measure`";
+                return Err(self.host.error(&["motion.scale.measure"], message.to_owned()));
+            }
+        };
+        self.later.push(shock);
+        Ok(self)
+    }
+
     /// Returns the cellar as TOML text that reads back equal, with all defaults written out and all quantities in SI.
     pub fn to_resolved_toml(&self) -> String {
         to_toml(&self.write())
@@ -405,8 +455,16 @@ impl Cellar {
         let mut own = self.write();
         own.remove("title");
         own.remove("motion");
-        let motion = self.stated().fingerprint();
-        fnv1a(format!("{motion:016x}\n{}", to_toml(&own)).as_bytes())
+        let mut motion = format!("{:016x}", self.stated().fingerprint());
+        if !self.later.is_empty() {
+            let shocks: Vec<MotionSpec> = self.later.iter().map(MotionSpec::by_content).collect();
+            motion += &to_toml(&write_sequence(&shocks));
+        }
+        if !self.start.is_as_built() {
+            own.remove("start");
+            motion += &to_toml(&self.start.by_content().write());
+        }
+        fnv1a(format!("{motion}\n{}", to_toml(&own)).as_bytes())
     }
 
     fn of(host: &Host) -> Result<Self, ScenarioError> {
@@ -440,12 +498,17 @@ impl Cellar {
         ] {
             reader.skip(inherited);
         }
+        let start = match reader.optional_section("start")? {
+            Some(start) => StartSpec::read(start)?,
+            None => StartSpec::default(),
+        };
+        let later = later_shocks(host)?;
         reader.finish();
         distinct(host, "column", columns.iter().map(|one| &one.name))?;
         distinct(host, "door", doors.iter().map(|one| &one.name))?;
         distinct(host, "aisle", aisles.iter().map(|one| &one.name))?;
         distinct(host, "place", places.iter().map(|one| &one.name))?;
-        let stated = host.stack(&OWN, &[])?;
+        let stated = model(host, None)?;
         check(host, &stated)?;
         let mut cellar = Self {
             title,
@@ -455,6 +518,8 @@ impl Cellar {
             aisles,
             places,
             blocks: Vec::new(),
+            start,
+            later,
             models: vec![stated],
             model_of: Vec::new(),
             host: host.clone(),
@@ -493,7 +558,7 @@ impl Cellar {
                 } else {
                     let origin = by_row.get(row).map_or(reader.origin_of(path), |node| node.origin);
                     let node = Node { origin, value: Value::Integer(Some(i64::from(levels))) };
-                    self.models.push(self.host.stack(&OWN, &[("stack.levels", node)])?);
+                    self.models.push(model(&self.host, Some(("stack.levels", node)))?);
                     known.insert(levels, self.models.len() - 1);
                     self.models.len() - 1
                 };
@@ -579,7 +644,18 @@ impl Cellar {
         writer.tables("aisle", self.aisles.iter().map(Aisle::write).collect());
         writer.tables("place", self.places.iter().map(Place::write).collect());
         writer.tables("block", self.blocks.iter().map(write_block).collect());
-        let scenario = self.stated().to_table();
+        if self.start.is_as_built() {
+            writer.omit(&["start"]);
+        } else {
+            writer.table("start", self.start.write());
+        }
+        let mut scenario = self.stated().to_table();
+        if !self.later.is_empty()
+            && let Some(motion) = scenario.get_mut("motion")
+        {
+            let shocks = std::iter::once(&self.stated().motion).chain(&self.later);
+            motion.node.value = Value::Table(write_sequence(shocks));
+        }
         for entry in scenario.entries {
             let Value::Table(table) = entry.node.value else { continue };
             if let Some(field) = CELLAR.fields.iter().find(|field| field.name == entry.key) {
@@ -596,6 +672,40 @@ pub(crate) fn barrels(scenario: &Scenario) -> u64 {
         let along = stack.space.map_or(1, |space| space.columns_along);
         u64::from(stack.levels) * u64::from(stack.columns) * u64::from(along)
     })
+}
+
+/// Returns the scenario of the stack with the first shock as its motion, and with a change.
+fn model(host: &Host, change: Option<(&'static str, Node)>) -> Result<Scenario, ScenarioError> {
+    let reader = host.reader(&CELLAR)?;
+    let motion = reader.table("motion").ok().and_then(|motion| motion.get("sequence"));
+    let first = match motion.map(|sequence| &sequence.node.value) {
+        Some(Value::Array(shocks)) => shocks.first(),
+        _ => None,
+    };
+    let first = first.map(|shock| ("motion", shock.clone()));
+    host.stack(&OWN, &change.into_iter().chain(first).collect::<Vec<_>>())
+}
+
+/// Returns the shocks of a sequence after the first; none without a sequence.
+fn later_shocks(host: &Host) -> Result<Vec<MotionSpec>, ScenarioError> {
+    let reader = host.reader(&CELLAR)?;
+    let motion = reader.section("motion")?;
+    if !motion.has("sequence") {
+        return Ok(Vec::new());
+    }
+    let shocks = motion.sections("sequence")?;
+    let message = match shocks.len() {
+        0 => "a sequence has at least one shock: add [[motion.sequence]], or state one shock in [motion]".to_owned(),
+        many if many > MOST_SHOCKS => {
+            format!("there are {many} shocks; a sequence has at most {MOST_SHOCKS}: keep the strongest")
+        }
+        _ => {
+            let mut all = shocks.into_iter().map(read_shock).collect::<Result<Vec<_>, _>>()?;
+            all.remove(0);
+            return Ok(all);
+        }
+    };
+    Err(motion.inconsistent("sequence", message))
 }
 
 /// Checks what a stack may state alone, but not in a room.

@@ -47,9 +47,12 @@ described! {
         /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
         /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
         pub inspection: Vec<String>,
+        /// The shocks of a sequence, in order; empty for a single shock. All other values of a sequence are those of all
+        /// its shocks in one: their times run on without the quiet between them.
+        pub shocks: Vec<ShockAnswer>,
         /// The run that is shown.
         pub shown: ShownRoom,
-        /// Component of the ground motion along x.
+        /// Component of the ground motion along x, of the first shock.
         pub motion: Option<MotionSummary>,
         /// Component of the ground motion along y; null where the motion has only one horizontal component.
         pub other_component: Option<MotionSummary>,
@@ -218,6 +221,71 @@ described! {
         pub impulse: Option<Range> as "N s",
     }
 
+    /// A shock of a sequence. Stacks that had fallen before it do not fall again.
+    #[derive(Clone, Debug)]
+    pub struct ShockAnswer {
+        /// Number of the shock, from 1.
+        pub shock: u32,
+        /// Ground motion.
+        pub motion: Option<MotionSummary>,
+        /// Time in its record at which the shaking starts.
+        pub onset: f64 as "s",
+        /// Mean number of stacks that stand before the shock.
+        pub stood: f64 as "1",
+        /// Variants in which all stacks that stand before the shock survive it.
+        pub all_survive: Count,
+        /// Share of the stacks standing before the shock that survive it, over the variants in which one stands; its
+        /// interval treats a room as one draw. Null if none stands.
+        pub share_survive: Option<Mean>,
+        /// Mean number of stacks that fall by themselves.
+        pub by_themselves: f64 as "1",
+        /// Mean number of stacks that are knocked over.
+        pub knocked_over: f64 as "1",
+        /// Distribution of the number of barrels that fall in the shock.
+        pub barrels_fallen: Range as "1",
+        /// For each aisle, the variants in which it is blocked after the shock.
+        pub blocked: Vec<Count>,
+        /// Variants in which a body still moves when the shock ends: the next shock starts from its place, at rest.
+        pub restless: Count,
+        /// The stacks, in the order of the plan.
+        pub stacks: Vec<ShockStack>,
+        /// The run that is shown; null if it did not reach the shock.
+        pub shown: Option<ShownShock>,
+    }
+
+    /// A stack in a shock.
+    #[derive(Clone, Debug)]
+    pub struct ShockStack {
+        /// Name of the stack.
+        pub name: String,
+        /// Variants in which it stands before the shock.
+        pub stood: Count,
+        /// Variants in which it falls by itself.
+        pub by_itself: Count,
+        /// Variants in which it is knocked over.
+        pub knocked_over: Count,
+        /// Mean number of barrels that fall from it.
+        pub barrels_fallen: f64 as "1",
+    }
+
+    /// A shock in the run that is shown.
+    #[derive(Clone, Debug)]
+    pub struct ShownShock {
+        /// Number of stacks that stand before the shock.
+        pub stood: u32,
+        /// Number of stacks that fall by themselves.
+        pub by_themselves: u32,
+        /// Number of stacks that are knocked over.
+        pub knocked_over: u32,
+        /// Number of barrels that fall.
+        pub barrels_fallen: usize,
+        /// Number of stacks of which a body still moves when the shock ends.
+        pub restless: usize,
+        /// Time in the record of the shock at which the shock ends: all bodies rest, its duration is over, or it was
+        /// stopped.
+        pub end_time: f64 as "s",
+    }
+
     /// The run that is shown.
     #[derive(Clone, Debug)]
     pub struct ShownRoom {
@@ -229,6 +297,8 @@ described! {
         pub end_time: f64 as "s",
         /// Row of the first stack that falls.
         pub starts: Option<u32>,
+        /// Number of stacks that had fallen before the run.
+        pub fallen_before: u32,
         /// Number of stacks that fall by themselves.
         pub by_themselves: u32,
         /// Number of stacks that are knocked over.
@@ -247,7 +317,7 @@ described! {
         /// Name of the stack.
         pub name: String,
         /// What happens to it.
-        pub fate: &'static str ["stands", "falls-by-itself", "knocked-over"],
+        pub fate: &'static str ["stands", "falls-by-itself", "knocked-over", "fallen-before"],
         /// Time of its first loss of seat.
         pub falls_at: Option<f64> as "s",
         /// Time of its first contact with another stack.
@@ -333,8 +403,7 @@ pub fn typical(cases: &[Case]) -> Option<u32> {
     let counted = counted(cases);
     let numbers = |case: &Case| {
         let [own, knocked] = fallen(case).map(f64::from);
-        let barrels: usize = case.stacks.iter().map(|stack| stack.barrels).sum();
-        [own, knocked, 0.05 * barrels as f64]
+        [own, knocked, 0.05 * barrels(case) as f64]
     };
     let medians = [0, 1, 2].map(|which| range(counted.iter().map(|case| numbers(case)[which])).p50);
     let far = |case: &Case| -> f64 {
@@ -353,7 +422,6 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     };
     let [own, knocked] =
         [0, 1].map(|which| mean(all.iter().map(|case| f64::from(fallen(case)[which]))));
-    let barrels = |case: &&Case| case.stacks.iter().map(|stack| stack.barrels as f64).sum();
     let three = |of: &dyn Fn(&StackCase) -> [f64; 3]| {
         [0, 1, 2].map(|which| {
             mean(all.iter().map(|case| case.stacks.iter().map(|stack| of(stack)[which]).sum()))
@@ -369,7 +437,7 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         share_knocked_over: share(1),
         spread: (own > 0.0).then(|| (own + knocked) / own),
         stacks_fallen: range(all.iter().map(|case| fallen(case).into_iter().map(f64::from).sum())),
-        barrels_fallen: range(all.iter().map(barrels)),
+        barrels_fallen: range(all.iter().map(|case| barrels(case) as f64)),
         burst,
         wine_lost,
         cost: cost(burst[1], wine_lost[1]),
@@ -396,6 +464,7 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         places: places(prepared, &all),
         obstacles: obstacles(run, &all),
         inspection: Vec::new(),
+        shocks: shocks(prepared, &all, case),
         shown: shown_room(prepared, case, run),
         motion: motion.map(MotionSummary::of),
         other_component: other.map(MotionSummary::of),
@@ -408,7 +477,7 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         warnings,
         program: "barrelstack",
         version: env!("CARGO_PKG_VERSION"),
-        provenance: prepared.ground.provenance(),
+        provenance: provenance(prepared),
         wall_seconds: None,
     };
     summary.inspection = inspection(&summary.stacks);
@@ -419,6 +488,81 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
         "The computation of the run that is shown failed, so it has no result.".to_owned()
     };
     summary
+}
+
+/// Returns the sources of the motions of all shocks, each once.
+fn provenance(prepared: &Prepared) -> Vec<String> {
+    let mut all = prepared.ground.provenance();
+    for step in prepared.later.iter().flat_map(|later| later.ground.provenance()) {
+        if !all.contains(&step) {
+            all.push(step);
+        }
+    }
+    all
+}
+
+/// Returns the answers for the shocks of a sequence.
+fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> {
+    if prepared.later.is_empty() {
+        return Vec::new();
+    }
+    let later = prepared.later.iter().map(|later| (&later.ground, later.onset));
+    let grounds = std::iter::once((&prepared.ground, prepared.onset)).chain(later);
+    let one = |(at, (ground, onset)): (usize, (&barrelstack_space::Ground, f64))| {
+        let own: Vec<&Case> = all.iter().filter_map(|case| case.shocks.get(at)).collect();
+        let total = |of: &dyn Fn(&Case) -> f64| mean(own.iter().map(|case| of(case)));
+        let survive = own.iter().filter(|case| stood(case) > 0).map(|case| {
+            let [own, knocked] = fallen(case).map(f64::from);
+            1.0 - (own + knocked) / f64::from(stood(case))
+        });
+        let survive: Vec<f64> = survive.collect();
+        let aisles = 0..prepared.cellar.aisles.len();
+        let stack = |(at, standing): (usize, &crate::scenario::Standing)| ShockStack {
+            name: standing.name.clone(),
+            stood: Count::of(&own, |case| !case.stacks[at].down),
+            by_itself: Count::of(&own, |case| case.stacks[at].by_itself()),
+            knocked_over: Count::of(&own, |case| case.stacks[at].knocked),
+            barrels_fallen: mean(own.iter().map(|case| case.stacks[at].barrels as f64)),
+        };
+        ShockAnswer {
+            shock: u32::try_from(at + 1).unwrap_or(u32::MAX),
+            motion: ground.first.motion.as_ref().map(MotionSummary::of),
+            onset,
+            stood: total(&|case| f64::from(stood(case))),
+            all_survive: Count::of(&own, |case| fallen(case) == [0, 0]),
+            share_survive: (!survive.is_empty()).then(|| Mean::of(&survive)),
+            by_themselves: total(&|case| f64::from(fallen(case)[0])),
+            knocked_over: total(&|case| f64::from(fallen(case)[1])),
+            barrels_fallen: range(own.iter().map(|case| barrels(case) as f64)),
+            blocked: aisles
+                .map(|aisle| Count::of(&own, |case| case.aisles[aisle].blocked_at.is_some()))
+                .collect(),
+            restless: Count::of(&own, |case| case.restless > 0),
+            stacks: prepared.plan.stacks.iter().enumerate().map(stack).collect(),
+            shown: shown.shocks.get(at).map(|case| {
+                let [by_themselves, knocked_over] = fallen(case);
+                ShownShock {
+                    stood: stood(case),
+                    by_themselves,
+                    knocked_over,
+                    barrels_fallen: barrels(case),
+                    restless: case.restless,
+                    end_time: case.end_time,
+                }
+            }),
+        }
+    };
+    grounds.enumerate().map(one).collect()
+}
+
+/// Returns the number of barrels that fall in a case.
+fn barrels(case: &Case) -> usize {
+    case.stacks.iter().map(|stack| stack.barrels).sum()
+}
+
+/// Returns the number of stacks that stand before a case.
+fn stood(case: &Case) -> u32 {
+    u32::try_from(case.stacks.iter().filter(|stack| !stack.down).count()).unwrap_or(u32::MAX)
 }
 
 /// Returns each warning once, with the stacks that it concerns in place of the name of one stack.
@@ -486,7 +630,9 @@ fn stacks(prepared: &Prepared, all: &[&Case]) -> Vec<StackAnswer> {
             impulse: Range::of(own().filter_map(|one| Some(one.touched?.2))),
             barrels_fallen: mean(own().map(|one| one.barrels as f64)),
             wine_lost: mean(own().map(|one| one.wine[1])),
-            moved: Range::of(own().filter(|one| one.fell_at.is_none()).map(|one| one.moved)),
+            moved: Range::of(
+                own().filter(|one| one.fell_at.is_none() && !one.down).map(|one| one.moved),
+            ),
         }
     };
     plan.stacks.iter().enumerate().map(one).collect()
@@ -540,10 +686,10 @@ fn inspection(stacks: &[StackAnswer]) -> Vec<String> {
 fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
     let plan = &prepared.plan;
     let [by_themselves, knocked_over] = fallen(case);
-    let barrels: usize = case.stacks.iter().map(|stack| stack.barrels).sum();
     let stack = |(stack, standing): (&StackCase, &crate::scenario::Standing)| ShownStack {
         name: standing.name.clone(),
         fate: match (stack.fell_at, stack.knocked) {
+            (None, _) if stack.down => "fallen-before",
             (None, _) => "stands",
             (Some(_), false) => "falls-by-itself",
             (Some(_), true) => "knocked-over",
@@ -564,9 +710,10 @@ fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
         typical: false,
         end_time: run.end_time,
         starts: first(case).map(|at| plan.stacks[at].row),
+        fallen_before: u32::try_from(plan.stacks.len()).unwrap_or(u32::MAX) - stood(case),
         by_themselves,
         knocked_over,
-        barrels_fallen: u32::try_from(barrels).unwrap_or(u32::MAX),
+        barrels_fallen: u32::try_from(barrels(case)).unwrap_or(u32::MAX),
         stacks: case.stacks.iter().zip(&plan.stacks).map(stack).collect(),
         blocked_at: case.aisles.iter().map(|aisle| aisle.blocked_at).collect(),
     }

@@ -8,7 +8,7 @@ use barrelstack::variants::words::{ENOUGH, percent};
 use barrelstack_report::{Tone, capital, listed, measured};
 
 use crate::plan::liters;
-use crate::summary::{AisleAnswer, CellarSummary, Count};
+use crate::summary::{AisleAnswer, CellarSummary, Count, ShockAnswer, ShownShock};
 
 /// Returns a number of things, such as "1 stack" or "3 stacks".
 pub(crate) fn plural(count: u32, thing: &str) -> String {
@@ -66,10 +66,20 @@ fn missing(summary: &CellarSummary) -> Option<f64> {
 /// Returns the result of the run that is shown, in the sentence that people repeat.
 pub fn headline(summary: &CellarSummary) -> String {
     let shown = &summary.shown;
-    let all = summary.plan.stacks;
+    if !summary.shocks.is_empty() {
+        return sentence(summary, &format!("{}{}.", shock_by_shock(summary), blocked(summary)));
+    }
+    let before = shown.fallen_before as usize;
+    let all = summary.plan.stacks - before;
     let (own, knocked) = (shown.by_themselves, shown.knocked_over);
     if own + knocked == 0 {
-        let stand = if all == 1 {
+        let stand = if before > 0 {
+            match all {
+                0 => "No stack stood before the shaking".to_owned(),
+                1 => "The only stack that stood before the shaking survives".to_owned(),
+                _ => format!("All {all} stacks that stood before the shaking survive"),
+            }
+        } else if all == 1 {
             "The only stack stands".to_owned()
         } else {
             format!("All {all} stacks stand")
@@ -93,18 +103,161 @@ pub fn headline(summary: &CellarSummary) -> String {
             )
         };
     }
-    if all == 1 {
+    if all == 1 && before == 0 {
         return sentence(summary, &format!("the only stack falls{}.", blocked(summary)));
     }
     let starts = shown.starts.filter(|_| summary.plan.rows > 1);
     let starts = starts.map_or(String::new(), |row| format!("row {row} starts it: "));
+    let stood = if before > 0 { "that stood before the shaking " } else { "" };
+    let fall = falling(own, &format!("{all} stacks {stood}"), knocked);
+    sentence(summary, &format!("{starts}{fall}{}.", blocked(summary)))
+}
+
+/// Returns a clause on the stacks that fall, such as "2 of 4 stacks fall by themselves, 1 more is knocked over".
+fn falling(own: u32, of: &str, knocked: u32) -> String {
     let verb = if own == 1 { "falls by itself" } else { "fall by themselves" };
     let more = match knocked {
         0 => "none is knocked over".to_owned(),
         1 => "1 more is knocked over".to_owned(),
         many => format!("{many} more are knocked over"),
     };
-    sentence(summary, &format!("{starts}{own} of {all} stacks {verb}, {more}{}.", blocked(summary)))
+    format!("{own} of {} {verb}, {more}", of.trim_end())
+}
+
+/// Largest number of shocks that a sentence lists one by one.
+const LISTED: usize = 3;
+
+/// Returns what happens in the shocks of the run that is shown; of many shocks, only in those that change something.
+fn shock_by_shock(summary: &CellarSummary) -> String {
+    let all = &summary.shocks;
+    let changes = |shown: &ShownShock| shown.by_themselves + shown.knocked_over > 0;
+    let told = all.iter().filter_map(|shock| Some((shock.shock, shock.shown.as_ref()?)));
+    let told: Vec<_> = told.filter(|(_, shown)| all.len() <= LISTED || changes(shown)).collect();
+    if told.is_empty() {
+        return format!("no stack falls in {} shocks", all.len());
+    }
+    let clause = |at: usize, shown: &ShownShock| {
+        let stacks = plural(shown.stood, "stack");
+        let of = if at == 0 { stacks } else { format!("the {} that still stand", shown.stood) };
+        match (shown.stood, changes(shown)) {
+            (0, _) => "no stack stands any more".to_owned(),
+            (1, false) => "the only stack that still stands survives".to_owned(),
+            (_, false) if at == 0 => format!("all {of} stand"),
+            (_, false) => format!("{of} survive"),
+            (1, true) if shown.knocked_over == 0 => {
+                "the only stack that still stands falls".to_owned()
+            }
+            (1, true) => "the only stack that still stands is knocked over".to_owned(),
+            (_, true) => falling(shown.by_themselves, &of, shown.knocked_over),
+        }
+    };
+    let mut text = String::new();
+    for (at, (number, shown)) in told.into_iter().enumerate() {
+        let shock = if at == 0 { " shock" } else { "" };
+        let joint = if at == 0 { "" } else { "; " };
+        text += &format!("{joint}in the {}{shock} {}", ordinal(number), clause(at, shown));
+    }
+    text
+}
+
+/// Returns an ordinal number up to 20.
+fn ordinal(number: u32) -> String {
+    const WORDS: [&str; 10] = [
+        "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth",
+        "tenth",
+    ];
+    let word = number.checked_sub(1).and_then(|at| WORDS.get(at as usize));
+    word.map_or_else(|| format!("{number}th"), |word| (*word).to_owned())
+}
+
+/// Returns the sentence on a shock over all variants.
+fn of_shock(shock: &ShockAnswer, of: u32) -> String {
+    let motion = shock.motion.as_ref().map_or_else(
+        || "ground at rest".to_owned(),
+        |motion| {
+            format!(
+                "{}, up to {:.2} g and {:.0} cm/s along x",
+                motion.name,
+                motion.pga / STANDARD_GRAVITY,
+                100.0 * motion.pgv
+            )
+        },
+    );
+    format!("Shock {} ({motion}): {}.{}", shock.shock, survival(shock, of), restless(shock, of))
+}
+
+/// Returns a clause on the stacks that survive a shock, with counts and intervals over the variants.
+fn survival(shock: &ShockAnswer, of: u32) -> String {
+    let barrels = span(&shock.barrels_fallen, of, 0, "");
+    let barrels = barrels.trim_end();
+    if of == 1 {
+        return format!(
+            "of {} that stand before it {} fall by themselves and {} are knocked over; {barrels} barrels fall",
+            plural_of(shock.stood, "stack"),
+            shock.by_themselves,
+            shock.knocked_over
+        );
+    }
+    let Some(survive) = &shock.share_survive else {
+        return "no stack stands before it in any variant".to_owned();
+    };
+    format!(
+        "all stacks that stand before it survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
+         are knocked over; {} of them survive (95 % interval {} to {}). {barrels} barrels fall",
+        share(&shock.all_survive, of),
+        shock.stood,
+        shock.by_themselves,
+        shock.knocked_over,
+        percent(survive.mean),
+        percent(survive.interval[0]),
+        percent(survive.interval[1])
+    )
+}
+
+/// Returns a number of things that is whole.
+fn plural_of(count: f64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1.0 { "" } else { "s" })
+}
+
+/// Returns a sentence on the variants in which bodies still move at the end of a shock; empty if there are none.
+fn restless(shock: &ShockAnswer, of: u32) -> String {
+    if shock.restless.of_variants == 0 {
+        return String::new();
+    }
+    format!(
+        " In {} a body still moves when it ends; a shock that follows starts from its place, at rest.",
+        share(&shock.restless, of)
+    )
+}
+
+/// Returns whether what still stands after the first shock survives the second, whose strength is described, in one
+/// sentence; `None` if the summary has no second shock or the work was stopped.
+pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
+    let (shock, of) = (summary.shocks.get(1)?, summary.counted);
+    if summary.unfinished.is_some() || of == 0 {
+        return None;
+    }
+    let stacks = summary.plan.stacks;
+    if of == 1 {
+        let shown = shock.shown.as_ref()?;
+        let left = shown.stood - shown.by_themselves - shown.knocked_over;
+        return Some(format!(
+            "Of {stacks} stacks {} stand after the main shock and {left} after {strength}, in one run; a share needs several variants.",
+            shown.stood
+        ));
+    }
+    let Some(survive) = &shock.share_survive else {
+        return Some(format!("No stack stands after the main shock in any of {of} variants."));
+    };
+    Some(format!(
+        "Of {stacks} stacks {:.1} stand after the main shock on average; {strength} is survived by all of them in {}, and by {} of \
+         them on average (95 % interval {} to {}).",
+        shock.stood,
+        share(&shock.all_survive, of),
+        percent(survive.mean),
+        percent(survive.interval[0]),
+        percent(survive.interval[1])
+    ))
 }
 
 /// Returns a sentence on the run that is shown, which names the run if there are several.
@@ -184,7 +337,8 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
             },
         ),
     }];
-    if let Some(motion) = &summary.motion {
+    all.extend(summary.shocks.iter().map(|shock| of_shock(shock, *of)));
+    if let Some(motion) = summary.motion.as_ref().filter(|_| summary.shocks.is_empty()) {
         let other = summary.other_component.as_ref();
         let other = other
             .map(|other| format!("; along y as {}, {}", other.name, peaks(other.pga, other.pgv)));

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use barrelstack::Scenario;
+use barrelstack::overlap::ALLOWED;
 use barrelstack::pool;
 use barrelstack::run::{check_length, end_time, method, thresholds};
 use barrelstack::watch::Thresholds;
@@ -10,16 +11,16 @@ use barrelstack_dynamics::contact_elements::ContactElements;
 use barrelstack_dynamics::join::{Crossing, Frame, Running};
 use barrelstack_dynamics::solid::Block;
 use barrelstack_dynamics::{
-    Body, Model, Motion, Placed as On, Pose, Quaternion, Rotation3, Simulation, Solid, Spatial,
-    State, Stepper, Substepping, Twist, Vec3,
+    Body, Model, Motion, Placed as On, Pose, Quaternion, Rotation3, Scratch, Simulation, Solid,
+    Spatial, State, Stepper, Substepping, Twist, Vec3, evaluate,
 };
 use barrelstack_space::Stack;
-use barrelstack_space::run::Standing;
+use barrelstack_space::run::{Standing, deepest_overlap};
 use barrelstack_space::step::steps_at_fixed;
 
 use crate::contact_kinds::ContactKinds;
 use crate::island::Owner;
-use crate::room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure};
+use crate::room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure, Shift};
 
 /// A stack of a room.
 pub(crate) struct StackOf<'a> {
@@ -90,8 +91,8 @@ impl<'a> World<'a> {
             let simulation =
                 Simulation { method: method(scenario), time_step: stack.step, end_time: end };
             let at_rest = state.clone();
-            if let Some(poses) = &placed.start {
-                start_from(&mut state, placed, poses)?;
+            if placed.start.is_some() || !placed.shifts.is_empty() {
+                start_from(&mut state, placed, &stack)?;
             }
             let drive = room.ground.clone().turned(placed.azimuth);
             let stepper =
@@ -159,17 +160,37 @@ impl<'a> World<'a> {
     }
 }
 
+/// Largest depth (m) by which bodies of stacks that start from stated poses may overlap: loads press the bodies of a heap
+/// into each other.
+pub(crate) const PRESSED: f64 = 5.0 * ALLOWED;
+
+/// Largest depth (m) by which a shift may deepen the deepest overlap of a stack at rest.
+const DEEPENED: f64 = 0.5 * ALLOWED;
+
 /// Moves the bodies of a stack to the poses from which it starts, at rest and without memory of contacts.
 fn start_from(
     state: &mut State<Spatial>,
     placed: &Placed,
-    poses: &[[f64; 7]],
+    stack: &Stack,
 ) -> Result<(), RoomFailure> {
     let name = || placed.name.clone();
+    let deepest = |state: &State<Spatial>| {
+        // The list of contact elements is that of the poses before.
+        let (mut state, mut scratch) = (state.clone(), Scratch::new(&stack.model));
+        state.contact_elements.make_exhaustive(&stack.model, &state.poses);
+        evaluate(&stack.model, &state, &mut scratch);
+        deepest_overlap(stack, &scratch)
+    };
     let expected = state.poses.len() - 1;
-    if poses.len() != expected {
+    let poses = placed.start.as_deref().unwrap_or_default();
+    if placed.start.is_some() && poses.len() != expected {
         return Err(RoomFailure::Start { name: name(), found: poses.len(), expected });
     }
+    let limit = match (&placed.start, deepest(state)) {
+        (Some(_), _) => PRESSED,
+        (None, Some((_, depth))) => depth + DEEPENED,
+        (None, None) => DEEPENED,
+    };
     for (body, numbers) in poses.iter().enumerate() {
         let [x, y, z, w, a, b, c] = *numbers;
         let size = (w * w + a * a + b * b + c * c).sqrt();
@@ -181,9 +202,31 @@ fn start_from(
             orientation: Quaternion { w, v: Vec3::new(a, b, c) },
         };
     }
+    for Shift { body, by: [x, y, z], turn } in &placed.shifts {
+        let bodies = match body {
+            Some(body) if *body >= expected => {
+                return Err(RoomFailure::Shift { name: name(), body: body + 1, bodies: expected });
+            }
+            Some(body) => body + 1..body + 2,
+            None => 1..expected + 1,
+        };
+        for pose in &mut state.poses[bodies] {
+            // A body turns about its own center of mass.
+            let center = if body.is_some() { pose.position } else { Vec3::default() };
+            let frame = Frame { at: center + Vec3::new(*x, *y, *z), azimuth: *turn };
+            *pose = frame.pose(Pose { position: pose.position - center, ..*pose });
+        }
+    }
     state.twists.fill(Twist::default());
     state.contact_elements = ContactElements::default();
-    Ok(())
+    match deepest(state) {
+        Some((bodies, depth)) if depth > limit => {
+            let [first, second] =
+                bodies.map(|body| format!("{} {}", placed.name, stack.parts[body].name));
+            Err(RoomFailure::Overlap { first, second, depth })
+        }
+        Some(_) | None => Ok(()),
+    }
 }
 
 fn check(room: &Room) -> Result<(), RoomFailure> {

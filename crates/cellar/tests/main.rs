@@ -12,4 +12,5 @@ mod answer;
 mod dominoes;
 mod impacts;
 mod plan;
+mod sequence;
 mod stacks;

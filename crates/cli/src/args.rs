@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
+    /// Run a cellar through its shock and an aftershock: does what still stands survive?
+    Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
     /// Run every case of the paper, and compare its numbers with those of the program.
@@ -130,6 +132,9 @@ pub(crate) struct RunArgs {
     /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
     pub(crate) with_engine: Option<PathBuf>,
+    /// Write the places of all bodies at the end of a cellar into this new file, for start.file.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) state: Option<PathBuf>,
     /// Draw the stack in the summary with ASCII characters only.
     #[arg(long, conflicts_with = "json")]
     pub(crate) plain: bool,

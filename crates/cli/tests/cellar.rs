@@ -129,3 +129,134 @@ fn commands_for_one_stack_refuse_a_cellar() {
         assert!(stderr(&output).contains(words), "{arguments:?}: {}", stderr(&output));
     }
 }
+
+/// Napa College as recorded, and then at half the strength.
+const NAPA_TWICE: &str = "schema = 1\nextends = \"demo-cellar\"\n[[motion.sequence]]\nbundled = \"napa-college-2014\"\n\
+                          component = \"horizontal-1\"\nvertical = \"UP\"\n[[motion.sequence]]\nbundled = \"napa-college-2014\"\n\
+                          component = \"horizontal-1\"\nvertical = \"UP\"\nscale = { factor = 0.5 }\n";
+
+#[test]
+fn the_second_shock_from_the_state_after_the_first_has_the_bits_of_the_sequence() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    fs::write(at("twice.toml"), NAPA_TWICE).unwrap();
+    let second = "schema = 1\nextends = \"demo-cellar\"\n[start]\nfile = \"first.csv\"\n[motion]\nscale = { factor = 0.5 }\n";
+    fs::write(at("second.toml"), second).unwrap();
+    let run = |scenario: &str, state: &str| -> Value {
+        let small = ["--variants=0", "--set=block.1.rows=1", "--json", "-q", "--state"];
+        let output = barrelstack([&["run", scenario][..], &small, &[state]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        serde_json::from_str(&stdout(&output)).unwrap()
+    };
+    let twice = run(&at("twice.toml"), &at("twice.csv"));
+    let first = run("demo-cellar", &at("first.csv"));
+    let second = run(&at("second.toml"), &at("second.csv"));
+    let state = |name: &str| fs::read_to_string(at(name)).unwrap();
+    // Numbers are written in full, so equal texts are equal bits.
+    assert!(state("first.csv") != state("second.csv"));
+    assert_eq!(state("twice.csv"), state("second.csv"));
+    // The room is at rest between the shocks, and the results of a shock are those of its run.
+    let shocks = twice["shocks"].as_array().unwrap();
+    for (shock, alone) in shocks.iter().zip([&first, &second]) {
+        assert_eq!(shock["restless"]["of_variants"], 0, "{shock}");
+        for count in ["by_themselves", "knocked_over", "barrels_fallen"] {
+            assert_eq!(shock["shown"][count], alone["shown"][count], "{count}: {shock}");
+        }
+        assert_eq!(shock["shown"]["end_time"], alone["shown"]["end_time"]);
+    }
+    let fallen = |one: &Value| -> u64 {
+        ["by_themselves", "knocked_over"]
+            .iter()
+            .map(|key| one["shown"][key].as_u64().unwrap())
+            .sum()
+    };
+    assert_eq!(second["shown"]["fallen_before"], fallen(&first));
+    // Nothing is overwritten, and a stack alone has no such file.
+    let again = barrelstack(["run", "demo-cellar", "--state", &at("first.csv")]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("another name after --state"), "{}", stderr(&again));
+    let alone = barrelstack(["run", "demo-napa", "--state", &at("alone.csv")]);
+    assert!(stderr(&alone).contains("--state: only the run of a cellar"), "{}", stderr(&alone));
+}
+
+#[test]
+fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = folder.path().join("mine.toml").display().to_string();
+    fs::write(&name, "schema = 1\nextends = \"demo-cellar\"\n[start]\nfile = \"survey.csv\"\n")
+        .unwrap();
+    let head = "stack,body,x (m),y (m),z (m),qw,qx,qy,qz\n";
+    for (text, words) in [
+        ("", "the file is empty"),
+        ("stack,body\n", "no column of shifts"),
+        ("body,dx (m)\n", "no column `stack`"),
+        ("stack,dx\n1-1,0\n", "unknown column \"dx\""),
+        ("stack,dx (m)\n1-1,far\n", "survey.csv:2: column \"dx (m)\": expected a number"),
+        ("stack,dx (m)\n1-1,inf\n", "expected a number"),
+        ("stack,dx (m)\n\n9-1,0.1\n", "survey.csv:3: column \"stack\": there is no stack \"9-1\""),
+        (
+            "stack,body,dx (m)\n1-1,B9.9,0.1\n",
+            "survey.csv:2: column \"body\": stack \"1-1\" has no body",
+        ),
+        ("stack,dx (m)\n1-1\n", "survey.csv:2: there are 1 cells"),
+        (&format!("{head}1-1,B1.1,0,0,0,2,0,0,0\n"), "survey.csv:2: columns qw, qx, qy, qz"),
+        (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n"), "there is no pose of body"),
+        (&format!("{head}1-1,B1.1,0,0,0,1,0,0,0\n1-1,B1.1,0,0,0,1,0,0,0\n"), "a second pose"),
+        ("stack,body,x (m),dx (m)\n", "a file of poses has the columns"),
+    ] {
+        fs::write(folder.path().join("survey.csv"), text).unwrap();
+        let output = barrelstack(["check", &name]);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+        let said = stderr(&output);
+        assert!(said.contains(&format!("{name}:4:")) && said.contains(words), "{text}: {said}");
+    }
+    // The overlap is found when the stacks are built.
+    fs::write(folder.path().join("survey.csv"), "stack,body,dx (m)\n1-1,,0.02\n1-1,B1.1,0.05\n")
+        .unwrap();
+    let output = barrelstack(["run", &name, "--variants=0", "-q"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains(":4:") && said.contains("line 3 of the file") && said.contains("overlap"),
+        "{said}"
+    );
+}
+
+#[test]
+fn an_aftershock_is_answered_in_one_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let small = [
+        "--variants=2",
+        "-q",
+        "--set=stack.levels=2",
+        "--set=block.1.rows=1",
+        "--set=run.duration=6 s",
+    ];
+    let place = out.display().to_string();
+    let strong = ["--set=motion.scale.factor=2.5", "--scale=0.4", "--out", &place];
+    let output = barrelstack([&["aftershock", "demo-cellar"][..], &small, &strong].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output);
+    let summary: Value =
+        serde_json::from_slice(&fs::read(out.join("cellar.json")).unwrap()).unwrap();
+    let first = said.lines().next().unwrap();
+    let begins = format!(
+        "Of 2 stacks {:.1} stand after the main shock",
+        summary["shocks"][1]["stood"].as_f64().unwrap()
+    );
+    assert!(first.starts_with(&begins) || first.starts_with("No stack stands"), "{first}");
+    let pga = |shock: usize| summary["shocks"][shock]["motion"]["pga"].as_f64().unwrap();
+    assert!((pga(1) / pga(0) - 0.4).abs() < 1e-9);
+    assert!(out.join("shocks.csv").is_file());
+    for (arguments, words) in [
+        (&["aftershock", "demo-cellar", "--scale=-1"][..], "--scale -1: expected a factor above 0"),
+        (&["aftershock", "demo-cellar", "--scale=nan"], "expected a factor above 0"),
+        (&["aftershock", "demo-napa"], "kind = \"cellar\""),
+        (&["aftershock", "demo-cellar", "--record=nowhere.AT2", "-q"], "nowhere.AT2"),
+    ] {
+        let output = barrelstack(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(words), "{arguments:?}: {}", stderr(&output));
+    }
+}

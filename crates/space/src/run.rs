@@ -132,14 +132,22 @@ pub(crate) fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing,
 
 /// Rejects a stack whose bodies overlap in their initial positions.
 fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), AssembleError> {
+    match deepest_overlap(stack, scratch) {
+        Some((bodies, depth)) if depth > ALLOWED => {
+            let [first, second] = bodies.map(|body| stack.parts[body].name.clone());
+            Err(AssembleError::Overlap { first, second, depth })
+        }
+        Some(_) | None => Ok(()),
+    }
+}
+
+/// Returns the two bodies that overlap most, and the depth (m) of their overlap, after an evaluation of the stack; `None`
+/// if no bodies touch.
+pub fn deepest_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Option<([BodyId; 2], f64)> {
     let depth = |contact: &&Contact<Spatial>| contact.penetration;
-    let deepest = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
-    let Some(contact) = deepest.filter(|contact| contact.penetration > ALLOWED) else {
-        return Ok(());
-    };
+    let contact = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
     let pair = stack.model.pair(contact.pair);
-    let [first, second] = [pair.contactor, pair.target].map(|body| stack.parts[body].name.clone());
-    Err(AssembleError::Overlap { first, second, depth: contact.penetration })
+    Some(([pair.contactor, pair.target], contact.penetration))
 }
 
 /// Runs a scenario in space under the ground motion of the scenario.

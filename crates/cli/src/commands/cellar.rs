@@ -22,7 +22,8 @@ pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCod
     let plan = Plan::of(cellar).map_err(|error| placed(error.into(), cellar, &args.scenario))?;
     if let Some(path) = &args.plan {
         let picture = Figure::new("plan", plan.summary.title.clone(), plan.picture(cellar));
-        write_new(path, picture.to_svg().as_bytes())?;
+        is_new(path, "--plan")?;
+        crate::store::store(path, picture.to_svg().as_bytes())?;
     }
     if args.json {
         printer::document(&plan.summary)?;
@@ -62,17 +63,21 @@ fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes a file that must not exist.
-fn write_new(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+/// Rejects a file that exists.
+fn is_new(path: &Path, option: &str) -> anyhow::Result<()> {
     // A dangling link exists, too.
     if path.symlink_metadata().is_ok() {
-        bail!("{} exists; give another name after --plan", path.display());
+        bail!("{} exists; give another name after {option}", path.display());
     }
-    crate::store::store(path, bytes)
+    Ok(())
 }
 
-/// Runs a cellar and prints and writes the result.
-pub(crate) fn run(args: &RunArgs, cellar: Cellar) -> anyhow::Result<ExitCode> {
+/// Runs a cellar and prints and writes the result, after a sentence of the caller.
+pub(super) fn run(
+    args: &RunArgs,
+    cellar: Cellar,
+    first: &dyn Fn(&Answer) -> Option<String>,
+) -> anyhow::Result<ExitCode> {
     for (given, option, reason) in [
         (
             args.with_engine.is_some(),
@@ -87,6 +92,9 @@ pub(crate) fn run(args: &RunArgs, cellar: Cellar) -> anyhow::Result<ExitCode> {
     }
     let (cellar, choice) = selected(cellar, args.variants)?;
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
+    if let Some(path) = &args.state {
+        is_new(path, "--state")?;
+    }
     let start = Instant::now();
     let progress = Progress::new(!args.quiet);
     let answer =
@@ -104,9 +112,14 @@ pub(crate) fn run(args: &RunArgs, cellar: Cellar) -> anyhow::Result<ExitCode> {
         }
         Ok(())
     });
+    let written = written.and_then(|()| match &args.state {
+        Some(path) if !answer.is_stopped() => crate::store::store(path, answer.state().as_bytes()),
+        Some(_) | None => Ok(()),
+    });
     if args.json {
         printer::document(&answer.summary)?;
     } else {
+        printer::lines(first(&answer))?;
         let characters = if args.plain { Characters::Ascii } else { Characters::Unicode };
         printed(&answer, characters)?;
         if let (Some(folder), Ok(())) = (&folder, &written) {

@@ -1,5 +1,6 @@
 //! One file per subcommand.
 
+pub(crate) mod aftershock;
 pub(crate) mod calibrate;
 mod cellar;
 mod check;
@@ -43,6 +44,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
         Command::Protect(args) => protect::run(&args),
         Command::Score(args) => score::run(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
+        Command::Aftershock(args) => aftershock::aftershock(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),

@@ -27,8 +27,11 @@ const PAGE_LIMIT: usize = 64 << 20;
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = match super::load_any(&args.scenario)? {
         Loaded::Scenario(scenario) => scenario,
-        Loaded::Cellar(cellar) => return super::cellar::run(args, *cellar),
+        Loaded::Cellar(cellar) => return super::cellar::run(args, *cellar, &|_| None),
     };
+    if args.state.is_some() {
+        bail!("--state: only the run of a cellar is continued; leave it out for one stack");
+    }
     let selection = selected(&mut scenario, args.variants)?;
     // The folder is checked before the computation starts.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;

@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::field::{Default, Field, Kind, Named, Range, Section, names};
 use barrelstack_input::{Dimension, table};
 
 use super::{Direction, MeasuredOn, Processing, PulseKind};
@@ -149,8 +149,8 @@ table! {
 pub(super) const SOURCES: &[&str] = &["record", "bundled", "sine", "pulse", "none"];
 
 table! {
-    /// The ground motion: one of `record`, `bundled`, `sine`, `pulse` and `none`.
-    pub static MOTION = "motion";
+    /// A shock of a sequence: one of `record`, `bundled`, `sine`, `pulse` and `none`, with all other fields of `[motion]`.
+    pub static SHOCK = "shock";
     /// File of a recorded motion, relative to the scenario file.
     record = Kind::Text, Default::Nothing;
     /// Record shipped with the program.
@@ -194,3 +194,57 @@ table! {
     at most one of &["vertical", "vertical_record"];
     at most one of &["none", "scale"];
 }
+
+/// Number of fields of a shock.
+const OF_SHOCK: usize = SHOCK.fields.len();
+
+/// The fields of a shock, and the sequence.
+static FIELDS: [Field; OF_SHOCK + 1] = {
+    let help = "Shocks of a cellar, one after the other, each with all other fields of `[motion]`, which it replaces: every \
+                shock starts from the places in which the one before has left the bodies at rest.";
+    let sequence = Field::new("sequence", Kind::Tables(&SHOCK), Default::Nothing, help);
+    let mut all = [sequence; OF_SHOCK + 1];
+    let mut at = 0;
+    while at < OF_SHOCK {
+        all[at] = SHOCK.fields[at];
+        at += 1;
+    }
+    all
+};
+
+/// Number of exclusions of a shock.
+const EXCLUDED: usize = SHOCK.exclusive.len();
+
+/// The exclusions of a shock, and of a sequence with every field of a shock.
+static EXCLUSIVE: [&[&str]; EXCLUDED + OF_SHOCK] = {
+    const PAIRS: [[&str; 2]; OF_SHOCK] = {
+        let mut all = [["sequence"; 2]; OF_SHOCK];
+        let mut at = 0;
+        while at < OF_SHOCK {
+            all[at][1] = SHOCK.fields[at].name;
+            at += 1;
+        }
+        all
+    };
+    static RIVALS: [[&str; 2]; OF_SHOCK] = PAIRS;
+    let mut all: [&[&str]; EXCLUDED + OF_SHOCK] = [&[]; EXCLUDED + OF_SHOCK];
+    let mut at = 0;
+    while at < EXCLUDED {
+        all[at] = SHOCK.exclusive[at];
+        at += 1;
+    }
+    while at < EXCLUDED + OF_SHOCK {
+        all[at] = &RIVALS[at - EXCLUDED];
+        at += 1;
+    }
+    all
+};
+
+/// The ground motion.
+pub static MOTION: Section = Section {
+    name: "motion",
+    help: "The ground motion: one of `record`, `bundled`, `sine`, `pulse` and `none`.",
+    fields: &FIELDS,
+    variants: None,
+    exclusive: &EXCLUSIVE,
+};

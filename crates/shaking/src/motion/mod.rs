@@ -6,8 +6,8 @@ use barrelstack_motion::IntensityMeasure;
 mod fields;
 mod text;
 
-pub use fields::{MOTION, PULSE, SCALE, SINE, record_names};
-pub use text::{read, rest, write};
+pub use fields::{MOTION, PULSE, SCALE, SHOCK, SINE, record_names};
+pub use text::{read, read_shock, rest, write, write_sequence};
 
 /// The source of the samples of a record.
 #[derive(Debug, Clone, PartialEq)]

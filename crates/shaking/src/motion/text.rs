@@ -6,7 +6,7 @@ use barrelstack_input::writer::Writer;
 use barrelstack_input::{Dimension, InputError};
 use barrelstack_motion::{IntensityMeasure, MotionError};
 
-use super::fields::{LONGEST, MOTION, PULSE, SCALE, SINE, SOURCES};
+use super::fields::{LONGEST, MOTION, PULSE, SCALE, SHOCK, SINE, SOURCES};
 use super::{
     Amplitude, MeasuredOn, MotionSource, MotionSpec, Pulse, PulseKind, RecordMotion, RecordSource,
     Scale, Sine, Vertical,
@@ -17,11 +17,25 @@ pub fn rest() -> MotionSpec {
     MotionSpec { source: MotionSource::None, scale: Scale::Factor(1.0), similitude: 1.0 }
 }
 
-/// Reads the ground motion.
+/// Reads the ground motion of a single stack or scene, which is one shock.
+///
+/// # Errors
+/// Returns the first invalid field, with its place in the file; also for a sequence.
+pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
+    if reader.has("sequence") {
+        let message = "a sequence of shocks is run in a room only: set `kind = \"cellar\"`, and state [room] and one \
+                       [[block]], whose single stack is this one; or state one shock in [motion]";
+        return Err(reader.inconsistent("sequence", message.to_owned()));
+    }
+    reader.skip("sequence");
+    read_shock(reader)
+}
+
+/// Reads one shock: the ground motion without a sequence.
 ///
 /// # Errors
 /// Returns the first invalid field, with its place in the file.
-pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
+pub fn read_shock(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let record = reader.file("record")?.map(RecordSource::File);
     let bundled = reader.optional_catalog_name("bundled")?.map(RecordSource::Bundled);
     let details = read_record_details(&reader)?;
@@ -217,6 +231,20 @@ fn read_pulse(reader: Reader<'_>) -> Result<Pulse, InputError> {
 /// Writes the ground motion.
 pub fn write(motion: &MotionSpec) -> Table {
     let mut writer = Writer::new(&MOTION);
+    writer.omit(&["sequence"]);
+    write_shock(writer, motion)
+}
+
+/// Writes a sequence of shocks.
+pub fn write_sequence<'a>(shocks: impl IntoIterator<Item = &'a MotionSpec>) -> Table {
+    let mut writer = Writer::new(&MOTION);
+    let all = shocks.into_iter().map(|shock| write_shock(Writer::new(&SHOCK), shock)).collect();
+    writer.tables("sequence", all);
+    SHOCK.fields.iter().for_each(|field| writer.omit(&[field.name]));
+    writer.finish()
+}
+
+fn write_shock(mut writer: Writer, motion: &MotionSpec) -> Table {
     match &motion.source {
         MotionSource::None => writer.flag("none", true),
         MotionSource::Record(record) => write_record(&mut writer, record),

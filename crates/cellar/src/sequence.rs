@@ -1,0 +1,137 @@
+//! Sequences of shocks: the room after one shock, in which the next starts, and the runs of all shocks as one.
+
+use barrelstack::outcome::Outcome;
+
+use crate::island::plus;
+use crate::result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, Touch};
+use crate::room::Room;
+
+/// Returns a room in which every body starts, at rest and without memory of contacts, where a run has left it. The quiet
+/// between two shocks is skipped.
+#[must_use]
+pub fn after(mut room: Room, run: &RoomRun) -> Room {
+    for (placed, stack) in room.stacks.iter_mut().zip(&run.stacks) {
+        let own = run.bodies[stack.bodies.clone()].iter().map(|body| body.own);
+        placed.start = Some(own.collect());
+        placed.shifts.clear();
+    }
+    room
+}
+
+/// `true` if another shock can follow a run: it was not stopped, and its computation did not fail.
+pub(crate) fn goes_on(run: &RoomRun) -> bool {
+    let valid = |stack: &StackEnd| !matches!(stack.outcome, Outcome::Invalid { .. });
+    !run.interrupted && run.stacks.iter().all(valid)
+}
+
+/// Returns the runs of the shocks of a sequence as one run, whose clock runs on without the quiet between them:
+/// every shock starts at the end of the one before.
+pub(crate) fn joined(mut shocks: Vec<RoomRun>) -> Option<RoomRun> {
+    for at in 1..shocks.len() {
+        let (before, after) = shocks.split_at_mut(at);
+        keep_fallen(&before[at - 1], &mut after[0]);
+    }
+    let mut all = shocks.first()?.clone();
+    for next in &shocks[1..] {
+        add(&mut all, next);
+    }
+    all.shocks = shocks;
+    Some(all)
+}
+
+/// A stack or a body that has fallen in an earlier shock has fallen at time zero, even if it stands in its place again.
+fn keep_fallen(before: &RoomRun, run: &mut RoomRun) {
+    for (old, new) in before.stacks.iter().zip(&mut run.stacks) {
+        if let (Outcome::Collapse { .. }, Some((_, body))) = (&old.outcome, old.lost_seat) {
+            (new.lost_seat, new.knocked_over) = (Some((0.0, body)), false);
+            if !matches!(new.outcome, Outcome::Invalid { .. } | Outcome::Interrupted) {
+                new.outcome = old.outcome.clone();
+            }
+        }
+    }
+    for (old, new) in before.bodies.iter().zip(&mut run.bodies) {
+        if old.fate.fell_at.is_some() {
+            new.fate.fell_at = Some(0.0);
+        }
+    }
+}
+
+/// Adds a run to the runs before it.
+fn add(all: &mut RoomRun, next: &RoomRun) {
+    let from = all.end_time;
+    all.bodies.iter_mut().zip(&next.bodies).for_each(|(one, next)| add_body(one, next, from));
+    all.stacks.iter_mut().zip(&next.stacks).for_each(|(one, next)| add_stack(one, next, from));
+    for meeting in &next.meetings {
+        match all.meetings.iter_mut().find(|one| one.stacks == meeting.stacks) {
+            Some(known) => {
+                known.impulse += meeting.impulse;
+                known.peak = known.peak.max(meeting.peak);
+            }
+            None => all.meetings.push(Meeting { time: from + meeting.time, ..*meeting }),
+        }
+    }
+    let obstacles = all.obstacles.iter_mut().zip(&next.obstacles);
+    obstacles.for_each(|(one, next)| add_obstacle(one, next, from));
+    all.frames.iter_mut().zip(&next.frames).for_each(|(one, next)| add_frames(one, next, from));
+    all.energy = all.energy.zip(next.energy).map(|(one, next)| plus(one, &next));
+    all.work.steps += next.work.steps;
+    all.work.evaluations += next.work.evaluations;
+    all.work.contact_evaluations += next.work.contact_evaluations;
+    all.merges += next.merges;
+    all.end_time = from + next.end_time;
+    all.interrupted |= next.interrupted;
+    for warning in &next.warnings {
+        if !all.warnings.contains(warning) {
+            all.warnings.push(warning.clone());
+        }
+    }
+}
+
+fn add_body(all: &mut BodyEnd, next: &BodyEnd, from: f64) {
+    let (left, fell, drop) = (all.fate.left_seat, all.fate.fell_at, all.fate.drop);
+    let force = all.fate.fall_force;
+    all.fate = next.fate;
+    all.fate.left_seat =
+        left.or(next.fate.left_seat.map(|(time, loss, heading)| (from + time, loss, heading)));
+    all.fate.fell_at = fell.or(next.fate.fell_at.map(|time| from + time));
+    all.fate.drop = drop.max(next.fate.drop);
+    all.fate.fall_force = force.max(next.fate.fall_force);
+    (all.to, all.own) = (next.to, next.own);
+}
+
+fn add_stack(all: &mut StackEnd, next: &StackEnd, from: f64) {
+    let stood = all.lost_seat.is_none();
+    all.touched = match (all.touched, next.touched) {
+        (Some(one), Some(next)) if stood => {
+            Some(Touch { impulse: one.impulse + next.impulse, ..one })
+        }
+        (None, Some(next)) => Some(Touch { time: from + next.time, ..next }),
+        (one, _) => one,
+    };
+    if stood {
+        all.lost_seat = next.lost_seat.map(|(time, body)| (from + time, body));
+        all.knocked_over = next.knocked_over;
+    }
+    if stood || matches!(next.outcome, Outcome::Invalid { .. } | Outcome::Interrupted) {
+        all.outcome = next.outcome.clone();
+    }
+    all.first_fall = all.first_fall.or(next.first_fall.map(|time| from + time));
+    let touched = next.touched_obstacle.map(|(time, obstacle)| (from + time, obstacle));
+    all.touched_obstacle = all.touched_obstacle.or(touched);
+    (all.ending, all.end_time, all.moving) = (next.ending, from + next.end_time, next.moving);
+}
+
+fn add_obstacle(all: &mut ObstacleEnd, next: &ObstacleEnd, from: f64) {
+    all.first = all.first.or(next.first.map(|(time, body)| (from + time, body)));
+    all.peak = all.peak.max(next.peak);
+    for (sum, next) in all.impulse.iter_mut().zip(next.impulse) {
+        *sum += next;
+    }
+    all.history.extend(next.history.iter().map(|(time, force)| (from + time, *force)));
+}
+
+fn add_frames(all: &mut RoomFrames, next: &RoomFrames, from: f64) {
+    all.times.extend(next.times.iter().map(|time| from + time));
+    all.poses.extend_from_slice(&next.poses);
+    all.speeds.extend_from_slice(&next.speeds);
+}

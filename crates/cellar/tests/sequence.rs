@@ -1,0 +1,180 @@
+//! Sequences of shocks, and rooms that start from stated places.
+
+use std::ops::ControlFlow;
+
+use barrelstack::variants::RunChoice;
+use barrelstack_cellar::{Answer, Cellar, CellarFailure, RoomRun, answer};
+
+use crate::common::bits;
+
+/// Two stacks of two levels, followed for a short time.
+const SMALL: &str =
+    "schema = 1\nextends = \"demo-cellar\"\n[stack]\nlevels = 2\n[run]\nduration = \"6 s\"\n";
+
+/// The record of Napa College, stronger than measured, and then weaker.
+const TWICE: &str = "[[motion.sequence]]\nbundled = \"napa-college-2014\"\ncomponent = \"horizontal-1\"\nvertical = \"UP\"\n\
+                     scale = { factor = 2.5 }\n[[motion.sequence]]\nbundled = \"napa-college-2014\"\nscale = { factor = -1.0 }\n";
+
+fn cellar(text: &str, changes: &[&str]) -> Cellar {
+    read(text, changes).unwrap()
+}
+
+fn read(text: &str, changes: &[&str]) -> Result<Cellar, barrelstack::scenario::ScenarioError> {
+    let mut all = vec!["block.1.rows=1".to_owned(), "imperfections.variants=2".to_owned()];
+    all.extend(changes.iter().map(|&change| change.to_owned()));
+    Cellar::parse("mine.toml", format!("{SMALL}{text}").as_bytes(), &all)
+}
+
+fn answered(cellar: &Cellar, choice: RunChoice) -> Result<Answer, CellarFailure> {
+    answer(cellar, choice, &mut |_| ControlFlow::Continue(()))
+}
+
+fn refused(text: &str, words: &[&str]) {
+    let said = read(text, &[]).unwrap_err().sentence();
+    assert!(words.iter().all(|word| said.contains(word)), "{text}: {said}");
+}
+
+#[test]
+fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
+    let answer = answered(&cellar(TWICE, &[]), RunChoice::Typical).unwrap();
+    let summary = &answer.summary;
+    let [first, second] = &summary.shocks[..] else { panic!("{:?}", summary.shocks) };
+    assert_eq!(first.stood, 2.0);
+    assert!((second.stood - (2.0 - first.by_themselves - first.knocked_over)).abs() < 1e-12);
+    let own = first.by_themselves + second.by_themselves;
+    let knocked = first.knocked_over + second.knocked_over;
+    assert_eq!((summary.room.by_themselves, summary.room.knocked_over), (own, knocked));
+    // The runs end before the record does, so the room does not rest, and the answer says so.
+    assert_eq!(first.restless.of_variants, 2);
+    let said = barrelstack_cellar::words::sentences(summary).join(" ");
+    assert!(said.contains("Shock 2 (") && said.contains("still moves when it ends"), "{said}");
+    assert!(summary.headline.contains("in the first shock"), "{}", summary.headline);
+    assert!(summary.headline.contains("; in the second "), "{}", summary.headline);
+    let files = answer.files().unwrap();
+    let (_, csv) = files.iter().find(|(name, _)| name == "shocks.csv").unwrap();
+    assert_eq!(String::from_utf8_lossy(csv).lines().count(), 1 + 2 * 2);
+    // The clock of the whole runs on.
+    let run = &answer.shown;
+    let ends: f64 = run.shocks.iter().map(|shock| shock.end_time).sum();
+    assert_eq!((run.shocks.len(), run.end_time), (2, ends));
+    for frames in &run.frames {
+        assert!(frames.times.is_sorted());
+        assert_eq!(frames.times.len(), frames.poses.len());
+    }
+    // Bodies start the second shock where the first has left them, and end it where the whole ends.
+    for (at, body) in run.bodies.iter().enumerate() {
+        let [one, two] = [&run.shocks[0].bodies[at], &run.shocks[1].bodies[at]];
+        assert_eq!((one.to, two.to, one.from), (two.start, body.to, body.from));
+    }
+}
+
+#[test]
+fn one_shock_in_a_sequence_has_the_bits_of_the_shock() {
+    let one = "[[motion.sequence]]\nbundled = \"napa-college-2014\"\ncomponent = \"horizontal-1\"\nvertical = \"UP\"\n";
+    let [alone, listed] = ["", one].map(|text| cellar(text, &["run.duration=2 s"]));
+    assert_eq!(alone.fingerprint(), listed.fingerprint());
+    let [alone, listed] =
+        [alone, listed].map(|cellar| answered(&cellar, RunChoice::Alone(1)).unwrap());
+    assert_eq!(bits(&alone.shown), bits(&listed.shown));
+    assert!(listed.summary.shocks.is_empty() && listed.shown.shocks.is_empty());
+    assert_eq!(alone.summary.headline, listed.summary.headline);
+}
+
+#[test]
+fn a_sequence_is_read_written_and_refused_at_its_place() {
+    let stated = cellar(TWICE, &["motion.sequence.2.scale.factor=0.5"]);
+    assert_eq!(stated.later.len(), 1);
+    let again = Cellar::parse("again.toml", stated.to_resolved_toml().as_bytes(), &[]).unwrap();
+    assert_eq!(again.fingerprint(), stated.fingerprint());
+    assert_eq!(
+        (again.later.clone(), again.stated().motion.clone()),
+        (stated.later.clone(), stated.stated().motion.clone())
+    );
+    assert_ne!(stated.fingerprint(), cellar(TWICE, &[]).fingerprint());
+    // A record in place of the motion replaces the whole sequence, as it replaces a motion.
+    assert!(cellar(TWICE, &["motion.record=site.AT2"]).later.is_empty());
+    let shock = "[[motion.sequence]]\nbundled = \"napa-college-2014\"\n";
+    refused(
+        "[motion]\nsequence = []\n",
+        &["mine.toml:8:", "at least one shock", "[[motion.sequence]]"],
+    );
+    refused(&shock.repeat(1000), &["mine.toml:", "1000 shocks", "at most 20"]);
+    refused(
+        &format!("[motion]\nbundled = \"napa-college-2014\"\n{shock}"),
+        &["mine.toml:", "`sequence`", "bundled"],
+    );
+    refused(&format!("{shock}factor = 2\n"), &["mine.toml:9:", "factor"]);
+    refused("[[motion.sequence]]\n", &["[motion.sequence.1]", "record"]);
+    refused("[motion]\nsequence = \"twice\"\n", &["mine.toml:8:", "sequence"]);
+    refused(
+        &format!("{shock}[motion.sequence.scale]\npga = \"-1 g\"\n"),
+        &["mine.toml:10:", "pga"],
+    );
+    // A stack alone has one shock.
+    let alone = format!("schema = 1\nextends = \"demo-napa\"\n{shock}");
+    let said = barrelstack::Scenario::parse("alone.toml", &alone, &[]).unwrap_err().sentence();
+    assert!(said.contains("alone.toml:3:") && said.contains("kind = \"cellar\""), "{said}");
+}
+
+#[test]
+fn an_aftershock_follows_the_own_motion() {
+    let own = cellar("", &["motion.scale.pga=0.4 g"]).with_aftershock(0.5, None).unwrap();
+    assert_eq!(own.later.len(), 1);
+    assert_eq!(own.later[0].source, own.stated().motion.source);
+    let said = cellar(TWICE, &[]).with_aftershock(0.5, None).unwrap_err().sentence();
+    assert!(said.contains("sequence already"), "{said}");
+    let said = cellar("", &["motion.scale.measure=cav", "motion.scale.value=3 m/s"]);
+    let said = said.with_aftershock(0.5, None).unwrap_err().sentence();
+    assert!(said.contains("`measure`"), "{said}");
+}
+
+/// Returns the largest horizontal distance (m) of a body of a stack at the start of a run from its place as built.
+fn started(run: &RoomRun, stack: usize) -> f64 {
+    let bodies = &run.bodies[run.stacks[stack].bodies.clone()];
+    let apart = |axis: usize, one: &barrelstack_cellar::BodyEnd| one.start[axis] - one.from[axis];
+    bodies.iter().map(|one| apart(0, one).hypot(apart(1, one))).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_surveyed_room_starts_from_its_displacements() {
+    let quick = ["run.duration=0.5 s"];
+    let walked = "[[start.shift]]\nstack = \"1-2\"\nby = [\"3 cm\", \"-4 cm\", \"0 m\"]\n";
+    let run = answered(&cellar(walked, &quick), RunChoice::Alone(0)).unwrap().shown;
+    // measured 0.05 to the last digits
+    assert!((started(&run, 1) - 0.05).abs() < 1e-12 && started(&run, 0) == 0.0);
+    assert!(!run.stacks[1].was_down());
+    let turned = "[[start.shift]]\nstack = \"1-1\"\nturn = \"1 deg\"\n";
+    let run = answered(&cellar(turned, &quick), RunChoice::Alone(0)).unwrap().shown;
+    assert!(started(&run, 0) > 5e-3 && started(&run, 0) < 0.03, "{}", started(&run, 0));
+    // A barrel that is pushed into its neighbor, and a stack into the other.
+    let places = |text: &str| match answered(&cellar(text, &quick), RunChoice::Alone(0)) {
+        Err(CellarFailure::Plan(error)) => error.sentence(),
+        other => panic!("{text}: {:?}", other.map(|answer| answer.summary.headline)),
+    };
+    let pushed =
+        "[[start.shift]]\nstack = \"1-1\"\nbody = \"B1.1\"\nby = [\"6 cm\", \"0 m\", \"0 m\"]\n";
+    let said = places(pushed);
+    assert!(
+        said.contains("mine.toml:7:") && said.contains("1-1 B1.1") && said.contains("overlap"),
+        "{said}"
+    );
+    let into = "[[start.shift]]\nstack = \"1-2\"\nby = [\"-32 cm\", \"0 m\", \"0 m\"]\n";
+    let said = places(into);
+    assert!(
+        said.contains("mine.toml:7:") && said.contains("1-1 ") && said.contains("1-2 "),
+        "{said}"
+    );
+    for (text, place, words) in [
+        ("[[start.shift]]\nstack = \"3-1\"\n", "mine.toml:8:", "there is no stack \"3-1\""),
+        (
+            "[[start.shift]]\nstack = \"1-1\"\nbody = \"B9.1\"\n",
+            "mine.toml:9:",
+            "has no body \"B9.1\"",
+        ),
+        ("[start]\nfile = \"nowhere.csv\"\n", "mine.toml:8:", "nowhere.csv"),
+    ] {
+        let said = places(text);
+        assert!(said.contains(place) && said.contains(words), "{said}");
+    }
+    refused(&"[[start.shift]]\nstack = \"1-1\"\n".repeat(1001), &["1001 shifts", "in a file"]);
+}
