@@ -166,8 +166,10 @@ fn a_barrel_that_rolls_into_a_wall_is_thrown_back_by_the_rebound_law() {
     let (first, body) = run.obstacles[0].first.unwrap();
     let up = run.bodies[0].fate.moved.z;
     println!("at the wall {:e} s late; {up:e} m up", first - gap / speed);
+    // measured 3.9e-6 s
     assert!((first - gap / speed).abs() < 1e-5 && body == 0);
     // The wall pushes along its normal only: the weight stays on the floor.
+    // measured 1e-14 m
     assert!(up.abs() < 1e-3);
 }
 

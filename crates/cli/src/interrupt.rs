@@ -48,8 +48,8 @@ static WORKS: AtomicUsize = AtomicUsize::new(0);
 /// Point of the work at which a test stops the program.
 static STOP_POINT: OnceLock<Option<StopPoint>> = OnceLock::new();
 
-/// A point in the work of the program, independent of the machine load: `2:variants:3` is reached
-/// when three variants are finished in the second piece of work.
+/// A point in the work of the program, independent of the machine load: `2:runs:3` is reached
+/// when three runs are finished in the second piece of work.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StopPoint {
     work: usize,
@@ -68,7 +68,7 @@ impl std::str::FromStr for StopPoint {
             (Ok(work), Ok(done)) if !things.is_empty() => {
                 Ok(Self { work, things: things.to_owned(), done })
             }
-            _ => Err("expected WORK:THINGS:DONE, such as 2:variants:3".to_owned()),
+            _ => Err("expected WORK:THINGS:DONE, such as 2:runs:3".to_owned()),
         }
     }
 }

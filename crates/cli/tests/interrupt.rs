@@ -186,7 +186,7 @@ fn stopped_variants_are_kept_and_make_no_verdict() {
         let folder = tempfile::tempdir().unwrap();
         let view = format!("--set=stack.view={plane}");
         let arguments = [&SHORT[..], &[&view, "--variants=6", "--out=out", "--json"]].concat();
-        let summary = json(&stops_at("1:variants:2", &arguments, folder.path(), false));
+        let summary = json(&stops_at("1:runs:2", &arguments, folder.path(), false));
         assert_eq!(summary["outcome"]["kind"], "interrupted");
         assert_eq!(summary["unfinished"]["of"], of);
         let done = summary["unfinished"]["done"].as_u64().unwrap();
@@ -215,7 +215,7 @@ fn a_stopped_run_has_no_outcome_in_print() {
     assert!(said.contains("there is no verdict"), "{said}");
     assert!(said.contains("none: stopped before its end"), "{said}");
     let said =
-        stops_at("1:variants:2", &[&SHORT[..], &["--variants=6"]].concat(), folder.path(), false);
+        stops_at("1:runs:2", &[&SHORT[..], &["--variants=6"]].concat(), folder.path(), false);
     assert!(said.contains("of 14 runs"), "{said}");
 }
 
@@ -255,11 +255,11 @@ fn of_a_stopped_comparison_the_finished_run_is_kept_and_nothing_is_compared() {
     let both = [&compare[..], &runs].concat();
     // In the first run nothing is finished.
     let first = [&both[..], &["--out=first", "--json"]].concat();
-    let document = json(&stops_at("1:variants:2", &first, folder.path(), false));
+    let document = json(&stops_at("1:runs:2", &first, folder.path(), false));
     assert_eq!(document["unfinished"].as_array().unwrap().len(), 2);
     assert_eq!(document["runs"][0]["summary"]["outcome"]["kind"], "interrupted");
     // In the second the first is.
-    for place in ["2:variants:1", "2:seconds:2"] {
+    for place in ["2:runs:1", "2:seconds:2"] {
         let out = format!("--out={}", place.replace(':', "-"));
         let arguments = [&both[..], &[&out, "--json"]].concat();
         let document = json(&stops_at(place, &arguments, folder.path(), true));
@@ -270,7 +270,7 @@ fn of_a_stopped_comparison_the_finished_run_is_kept_and_nothing_is_compared() {
         assert!(folder.path().join(&out[6..]).join("report.html").exists());
     }
     let said =
-        stops_at("2:variants:1", &[&both[..], &["--out=print"]].concat(), folder.path(), true);
+        stops_at("2:runs:1", &[&both[..], &["--out=print"]].concat(), folder.path(), true);
     assert!(!said.contains("Stands:") && !said.contains("stand:"), "{said}");
 }
 
@@ -283,7 +283,7 @@ fn what_is_stopped_in_space_has_no_outcome_and_keeps_its_variants() {
     assert_eq!(summary["outcome"]["kind"], "interrupted");
     assert!(folder.path().join("alone/report.html").exists());
     let varied = [&space[..], &["--variants=4", "--out=varied"]].concat();
-    let summary = json(&stops_at("1:variants:1", &varied, folder.path(), false));
+    let summary = json(&stops_at("1:runs:1", &varied, folder.path(), false));
     assert!(summary["ensemble"].is_null() && summary["directions"].is_null());
     let done = summary["unfinished"]["done"].as_u64().unwrap();
     let rows = fs::read_to_string(folder.path().join("varied/variants.csv")).unwrap();

@@ -267,6 +267,17 @@ def test_what_a_callback_raises_is_passed_on() -> None:
     assert not isinstance(caught.value, barrelstack.Error)
 
 
+def test_a_wrong_date_prevents_no_import_and_pages_state_the_reason(tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    code = f"import barrelstack; barrelstack.Scenario.load('sliding-block').run().report({str(page)!r})"
+    environment = os.environ | {"SOURCE_DATE_EPOCH": "yesterday"}
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    text = page.read_text(encoding="utf-8").replace("\u00a0", " ")
+    assert "unknown (SOURCE_DATE_EPOCH: expected whole seconds since 1970, found " in text
+
+
 SCRIPT = """
 import barrelstack
 
