@@ -151,13 +151,11 @@ fn shock_by_shock(summary: &CellarSummary) -> String {
             (_, true) => falling(shown.by_themselves, &of, shown.knocked_over),
         }
     };
-    let mut text = String::new();
-    for (at, (number, shown)) in told.into_iter().enumerate() {
+    let told = told.into_iter().enumerate().map(|(at, (number, shown))| {
         let shock = if at == 0 { " shock" } else { "" };
-        let joint = if at == 0 { "" } else { "; " };
-        text += &format!("{joint}in the {}{shock} {}", ordinal(number), clause(at, shown));
-    }
-    text
+        format!("in the {}{shock} {}", ordinal(number), clause(at, shown))
+    });
+    told.collect::<Vec<_>>().join("; ")
 }
 
 /// Returns an ordinal number up to 20.
