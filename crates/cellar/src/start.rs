@@ -177,13 +177,11 @@ fn stack_named<'a>(
     stacks: &'a [Standing],
     models: &'a [Model],
 ) -> Result<(&'a Standing, &'a Model), String> {
-    match stacks.iter().find(|standing| standing.name == name) {
-        Some(standing) => Ok((standing, &models[standing.model])),
-        None => {
-            let known: Vec<&str> = stacks.iter().map(|standing| standing.name.as_str()).collect();
-            Err(format!("there is no stack \"{name}\"; {}", valid(name, &known)))
-        }
+    if let Some(standing) = stacks.iter().find(|standing| standing.name == name) {
+        return Ok((standing, &models[standing.model]));
     }
+    let known: Vec<&str> = stacks.iter().map(|standing| standing.name.as_str()).collect();
+    Err(format!("there is no stack \"{name}\"; {}", valid(name, &known)))
 }
 
 fn body_named(name: &str, stack: &str, model: &Model) -> Result<usize, String> {
@@ -202,6 +200,96 @@ const SHIFTED: [&str; 4] = ["dx (m)", "dy (m)", "dz (m)", "turn (deg)"];
 /// Largest coordinate (m) of a pose, and largest displacement.
 const FAR: f64 = 1000.0;
 
+/// Returns the cells of a line of a CSV file.
+fn cells(line: &str) -> Vec<String> {
+    line.split(',').map(|cell| cell.trim().trim_matches('"').to_owned()).collect()
+}
+
+/// The columns of a file.
+struct Columns {
+    names: Vec<String>,
+    /// `true` for poses, `false` for shifts.
+    poses: bool,
+}
+
+impl Columns {
+    fn of(header: &str) -> Result<Self, String> {
+        let names = cells(header);
+        let has = |name: &str| names.iter().any(|known| known == name);
+        let known = |name: &str| {
+            ["stack", "body"].contains(&name) || POSE.contains(&name) || SHIFTED.contains(&name)
+        };
+        if let Some(unknown) = names.iter().find(|name| !known(name)) {
+            let all = format!("stack, body, {} or {}", SHIFTED.join(", "), POSE.join(", "));
+            return Err(format!("unknown column \"{unknown}\"; the columns are {all}"));
+        }
+        if !has("stack") {
+            return Err(
+                "there is no column `stack`: name the stack of each row, such as 1-2".into()
+            );
+        }
+        let [poses, shifts] = [&POSE[..], &SHIFTED].map(|all| all.iter().any(|name| has(name)));
+        if poses && (shifts || !has("body") || !POSE.iter().all(|name| has(name))) {
+            let all = POSE.join(", ");
+            return Err(format!(
+                "a file of poses has the columns stack, body, {all}, and no others"
+            ));
+        }
+        if !poses && !shifts {
+            let all = SHIFTED.join(", ");
+            return Err(format!("there is no column of shifts: state at least one of {all}"));
+        }
+        Ok(Self { names, poses })
+    }
+
+    /// Returns the cells of a row.
+    fn row(&self, line: &str) -> Result<Row<'_>, String> {
+        let cells = cells(line);
+        if cells.len() != self.names.len() {
+            return Err(format!(
+                "there are {} cells, but {} columns: fill every cell, with 0 where nothing moved",
+                cells.len(),
+                self.names.len()
+            ));
+        }
+        Ok(Row { columns: self, cells })
+    }
+}
+
+/// A row of a file.
+struct Row<'a> {
+    columns: &'a Columns,
+    cells: Vec<String>,
+}
+
+impl Row<'_> {
+    fn text(&self, name: &str) -> &str {
+        let at = self.columns.names.iter().position(|known| known == name);
+        at.map_or("", |at| &self.cells[at])
+    }
+
+    /// Returns the numbers of some columns; zero for a column that the file does not have.
+    fn numbers<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], String> {
+        let mut all = [0.0; N];
+        for (value, name) in all.iter_mut().zip(names) {
+            if !self.columns.names.iter().any(|known| known == name) {
+                continue;
+            }
+            let text = self.text(name);
+            let read = text.parse::<f64>().ok().filter(|value| value.abs() <= FAR);
+            *value = read.ok_or_else(|| {
+                format!(
+                    "column \"{name}\": expected a number up to {FAR} in magnitude, found \"{text}\""
+                )
+            })?;
+        }
+        Ok(all)
+    }
+}
+
+/// Poses of the bodies of a stack, and the line of the last.
+type Posed = (BTreeMap<usize, [f64; 7]>, usize);
+
 /// Reads a file of shifts or poses; an error states the line.
 fn of_file(
     text: &str,
@@ -209,154 +297,76 @@ fn of_file(
     models: &[Model],
     all: &mut BTreeMap<String, Begin>,
 ) -> Result<(), (usize, String)> {
-    let cells = |line: &str| -> Vec<String> {
-        line.split(',').map(|cell| cell.trim().trim_matches('"').to_owned()).collect()
-    };
-    let mut lines = (1..).zip(text.trim_start_matches('\u{feff}').lines());
-    let mut lines = lines.by_ref().filter(|(_, line)| !line.trim().is_empty());
+    let lines = (1..).zip(text.trim_start_matches('\u{feff}').lines());
+    let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
     let Some((first, header)) = lines.next() else {
-        return Err((
-            1,
-            "the file is empty: its first line names the columns `stack`, `body` and \
- those of shifts or poses"
-                .to_owned(),
-        ));
+        let message = "the file is empty: its first line names the columns `stack`, `body` and those of shifts or poses";
+        return Err((1, message.to_owned()));
     };
-    let header = cells(header);
-    let column = |name: &str| header.iter().position(|known| known == name);
-    let known = |name: &String| {
-        ["stack", "body"].iter().chain(&POSE).chain(&SHIFTED).any(|known| known == name)
-    };
-    if let Some(unknown) = header.iter().find(|name| !known(name)) {
-        let columns = format!("stack, body, {} or {}", SHIFTED.join(", "), POSE.join(", "));
-        return Err((first, format!("unknown column \"{unknown}\"; the columns are {columns}")));
-    }
-    let Some(stack_at) = column("stack") else {
-        return Err((
-            first,
-            "there is no column `stack`: name the stack of each row, such as 1-2".to_owned(),
-        ));
-    };
-    let pose_at = POSE.map(column);
-    let shift_at = SHIFTED.map(column);
-    let poses = pose_at.iter().any(Option::is_some);
-    if poses
-        && (shift_at.iter().any(Option::is_some)
-            || pose_at.iter().any(Option::is_none)
-            || column("body").is_none())
-    {
-        return Err((
-            first,
-            format!(
-                "a file of poses has the columns stack, body, {}, and no \
- others",
-                POSE.join(", ")
-            ),
-        ));
-    }
-    if !poses && shift_at.iter().all(Option::is_none) {
-        return Err((
-            first,
-            format!(
-                "there is no column of shifts: state at least \
- one of {}",
-                SHIFTED.join(", ")
-            ),
-        ));
-    }
-    let mut found: BTreeMap<String, (BTreeMap<usize, [f64; 7]>, usize)> = BTreeMap::new();
-    for (line, row) in lines {
-        let row = cells(row);
-        if row.len() != header.len() {
-            return Err((
-                line,
-                format!(
-                    "there are {} cells, but {} columns: fill every cell, with 0 where \
- nothing moved",
-                    row.len(),
-                    header.len()
-                ),
-            ));
-        }
-        let number = |at: Option<usize>, name: &str| -> Result<f64, (usize, String)> {
-            let Some(at) = at else { return Ok(0.0) };
-            let value = row[at].parse::<f64>().ok().filter(|value| value.abs() <= FAR);
-            value.ok_or_else(|| {
-                (
-                    line,
-                    format!(
-                        "column \"{name}\": expected a number up to {FAR} in magnitude, \
- found \"{}\"",
-                        row[at]
-                    ),
-                )
-            })
-        };
-        let name = &row[stack_at];
-        let (standing, model) = stack_named(name, stacks, models)
-            .map_err(|message| (line, format!("column \"stack\": {message}")))?;
-        let body = column("body").map(|at| row[at].as_str()).filter(|body| !body.is_empty());
-        let body = body
-            .map(|body| body_named(body, name, model))
-            .transpose()
-            .map_err(|message| (line, format!("column \"body\": {message}")))?;
-        if !poses {
-            let mut values = [0.0; 4];
-            for (value, (at, name)) in values.iter_mut().zip(shift_at.into_iter().zip(SHIFTED)) {
-                *value = number(at, name)?;
-            }
-            let [x, y, z, degrees] = values;
-            let begin = all.entry(name.clone()).or_default();
-            begin.shifts.push(own_shift(standing, body, [x, y, z], degrees.to_radians()));
-            (begin.path, begin.line) = ("start.file".to_owned(), Some(line));
+    let columns = Columns::of(header).map_err(|message| (first, message))?;
+    let mut posed = BTreeMap::<String, Posed>::new();
+    for (line, text) in lines {
+        let at_line = |message| (line, message);
+        let row = columns.row(text).map_err(at_line)?;
+        let name = row.text("stack");
+        let in_column = |column: &'static str| move |text| format!("column \"{column}\": {text}");
+        let found = stack_named(name, stacks, models).map_err(in_column("stack"));
+        let (standing, model) = found.map_err(at_line)?;
+        let body = Some(row.text("body")).filter(|body| !body.is_empty());
+        let body = body.map(|body| body_named(body, name, model).map_err(in_column("body")));
+        let body = body.transpose().map_err(at_line)?;
+        if columns.poses {
+            add_pose(&row, model, body, line, &mut posed).map_err(at_line)?;
             continue;
         }
-        let Some(body) = body else {
-            return Err((line, "column \"body\": a pose needs the name of its body".to_owned()));
-        };
-        let mut pose = [0.0; 7];
-        for (value, (at, name)) in pose.iter_mut().zip(pose_at.into_iter().zip(POSE)) {
-            *value = number(at, name)?;
-        }
-        let size = pose[3..].iter().map(|part| part * part).sum::<f64>().sqrt();
-        if (size - 1.0).abs() > 1e-6 {
-            return Err((
-                line,
-                format!(
-                    "columns qw, qx, qy, qz: expected a quaternion of length one, \
- found length {size}"
-                ),
-            ));
-        }
-        let (bodies, last) = found.entry(name.clone()).or_default();
-        *last = line;
-        if bodies.insert(body, pose).is_some() {
-            return Err((
-                line,
-                format!(
-                    "a second pose of body \"{}\" of stack \"{name}\": leave one of \
- them out",
-                    model.stack.parts[body + 1].name
-                ),
-            ));
-        }
+        let [x, y, z, degrees] = row.numbers(SHIFTED).map_err(at_line)?;
+        let begin = all.entry(name.to_owned()).or_default();
+        begin.shifts.push(own_shift(standing, body, [x, y, z], degrees.to_radians()));
+        (begin.path, begin.line) = ("start.file".to_owned(), Some(line));
     }
-    for (name, (bodies, line)) in found {
+    for (name, (bodies, line)) in posed {
         let (_, model) = stack_named(&name, stacks, models).map_err(|message| (line, message))?;
-        let missing = (0..model.stack.parts.len() - 1).find(|body| !bodies.contains_key(body));
-        if let Some(body) = missing {
-            return Err((
-                line,
-                format!(
-                    "stack \"{name}\": there is no pose of body \"{}\"; state the poses \
- of all its bodies",
-                    model.stack.parts[body + 1].name
-                ),
-            ));
+        let parts = &model.stack.parts[1..];
+        if let Some(missing) = (0..parts.len()).find(|body| !bodies.contains_key(body)) {
+            let message = format!(
+                "stack \"{name}\": there is no pose of body \"{}\"; state the poses of all its bodies",
+                parts[missing].name
+            );
+            return Err((line, message));
         }
         let begin = all.entry(name).or_default();
         begin.poses = Some(bodies.into_values().collect());
         (begin.path, begin.line) = ("start.file".to_owned(), Some(line));
     }
     Ok(())
+}
+
+/// Adds the pose of a row.
+fn add_pose(
+    row: &Row<'_>,
+    model: &Model,
+    body: Option<usize>,
+    line: usize,
+    posed: &mut BTreeMap<String, Posed>,
+) -> Result<(), String> {
+    let Some(body) = body else {
+        return Err("column \"body\": a pose needs the name of its body".to_owned());
+    };
+    let pose = row.numbers(POSE)?;
+    let size = pose[3..].iter().map(|part| part * part).sum::<f64>().sqrt();
+    if (size - 1.0).abs() > 1e-6 {
+        return Err(format!(
+            "columns qw, qx, qy, qz: expected a quaternion of length one, found length {size}"
+        ));
+    }
+    let name = row.text("stack");
+    let (bodies, last) = posed.entry(name.to_owned()).or_default();
+    *last = line;
+    match bodies.insert(body, pose) {
+        Some(_) => Err(format!(
+            "a second pose of body \"{}\" of stack \"{name}\": leave one of them out",
+            model.stack.parts[body + 1].name
+        )),
+        None => Ok(()),
+    }
 }

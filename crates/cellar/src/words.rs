@@ -131,9 +131,10 @@ const LISTED: usize = 3;
 fn shock_by_shock(summary: &CellarSummary) -> String {
     let all = &summary.shocks;
     let changes = |shown: &ShownShock| shown.by_themselves + shown.knocked_over > 0;
-    let told = all.iter().filter_map(|shock| Some((shock.shock, shock.shown.as_ref()?)));
-    let told: Vec<_> = told.filter(|(_, shown)| all.len() <= LISTED || changes(shown)).collect();
-    if told.is_empty() {
+    let stated = all.iter().filter_map(|shock| Some((shock.shock, shock.shown.as_ref()?)));
+    let stated: Vec<_> =
+        stated.filter(|(_, shown)| all.len() <= LISTED || changes(shown)).collect();
+    if stated.is_empty() {
         return format!("no stack falls in {} shocks", all.len());
     }
     let clause = |at: usize, shown: &ShownShock| {
@@ -151,13 +152,11 @@ fn shock_by_shock(summary: &CellarSummary) -> String {
             (_, true) => falling(shown.by_themselves, &of, shown.knocked_over),
         }
     };
-    let mut text = String::new();
-    for (at, (number, shown)) in told.into_iter().enumerate() {
+    let stated = stated.into_iter().enumerate().map(|(at, (number, shown))| {
         let shock = if at == 0 { " shock" } else { "" };
-        let joint = if at == 0 { "" } else { "; " };
-        text += &format!("{joint}in the {}{shock} {}", ordinal(number), clause(at, shown));
-    }
-    text
+        format!("in the {}{shock} {}", ordinal(number), clause(at, shown))
+    });
+    stated.collect::<Vec<_>>().join("; ")
 }
 
 /// Returns an ordinal number up to 20.
