@@ -269,8 +269,7 @@ fn of_a_stopped_comparison_the_finished_run_is_kept_and_nothing_is_compared() {
         assert_ne!(document["runs"][0]["name"], document["unfinished"][0]);
         assert!(folder.path().join(&out[6..]).join("report.html").exists());
     }
-    let said =
-        stops_at("2:runs:1", &[&both[..], &["--out=print"]].concat(), folder.path(), true);
+    let said = stops_at("2:runs:1", &[&both[..], &["--out=print"]].concat(), folder.path(), true);
     assert!(!said.contains("Stands:") && !said.contains("stand:"), "{said}");
 }
 

@@ -12,6 +12,7 @@ use barrelstack_report::Stamp;
 ///
 /// # Errors
 /// A message if the date is unknown; each page then states it in place of the date.
+#[expect(clippy::disallowed_methods, reason = "pages state their commit, which enters no result")]
 pub fn stamp_pages(built: &str) -> Result<(), String> {
     let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_else(|_| built.to_owned());
     let stated = || date().unwrap_or_else(|reason| format!("unknown ({reason})"));
