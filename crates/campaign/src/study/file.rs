@@ -178,10 +178,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         return Err(top.inconsistent("intensity", message).into());
     }
     let in_space = scenario.is_spatial() || factors.iter().any(|factor| factor.in_space);
-    let mut correlations = Vec::new();
-    for reader in top.sections("correlation")? {
-        correlations.push(read_correlation(reader, &factors, &correlations)?);
-    }
+    let correlations = read_correlations(&top, &factors)?;
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
     // Cases in space do not run in lockstep, and each takes as long as many cases in a plane.
     let usual = if in_space || matches!(design, Design::Ida(_)) { FEW } else { Sizes::Growing };
@@ -212,6 +209,18 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         hash: 0,
     };
     study.cases = Cases::new(&study);
+    possible(&study, opened)?;
+    study.chunks = Chunks::of(&study);
+    if let Some(fetch) = fetch {
+        hold(&mut study, fetch)?;
+    }
+    let base = study.scenario(&[])?;
+    study.hash = hash(&study, own.then_some(&base))?;
+    Ok(study)
+}
+
+/// Returns an error if the design does not suit the factors, or has too many cases.
+fn possible(study: &Study, opened: &Opened) -> Result<(), StudyError> {
     let refused = |message: String| -> StudyError {
         opened.sources.error(Origin::Whole(0), Problem::Inconsistent { message }).into()
     };
@@ -236,13 +245,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
             "the study has more than {MOST_CASES} cases: use fewer values, or a sampled design"
         )));
     }
-    study.chunks = Chunks::of(&study);
-    if let Some(fetch) = fetch {
-        hold(&mut study, fetch)?;
-    }
-    let base = study.scenario(&[])?;
-    study.hash = hash(&study, own.then_some(&base))?;
-    Ok(study)
+    Ok(())
 }
 
 /// Loads into memory the files of all motions.
@@ -323,6 +326,18 @@ fn dimension_of(measure: IntensityMeasure) -> Option<&'static [Dimension]> {
         "m" => Some(&[Dimension::LENGTH]),
         _ => None,
     }
+}
+
+/// Reads the groups of factors that are correlated with each other.
+fn read_correlations(
+    top: &Reader<'_>,
+    factors: &[Factor],
+) -> Result<Vec<Correlation>, ScenarioError> {
+    let mut groups = Vec::new();
+    for reader in top.sections("correlation")? {
+        groups.push(read_correlation(reader, factors, &groups)?);
+    }
+    Ok(groups)
 }
 
 /// Reads a group of factors that are correlated with each other.
