@@ -54,6 +54,7 @@ mod _native {
     const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
     /// Lets pages state their date.
     #[pymodule_init]
+    #[expect(clippy::unnecessary_wraps, reason = "PyO3 calls it with this type")]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
         // An import does not fail because the date is unknown; pages state the reason.
         let _ = barrelstack::report::stamp_pages("");
