@@ -223,7 +223,7 @@ def table(out, chosen, settings, path):
         "knocked over": lambda fate: fate == FATES[2],
         "falls": lambda fate: fate != FATES[0],
     }
-    names = [name for name in ("ours", "alike", "mujoco") if name in rows[0]]
+    names = [name for name in ("ours", "alike", "mujoco") if all(name in row for row in rows)]
     print(f"{len(chosen)} rooms, {count} stacks")
     for title, of in classes.items():
         for name in names:
@@ -260,10 +260,18 @@ def table(out, chosen, settings, path):
     for name in names:
         touched = sum(bool(row[f"{name} touched_at (s)"]) for row in rows)
         print(f"  touched by another stack, {name}: {touched}")
+    repeated = [row for row in rows if "alike" in row]
+    if repeated:
+        same = [sum(row[name] == row["mujoco"] for row in repeated) for name in ("ours", "alike")]
+        print(
+            f"  {len({row['room'] for row in repeated})} rooms with seats as in MuJoCo, {len(repeated)} stacks: the fate of "
+            f"MuJoCo in {same[0]} as stated, in {same[1]} with these seats"
+        )
     cost(out, chosen, settings)
     if path:
+        fields = list(dict.fromkeys(key for row in rows for key in row))
         with path.open("w", newline="") as file:
-            writer = csv.DictWriter(file, rows[0])
+            writer = csv.DictWriter(file, fields)
             writer.writeheader()
             writer.writerows(rows)
 
