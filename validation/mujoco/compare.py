@@ -107,8 +107,8 @@ def spring_and_damper(law, mass, settings):
     raise ValueError(f"no law {law['kind']}")
 
 
-def build(case, settings):
-    """Builds the model of a case."""
+def describe(case, settings):
+    """Describes the model of a case: bodies, solids and contact pairs."""
     spec = mujoco.MjSpec()
     option = spec.option
     option.timestep = settings["step"]
@@ -177,7 +177,12 @@ def build(case, settings):
             margin=0.0,
             gap=0.0,
         )
-    return spec.compile()
+    return spec
+
+
+def build(case, settings):
+    """Builds the model of a case."""
+    return describe(case, settings).compile()
 
 
 class Fates:
