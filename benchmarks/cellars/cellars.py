@@ -252,11 +252,11 @@ def table(out, chosen, settings, path):
         )
     for levels in range(2, 6):
         of_level = [row for row in rows if row["levels"] == levels]
-        told = [
+        counts = [
             f"{name} {sum(r[name] == FATES[1] for r in of_level)} + {sum(r[name] == FATES[2] for r in of_level)}"
             for name in names
         ]
-        print(f"  {levels} levels, {len(of_level)} stacks, by themselves + knocked over: {'; '.join(told)}")
+        print(f"  {levels} levels, {len(of_level)} stacks, by themselves + knocked over: {'; '.join(counts)}")
     for name in names:
         touched = sum(bool(row[f"{name} touched_at (s)"]) for row in rows)
         print(f"  touched by another stack, {name}: {touched}")
