@@ -1,34 +1,8 @@
-//! Stacks that meet nobody move as each does alone.
+//! Merged stacks that do not touch move as each does alone.
 
 use barrelstack_cellar::Placed;
-use barrelstack_space::Ground;
 
 use crate::common::{demo, on, room};
-
-#[test]
-fn far_apart_each_stack_has_the_bits_of_the_stack_alone() {
-    let scenario = demo(&["stack.levels=2", "run.duration=1 s"]);
-    let turned = demo(&["stack.levels=2", "run.duration=1 s", "stack.azimuth=\"30 deg\""]);
-    let mut stacks: Vec<Placed> = (0..3)
-        .map(|at| Placed::new(&format!("S{at}"), scenario.clone(), [20.0 * f64::from(at), 1.3]))
-        .collect();
-    stacks[2].azimuth = 30_f64.to_radians();
-    let run = on(2, &room(stacks));
-    let ground = Ground::of(&turned).unwrap();
-    for (stack, alone) in run.stacks.iter().zip([&scenario, &scenario, &turned]) {
-        let go_on = &mut |_| std::ops::ControlFlow::Continue(());
-        let own = if std::ptr::eq(alone, &raw const turned) {
-            barrelstack_space::run::run_on(alone, ground.clone(), go_on).unwrap()
-        } else {
-            barrelstack_space::run::run(alone).unwrap()
-        };
-        let fates: Vec<_> = run.bodies[stack.bodies.clone()].iter().map(|body| body.fate).collect();
-        assert_eq!(fates, own.fates[1..], "{}", stack.name);
-        assert_eq!((stack.end_time, &stack.outcome), (own.end_time, &own.outcome));
-        assert!(stack.touched.is_none() && !stack.knocked_over);
-    }
-    assert_eq!(run.merges, 0);
-}
 
 #[test]
 fn merged_without_contact_each_stack_moves_as_alone() {

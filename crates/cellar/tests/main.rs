@@ -9,8 +9,6 @@ mod common;
 
 mod alone;
 mod answer;
-mod dominoes;
-mod impacts;
 mod plan;
 mod sequence;
 mod stacks;

@@ -21,6 +21,7 @@
 
 pub mod cases;
 pub mod counting;
+pub mod dominoes;
 pub mod execute;
 pub mod field;
 pub mod ode;

@@ -13,12 +13,6 @@ pub(crate) fn demo(changes: &[&str]) -> Scenario {
     Scenario::builtin("demo-napa", &changes).unwrap()
 }
 
-/// Returns a free scene of one body.
-pub(crate) fn free(text: &str) -> Scenario {
-    let text = format!("schema = 1\nkind = \"free-spatial\"\n{text}");
-    Scenario::parse("free.toml", &text, &[]).unwrap()
-}
-
 /// Returns a room under the motion of its first stack.
 pub(crate) fn room(stacks: Vec<Placed>) -> Room {
     let ground = Ground::of_spec(&stacks[0].scenario.motion, 1.0).unwrap();
@@ -29,11 +23,6 @@ pub(crate) fn room(stacks: Vec<Placed>) -> Room {
 pub(crate) fn on(threads: usize, room: &Room) -> RoomRun {
     let settings = Settings { threads, ..Settings::default() };
     run(room, &settings, &mut |_| ControlFlow::Continue(())).unwrap()
-}
-
-/// Asserts that two numbers agree within a relative tolerance.
-pub(crate) fn assert_near(found: f64, exact: f64, relative: f64) {
-    assert!((found / exact - 1.0).abs() < relative, "{found} against {exact}");
 }
 
 /// Name of a stack, bits of its poses, of the impulse on it and of its loss of seat, and whether it was knocked over.

@@ -17,6 +17,7 @@ mod racks_along;
 mod regimes;
 mod restitution;
 mod rolling;
+mod rooms;
 mod sliding;
 mod slosh;
 mod solids;
@@ -49,6 +50,7 @@ pub fn all() -> Vec<Problem> {
         space::problems(),
         invariances::problems(),
         symmetry::problems(),
+        rooms::problems(),
         intensity::problems(),
         statistics::problems(),
         fragility::problems(),

@@ -1,15 +1,12 @@
 //! Computes the wave of rows of dominoes: the table and the figure of `validation/dominoes.md`.
 //!
-//! `cargo run --release -p barrelstack-cellar --example dominoes FIGURE.svg`
+//! `cargo run --release -p barrelstack-validation --example dominoes FIGURE.svg`
 #![expect(clippy::print_stdout, reason = "an example prints")]
-
-#[path = "dominoes/row.rs"]
-mod row;
 
 use std::error::Error;
 
 use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
-use row::{DOMINO, Row, theory};
+use barrelstack_validation::dominoes::{DOMINO, Row, theory};
 
 /// Coefficients of friction between dominoes.
 const FRICTION: [f64; 3] = [0.0, 0.2, 0.4];
