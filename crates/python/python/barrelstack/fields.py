@@ -52,6 +52,7 @@ __all__ = [
     "ScaleFields",
     "ScenarioFields",
     "ShapeFields",
+    "ShockFields",
     "SineFields",
     "SolidFields",
     "SolidPartFields",
@@ -566,6 +567,10 @@ class MotionFields(TypedDict, total=False):
     """Scaling of the motion. Default: factor 1."""
     sensitivity: Union[float, Quantity]
     """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
+    sequence: list["ShockFields"]
+    """Shocks of a cellar, one after the other, each with all other fields of `[motion]`, which it replaces: every
+    shock starts from the places in which the one before has left the bodies at rest.
+    """
     similitude: Union[float, Quantity]
     """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
     sine: "SineFields"
@@ -935,6 +940,45 @@ class ShapeFields(TypedDict, total=False):
     """The outlines; where two of them overlap, the mass of the overlap counts twice."""
 
 
+class ShockFields(TypedDict, total=False):
+    """A shock of a sequence: one of `record`, `bundled`, `sine`, `pulse` and `none`, with all other fields of
+    `[motion]`.
+    """
+
+    bundled: Literal["napa-college-2014"]
+    """Record shipped with the program."""
+    component: Union[str, int]
+    """Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`. Default: the first horizontal
+    component.
+    """
+    none: bool
+    """True for ground at rest."""
+    obtain: str
+    """Where to get the record, shown to users who do not have it."""
+    processing: Literal["default", "none"]
+    """Signal processing of the record. Default: default."""
+    pulse: "PulseFields"
+    """A pulse."""
+    record: str
+    """File of a recorded motion, relative to the scenario file."""
+    scale: "ScaleFields"
+    """Scaling of the motion. Default: factor 1."""
+    sensitivity: Union[float, Quantity]
+    """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
+    similitude: Union[float, Quantity]
+    """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""
+    sine: "SineFields"
+    """A harmonic motion."""
+    time_step: Quantity
+    """Time step, only for a file that does not state its time step. Default: the time step of the file."""
+    unit: str
+    """Unit of acceleration, only for a file that does not state its unit. Default: the unit of the file."""
+    vertical: Union[str, Literal[False]]
+    """Vertical component of the same record, or false."""
+    vertical_record: str
+    """File of the vertical motion, relative to the scenario file."""
+
+
 class SineFields(TypedDict, total=False):
     """A harmonic motion."""
 
@@ -1122,7 +1166,8 @@ class TunedMassFields(TypedDict, total=False):
 class UnknownsFields(TypedDict, total=False):
     """Uncertainty of constants that nobody has measured on this stack. Every variant draws a factor of each
     constant, lognormal around the stated value and cut off at three standard deviations, and the whole stack
-    shares the factor; factors of different fields are independent of each other. 0 keeps a constant as stated.
+    shares the factor. Factors are independent of each other, except those of friction if a correlation is
+    stated. 0 keeps a constant as stated.
     """
 
     damping: Union[float, Quantity]
@@ -1143,6 +1188,10 @@ class UnknownsFields(TypedDict, total=False):
     friction_barrel_rack: Union[float, Quantity]
     """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured; the value
     is then the scatter of ln μ between racks and barrels. Default: `friction`.
+    """
+    friction_correlation: Union[float, Quantity]
+    """Correlation of ln μ between any two of these pairs of materials (a wet cellar is wet everywhere, but steel,
+    wood and floors differ in roughness; nobody has measured it, and 0 is an assumption). Default: 0.
     """
     friction_ground: Union[float, Quantity]
     """Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily;
