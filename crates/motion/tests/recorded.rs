@@ -508,5 +508,5 @@ fn dates_of_first_samples_are_read_as_esm_and_tadas_write_them() {
     }
     let unread = with("on a Friday");
     assert_eq!(start(&unread), "none");
-    assert!(unread.warnings.iter().any(|w| w.message.contains("is not a date and time")));
+    assert!(unread.warnings.iter().any(|w| w.message.contains("is not a valid date and time")));
 }
