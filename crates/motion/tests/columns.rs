@@ -373,10 +373,9 @@ fn dates_that_cannot_be_read_are_reported_in_every_format_that_states_them() {
             .collect();
         let after = read(&damaged, file, &ReadOptions::default()).unwrap();
         let warned = |record: &Record| {
-            record
-                .warnings
-                .iter()
-                .any(|warning| warning.message.contains("not a valid date and time of the first sample"))
+            record.warnings.iter().any(|warning| {
+                warning.message.contains("not a valid date and time of the first sample")
+            })
         };
         assert!(!warned(&before), "{file}");
         assert!(warned(&after), "{file}: {:?}", after.warnings);
