@@ -232,7 +232,9 @@ described! {
         pub onset: f64 as "s",
         /// Mean number of stacks that stand before the shock.
         pub stood: f64 as "1",
-        /// Variants in which all stacks that stand before the shock survive it.
+        /// Number of variants in which a stack stands before the shock.
+        pub stood_in: u32,
+        /// Variants in which all stacks that stand before the shock survive it, out of `stood_in`.
         pub all_survive: Count,
         /// Share of the stacks standing before the shock that survive it, over the variants in which one stands; its
         /// interval treats a room as one draw. Null if none stands.
@@ -511,7 +513,8 @@ fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> 
     let one = |(at, (ground, onset)): (usize, (&barrelstack_space::Ground, f64))| {
         let own: Vec<&Case> = all.iter().filter_map(|case| case.shocks.get(at)).collect();
         let total = |of: &dyn Fn(&Case) -> f64| mean(own.iter().map(|case| of(case)));
-        let survive = own.iter().filter(|case| stood(case) > 0).map(|case| {
+        let standing: Vec<&Case> = own.iter().copied().filter(|case| stood(case) > 0).collect();
+        let survive = standing.iter().map(|case| {
             let [own, knocked] = fallen(case).map(f64::from);
             1.0 - (own + knocked) / f64::from(stood(case))
         });
@@ -529,7 +532,8 @@ fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> 
             motion: ground.first.motion.as_ref().map(MotionSummary::of),
             onset,
             stood: total(&|case| f64::from(stood(case))),
-            all_survive: Count::of(&own, |case| fallen(case) == [0, 0]),
+            stood_in: u32::try_from(standing.len()).unwrap_or(u32::MAX),
+            all_survive: Count::of(&standing, |case| fallen(case) == [0, 0]),
             share_survive: (!survive.is_empty()).then(|| Mean::of(&survive)),
             by_themselves: total(&|case| f64::from(fallen(case)[0])),
             knocked_over: total(&|case| f64::from(fallen(case)[1])),

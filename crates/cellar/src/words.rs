@@ -201,9 +201,9 @@ fn survival(shock: &ShockAnswer, of: u32) -> String {
         return "no stack stands before it in any variant".to_owned();
     };
     format!(
-        "all stacks that stand before it survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
+        "where any stack stands before it, all of them survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
          are knocked over; {} of them survive (95 % interval {} to {}). {barrels} barrels fall",
-        share(&shock.all_survive, of),
+        survived(shock),
         shock.stood,
         shock.by_themselves,
         shock.knocked_over,
@@ -211,6 +211,14 @@ fn survival(shock: &ShockAnswer, of: u32) -> String {
         percent(survive.interval[0]),
         percent(survive.interval[1])
     )
+}
+
+/// Returns the variants in which all stacks that stand before a shock survive it, out of those in which any stands.
+fn survived(shock: &ShockAnswer) -> String {
+    match shock.stood_in {
+        1 => format!("{} of 1 variant", shock.all_survive.of_variants),
+        many => share(&shock.all_survive, many),
+    }
 }
 
 /// Returns a number of things that is whole.
@@ -249,10 +257,10 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
         return Some(format!("No stack stands after the main shock in any of {of} variants."));
     };
     Some(format!(
-        "Of {stacks} stacks {:.1} stand after the main shock on average; {strength} is survived by all of them in {}, and by {} of \
-         them on average (95 % interval {} to {}).",
+        "Of {stacks} stacks {:.1} stand after the main shock on average. Where any stands, {strength} is survived by all of \
+         them in {}, and by {} of them on average (95 % interval {} to {}).",
         shock.stood,
-        share(&shock.all_survive, of),
+        survived(shock),
         percent(survive.mean),
         percent(survive.interval[0]),
         percent(survive.interval[1])

@@ -41,6 +41,12 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     let [first, second] = &summary.shocks[..] else { panic!("{:?}", summary.shocks) };
     assert_eq!(first.stood, 2.0);
     assert!((second.stood - (2.0 - first.by_themselves - first.knocked_over)).abs() < 1e-12);
+    // A variant in which no stack stands before a shock is none in which all survive it.
+    for shock in [first, second] {
+        let expected = f64::from(shock.all_survive.of_variants) / f64::from(shock.stood_in);
+        assert!(shock.stood_in <= summary.counted);
+        assert_eq!(shock.all_survive.share, (shock.stood_in > 0).then_some(expected));
+    }
     let own = first.by_themselves + second.by_themselves;
     let knocked = first.knocked_over + second.knocked_over;
     assert_eq!((summary.room.by_themselves, summary.room.knocked_over), (own, knocked));
