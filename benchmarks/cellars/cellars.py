@@ -228,7 +228,7 @@ def table(out, chosen, settings, path):
     for title, of in classes.items():
         for name in names:
             many = sum(of(row[name]) for row in rows)
-            print(f"  {title}, {name}: {compare.told(many, count)}")
+            print(f"  {title}, {name}: {compare.summarized(many, count)}")
         for name in names[:-1]:
             only = sum(of(row[name]) and not of(row["mujoco"]) for row in rows)
             other = sum(of(row["mujoco"]) and not of(row[name]) for row in rows)

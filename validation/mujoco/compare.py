@@ -373,7 +373,7 @@ def fell(one):
     return one["kind"] == "collapse"
 
 
-def told(many, of):
+def summarized(many, of):
     """Formats a share with its interval."""
     low, high = wilson(many, of)
     return f"{many} of {of}, {100 * many / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
@@ -391,7 +391,7 @@ def alone(of_one):
     counts = sorted(((firsts.count(first), first) for first in set(firsts)), reverse=True)
     pace = sum(one["seconds"] for one in of_one) / sum(one["end_time"] for one in of_one)
     return (
-        f"{told(len(fallen), len(of_one))}; first {', '.join(f'{first} {count}' for count, first in counts)}; "
+        f"{summarized(len(fallen), len(of_one))}; first {', '.join(f'{first} {count}' for count, first in counts)}; "
         f"seat lost at {middle([one['time'] for one in fallen])} s, {middle([one['fallen'] for one in fallen], 0)} "
         f"barrels fall (medians); {1e3 * pace:.0f} ms for a second"
     )

@@ -1,12 +1,14 @@
 //! The answer for a cellar: all its variants, and the run that is shown.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Mutex;
 
 use barrelstack::Progress;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{Advance, RunChoice};
 
+use crate::kept::{Kept, Part};
 use crate::result::RoomRun;
 use crate::sample::{Case, CellarFailure, Prepared};
 use crate::scenario::Cellar;
@@ -40,20 +42,31 @@ pub fn answer(
     choice: RunChoice,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, CellarFailure> {
+    answer_with(cellar, choice, None, observer)
+}
+
+/// Answers as [`answer`] does, with the results of variants in a folder: those that are there are not run again, and new
+/// ones are added as soon as they are finished.
+///
+/// # Errors
+/// As for [`answer`]; also if a file of the folder is that of another cellar, or cannot be written.
+pub fn answer_with(
+    cellar: &Cellar,
+    choice: RunChoice,
+    folder: Option<&Path>,
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> Result<Answer, CellarFailure> {
     let prepared = Prepared::new(cellar)?;
+    let kept = folder.map(|folder| Kept::open(folder, &prepared)).transpose()?;
     let numbers: Vec<u32> = match choice {
         RunChoice::Alone(_) => Vec::new(),
         RunChoice::Typical | RunChoice::Number(_) if prepared.count() == 0 => Vec::new(),
         RunChoice::Typical | RunChoice::Number(_) => (0..=prepared.count()).collect(),
     };
-    let observer = Mutex::new(observer);
-    let report = |reached: Advance| match observer.lock() {
-        Ok(mut observer) => observer(reached),
-        // Another thread has panicked; this work is no longer needed.
-        Err(_) => ControlFlow::Break(()),
-    };
+    let report = shared(observer);
     let of = numbers.len();
-    let found = prepared.cases(&numbers, &|done| report(Advance::Variants { done, of }))?;
+    let variants = |done| report(Advance::Variants { done, of });
+    let found = prepared.cases(&numbers, kept.as_ref(), &variants)?;
     let mut cases: Vec<Case> = found.into_iter().flatten().collect();
     let done = cases.len();
     let number = match choice {
@@ -78,6 +91,39 @@ pub fn answer(
     }
     summary.warnings.extend(summary.unfinished.as_ref().map(Unfinished::warning));
     Ok(Answer { prepared, cases, case, shown, summary })
+}
+
+/// Runs one part of the variants of a cellar, keeps their results in a folder, and returns the number of variants of the part
+/// that are there at the end, and of all its variants.
+///
+/// # Errors
+/// As for [`answer_with`].
+pub fn run_part(
+    cellar: &Cellar,
+    part: Part,
+    folder: &Path,
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> Result<[usize; 2], CellarFailure> {
+    let prepared = Prepared::new(cellar)?;
+    let kept = Kept::open(folder, &prepared)?;
+    let numbers: Vec<u32> = (0..=prepared.count()).filter(|number| part.has(*number)).collect();
+    let of = numbers.len();
+    let report = shared(observer);
+    let variants = |done| report(Advance::Variants { done, of });
+    let found = prepared.cases(&numbers, Some(&kept), &variants)?;
+    Ok([found.iter().flatten().count(), of])
+}
+
+/// Returns an observer that several threads may call.
+pub(crate) fn shared<'a>(
+    observer: &'a mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> impl Fn(Advance) -> ControlFlow<()> + Sync + 'a {
+    let observer = Mutex::new(observer);
+    move |reached| match observer.lock() {
+        Ok(mut observer) => observer(reached),
+        // Another thread has panicked; this work is no longer needed.
+        Err(_) => ControlFlow::Break(()),
+    }
 }
 
 impl Answer {

@@ -14,12 +14,14 @@
 // (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+pub mod aftershocks;
 mod answer;
 mod collect;
 mod contact_kinds;
 pub mod geometry;
 mod history;
 mod island;
+pub mod kept;
 mod merge;
 mod nearby;
 pub mod plan;
@@ -35,7 +37,7 @@ pub mod summary;
 pub mod words;
 mod world;
 
-pub use answer::{Answer, answer};
+pub use answer::{Answer, answer, answer_with, run_part};
 pub use plan::Plan;
 pub use result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, StackRef, Touch};
 pub use room::{MOST_BODIES, Obstacle, Placed, Room, RoomFailure, Settings, Shift};

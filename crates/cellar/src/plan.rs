@@ -10,7 +10,7 @@ use barrelstack_space::{Stack, mesh};
 
 use crate::geometry::{Convex, Grid, PASSAGE, Point};
 use crate::scenario::{Cellar, Door, RoomSpec, Side, Standing};
-use crate::start::begins;
+use crate::start::starts;
 use crate::words::plural;
 
 /// Depth (m) in front of a door that is to stay free, so that a person can enter.
@@ -88,6 +88,10 @@ described! {
         pub barrels: u64,
         /// Volume of the wine.
         pub wine: f64 as "m3",
+        /// Number of shocks of the motion.
+        pub shocks: usize,
+        /// True if all bodies start as built; false if places from which some start are stated.
+        pub as_built: bool,
         /// Area of the room for each barrel.
         pub area_per_barrel: f64 as "m2",
         /// Shortest distance between a stack and a side of the room; null if there is no wall.
@@ -160,7 +164,7 @@ impl Plan {
             .map(|one| models[one.model].footprint.placed(one.at, one.azimuth))
             .collect();
         let mut problems = Vec::new();
-        if let Err(error) = begins(&cellar.start, &cellar.host, &stacks, &models) {
+        if let Err(error) = starts(&cellar.start, &cellar.host, &stacks, &models) {
             problems.push((error, Vec::new()));
         }
         let nearest_stacks = neighbors(cellar, &stacks, &footprints, &mut problems);
@@ -211,6 +215,8 @@ impl Plan {
             stacks: stacks.len(),
             barrels,
             wine,
+            shocks: 1 + cellar.later.len(),
+            as_built: cellar.start.is_as_built(),
             area_per_barrel: cellar.room.length * cellar.room.width / barrels.max(1) as f64,
             nearest_wall,
             nearest_stacks,
@@ -294,6 +300,14 @@ impl PlanSummary {
                 "A path of {PASSAGE} m leads from the place \"{}\" to a door.",
                 place.name
             ));
+        }
+        if self.shocks > 1 {
+            all.push(format!("The motion is a sequence of {} shocks.", self.shocks));
+        }
+        if !self.as_built {
+            all.push(
+                "Bodies start from stated places; the plan shows the stacks as built.".to_owned(),
+            );
         }
         all
     }

@@ -29,6 +29,7 @@ pub fn picture(answer: &Answer) -> FloorPlan {
         _ if summary.unfinished.is_some() => RegionKind::Stands,
         "falls-by-itself" => RegionKind::Falls,
         "knocked-over" => RegionKind::Knocked,
+        "fallen-before" => RegionKind::Down,
         _ => RegionKind::Stands,
     };
     let counted = counted(cases);
@@ -205,7 +206,7 @@ fn provenance(answer: &Answer) -> Vec<(String, String)> {
         ("cellar".to_owned(), summary.plan.cellar_hash.clone()),
         ("variants".to_owned(), summary.counted.to_string()),
     ];
-    rows.extend(summary.provenance.iter().map(|step| ("motion".to_owned(), step.clone())));
+    rows.extend(summary.provenance.iter().map(|step| ("source".to_owned(), step.clone())));
     rows
 }
 
@@ -213,7 +214,8 @@ fn times(range: Option<&Range>, of: u32) -> Cell {
     Cell::maybe(range.map(|range| span(range, of, 1, "s")))
 }
 
-fn count(count: &Count) -> Cell {
+/// Returns a share of variants with its interval.
+pub(crate) fn count(count: &Count) -> Cell {
     Cell::text(match count.share {
         Some(share) => {
             let [low, high] = count.interval.map(percent);
@@ -318,7 +320,7 @@ pub fn shocks(summary: &CellarSummary) -> Table {
                 let shares: Vec<String> = shares.map(percent).collect();
                 Cell::maybe((!shares.is_empty()).then(|| shares.join(", ")))
             }),
-            ("bodies still move at its end", "", &|one| count(&one.restless)),
+            ("bodies still move at its end", "", &|one| count(&one.still_moving)),
         ],
     )
 }

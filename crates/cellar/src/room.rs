@@ -22,6 +22,9 @@ pub struct Placed {
     /// [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest; losses of seats still count from the places as
     /// built, so a seat that was lost before is lost at time zero. `None` to start as built.
     pub start: Option<Vec<[f64; 7]>>,
+    /// `true` if the poses of `start` are those in which an earlier run of the same room has left the bodies, which may
+    /// press into each other by any depth; overlaps of stated poses are an error.
+    pub carried_on: bool,
     /// Shifts of bodies before the run, in this order, from the poses at rest or from those of `start`.
     pub shifts: Vec<Shift>,
 }
@@ -41,7 +44,8 @@ pub struct Shift {
 impl Placed {
     /// Creates a stack whose axes are those of the room, at a position (m).
     pub fn new(name: &str, scenario: Scenario, at: [f64; 2]) -> Self {
-        Self { name: name.to_owned(), scenario, at, azimuth: 0.0, start: None, shifts: Vec::new() }
+        let (azimuth, start, shifts) = (0.0, None, Vec::new());
+        Self { name: name.to_owned(), scenario, at, azimuth, start, carried_on: false, shifts }
     }
 }
 

@@ -15,15 +15,17 @@ use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::{Drive, Spatial};
 use barrelstack_input::fnv1a;
 use barrelstack_space::Ground;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Convex, Grid};
+use crate::kept::Kept;
 use crate::plan::{Obstacles, Plan, moved, outline_in_plan};
 use crate::result::{BodyEnd, RoomRun, StackEnd};
 use crate::room::{Obstacle, Placed, Room, RoomFailure, Settings};
-use crate::run::{Advance, run};
+use crate::run::{Advance, check_overlaps, run};
 use crate::scenario::{Cellar, Standing};
-use crate::sequence::{after, goes_on, joined};
-use crate::start::{Begin, begins};
+use crate::sequence::{after, can_continue, joined};
+use crate::start::{StackStart, starts};
 
 /// Error of a cellar that is to be run.
 #[derive(Debug, thiserror::Error)]
@@ -37,6 +39,14 @@ pub enum CellarFailure {
     /// The room cannot be run.
     #[error(transparent)]
     Room(#[from] RoomFailure),
+    /// The result of a variant cannot be kept, or one that was kept cannot be used.
+    #[error("{path}: {reason}; remove the file, or keep the results in another folder")]
+    Kept {
+        /// Path of the file or folder.
+        path: String,
+        /// The reason.
+        reason: String,
+    },
 }
 
 impl From<GroundError> for CellarFailure {
@@ -58,9 +68,12 @@ pub struct Prepared {
     pub onset: f64,
     /// The shocks of a sequence after the first.
     pub later: Vec<Later>,
-    begins: BTreeMap<String, Begin>,
+    starts: BTreeMap<String, StackStart>,
     obstacles: Vec<Obstacle>,
 }
+
+/// Callback that receives the progress of a run and may stop it.
+pub type Observer<'a> = &'a mut dyn FnMut(&Advance) -> ControlFlow<()>;
 
 /// A shock after the first.
 #[derive(Clone, Debug)]
@@ -104,9 +117,9 @@ impl Prepared {
             Ok(Later { onset: onset_of(&ground), ground })
         };
         let later = cellar.later.iter().map(later).collect::<Result<_, _>>()?;
-        let begins = begins(&cellar.start, &cellar.host, &plan.stacks, &plan.models)?;
+        let starts = starts(&cellar.start, &cellar.host, &plan.stacks, &plan.models)?;
         let obstacles = obstacles(&cellar)?;
-        Ok(Self { cellar, plan, ground, onset, later, begins, obstacles })
+        Ok(Self { cellar, plan, ground, onset, later, starts, obstacles })
     }
 
     /// Returns the number of variants, without the room as stated.
@@ -120,14 +133,15 @@ impl Prepared {
     /// If the motion cannot be read.
     pub fn room(&self, variant: u32) -> Result<Room, CellarFailure> {
         let stacks = self.plan.stacks.iter().map(|standing| {
-            let begin = self.begins.get(&standing.name).cloned().unwrap_or_default();
+            let stated = self.starts.get(&standing.name).cloned().unwrap_or_default();
             Ok(Placed {
                 name: standing.name.clone(),
                 scenario: self.drawn(standing, variant)?,
                 at: standing.at,
                 azimuth: standing.azimuth,
-                start: begin.poses,
-                shifts: begin.shifts,
+                start: stated.poses,
+                carried_on: false,
+                shifts: stated.shifts,
             })
         });
         Ok(Room {
@@ -173,28 +187,68 @@ impl Prepared {
         &self,
         variant: u32,
         threads: usize,
-        observer: &mut dyn FnMut(&Advance) -> ControlFlow<()>,
+        observer: Observer<'_>,
     ) -> Result<RoomRun, CellarFailure> {
-        let settings = Settings { threads, frames: true };
-        let mut room = self.room(variant)?;
+        let (room, first) = self.first(variant, threads, observer)?;
+        self.continued(room, first, threads, observer)
+    }
+
+    /// Runs the first shock of a variant with frames, and returns its room as well.
+    ///
+    /// # Errors
+    /// As for [`Prepared::run`].
+    pub(crate) fn first(
+        &self,
+        variant: u32,
+        threads: usize,
+        observer: Observer<'_>,
+    ) -> Result<(Room, RoomRun), CellarFailure> {
+        let room = self.room(variant)?;
         self.check_kept(&room)?;
+        let settings = Settings { threads, frames: true };
         let first = run(&room, &settings, observer).map_err(|failure| self.placed(failure))?;
-        let mut shocks = vec![first];
+        Ok((room, first))
+    }
+
+    /// Runs the later shocks after the first of a room, and returns the runs of all shocks as one.
+    ///
+    /// # Errors
+    /// As for [`Prepared::run`].
+    pub(crate) fn continued(
+        &self,
+        mut room: Room,
+        first: RoomRun,
+        threads: usize,
+        observer: Observer<'_>,
+    ) -> Result<RoomRun, CellarFailure> {
+        if self.later.is_empty() {
+            return Ok(first);
+        }
+        let settings = Settings { threads, frames: true };
+        let (mut from, mut shocks) = (first.end_time, Vec::<RoomRun>::new());
         for Later { ground, .. } in &self.later {
-            let Some(before) = shocks.last().filter(|run| goes_on(run)) else { break };
+            let before = shocks.last().unwrap_or(&first);
+            if !can_continue(before) {
+                break;
+            }
             room = after(Room { ground: ground.clone(), ..room }, before);
-            let from: f64 = shocks.iter().map(|run| run.end_time).sum();
             let mut look = |now: &Advance| {
                 let [time, end_time] = [now.time, now.end_time].map(|time| from + time);
                 observer(&Advance { time, end_time, ..now.clone() })
             };
-            shocks.push(run(&room, &settings, &mut look)?);
+            let next = run(&room, &settings, &mut look)?;
+            from += next.end_time;
+            shocks.push(next);
         }
-        match shocks.len() {
-            0 | 1 => shocks.pop(),
-            _ => joined(shocks),
-        }
-        .ok_or(CellarFailure::Room(RoomFailure::Empty))
+        Ok(joined(first, shocks))
+    }
+
+    /// Checks that the stacks as stated do not overlap in the places from which they start.
+    ///
+    /// # Errors
+    /// If they overlap, or a stack cannot be built or does not stand.
+    pub fn check_start(&self) -> Result<(), CellarFailure> {
+        check_overlaps(&self.room(0)?).map_err(|failure| self.placed(failure))
     }
 
     /// Checks the memory for the frames of all shocks, which are kept by shock and as one run.
@@ -217,59 +271,49 @@ impl Prepared {
         let RoomFailure::Overlap { first, second, depth } = &failure else {
             return failure.into();
         };
-        let of = |body: &String| self.begins.get(body.split(' ').next().unwrap_or_default());
-        let Some(begin) =
-            of(first).into_iter().chain(of(second)).max_by_key(|begin| (&begin.path, begin.line))
+        let of = |body: &String| self.starts.get(body.split(' ').next().unwrap_or_default());
+        let Some(stated) = of(first)
+            .into_iter()
+            .chain(of(second))
+            .max_by_key(|stated| (&stated.path, stated.line))
         else {
             return failure.into();
         };
-        let line = begin.line.map_or_else(String::new, |line| format!("line {line} of the file: "));
+        let line =
+            stated.line.map_or_else(String::new, |line| format!("line {line} of the file: "));
         let message = format!(
             "{line}\"{first}\" and \"{second}\" overlap by {:.1} mm at the start: shift them apart, or shift the bodies that \
              they carry or rest on as well",
             1e3 * depth
         );
-        self.cellar.host.error(&[&begin.path], message).into()
+        self.cellar.host.error(&[&stated.path], message).into()
     }
 
-    /// Runs variants, several at a time; `None` for one that was interrupted.
+    /// Runs variants, several at a time; `None` for one that was interrupted. Results that are kept already are read, and
+    /// new ones are kept as soon as they are finished.
     ///
     /// The observer receives the number of finished variants, from several threads, and may stop the work.
     ///
     /// # Errors
-    /// If a variant cannot be run.
+    /// If a variant cannot be run, or its result cannot be kept.
     pub fn cases(
         &self,
         numbers: &[u32],
+        kept: Option<&Kept>,
         observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
     ) -> Result<Vec<Option<Case>>, CellarFailure> {
-        let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-        // A single room takes all cores by itself.
-        let threads = usize::from(numbers.len() > 1);
-        let work = |number: &u32| -> Result<Option<Case>, CellarFailure> {
-            let report = |done: usize| {
-                if observer(done).is_break() {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-                if stopped.load(Ordering::Relaxed) {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            };
-            if report(done.load(Ordering::Relaxed)).is_break() {
-                return Ok(None);
+        each(numbers, observer, &|number, threads, look| {
+            if let Some(case) = kept.map_or(Ok(None), |kept| kept.read(number))? {
+                return Ok(Some(case));
             }
-            let mut look = |_: &Advance| report(done.load(Ordering::Relaxed));
-            let run = self.run(*number, threads, &mut look)?;
+            let run = self.run(number, threads, look)?;
             if run.interrupted {
                 return Ok(None);
             }
-            let case = self.case(*number, &run);
-            let _ = report(done.fetch_add(1, Ordering::Relaxed) + 1);
+            let case = self.case(number, &run);
+            kept.map_or(Ok(()), |kept| kept.write(&case))?;
             Ok(Some(case))
-        };
-        pool::map(numbers, work, &|_| ()).into_iter().collect()
+        })
     }
 
     /// Returns the result of a run of a variant.
@@ -311,7 +355,7 @@ impl Prepared {
                 .collect(),
             map: map.cells().to_vec(),
             end_time: run.end_time,
-            restless: run.stacks.iter().filter(|stack| !stack.rests()).count(),
+            still_moving: run.stacks.iter().filter(|stack| !stack.rests()).count(),
             stacks,
             warnings: run.warnings.clone(),
             shocks: Vec::new(),
@@ -417,6 +461,46 @@ impl Prepared {
     }
 }
 
+/// Work on one variant, with a number of threads; `None` if it was interrupted.
+pub(crate) type OfVariant<'a, T> =
+    &'a (dyn Fn(u32, usize, Observer<'_>) -> Result<Option<T>, CellarFailure> + Sync);
+
+/// Works on variants, several at a time, like [`Prepared::cases`].
+///
+/// # Errors
+/// The first error of the work.
+pub(crate) fn each<T: Send>(
+    numbers: &[u32],
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+    one: OfVariant<'_, T>,
+) -> Result<Vec<Option<T>>, CellarFailure> {
+    let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    // A single room takes all cores by itself.
+    let threads = usize::from(numbers.len() > 1);
+    let report = |done: usize| {
+        if observer(done).is_break() {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        if stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let work = |number: &u32| {
+        if report(done.load(Ordering::Relaxed)).is_break() {
+            return Ok(None);
+        }
+        let mut look = |_: &Advance| report(done.load(Ordering::Relaxed));
+        let result = one(*number, threads, &mut look)?;
+        if result.is_some() {
+            let _ = report(done.fetch_add(1, Ordering::Relaxed) + 1);
+        }
+        Ok(result)
+    };
+    pool::map(numbers, work, &|_| ()).into_iter().collect()
+}
+
 /// Resolution (s) of the time from which on an aisle is blocked.
 const BLOCKED: f64 = 0.25;
 
@@ -497,7 +581,7 @@ fn set_friction(law: &mut Interface, wanted: f64) {
 }
 
 /// Result of one variant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// Number of the variant; 0 is the room as stated.
     pub variant: u32,
@@ -516,7 +600,7 @@ pub struct Case {
     /// Time (s) at which the last body came to rest.
     pub end_time: f64,
     /// Number of stacks of which a body still moved at the end.
-    pub restless: usize,
+    pub still_moving: usize,
     /// Warnings, one sentence each, with the name of the stack that a warning concerns.
     pub warnings: Vec<(Option<String>, String)>,
     /// For a sequence, the results of its shocks, each with its own clock; empty for a single shock.
@@ -524,12 +608,12 @@ pub struct Case {
 }
 
 /// A stack in one variant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StackCase {
     /// `false` if its computation failed.
     pub valid: bool,
     /// `true` if it had fallen before the run; it does not fall again.
-    pub down: bool,
+    pub fallen_before: bool,
     /// Time (s) of the first loss of seat, if the stack falls.
     pub fell_at: Option<f64>,
     /// `true` if it falls after a body of another stack touched it.
@@ -556,7 +640,7 @@ impl StackCase {
 }
 
 /// An aisle in one variant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AisleCase {
     /// Time (s) from the start of the shaking to the first barrel whose middle is above the aisle.
     pub first: Option<f64>,
@@ -569,7 +653,7 @@ pub struct AisleCase {
 }
 
 /// A wall or column in one variant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObstacleCase {
     /// `true` if a body struck it.
     pub struck: bool,
@@ -582,7 +666,7 @@ pub struct ObstacleCase {
 fn stack_case(run: &RoomRun, end: &StackEnd) -> StackCase {
     let bodies = &run.bodies[end.bodies.clone()];
     let collapsed = matches!(end.outcome, Outcome::Collapse { .. });
-    let (down, falls) = (collapsed && end.was_down(), collapsed && !end.was_down());
+    let (fallen_before, falls) = (collapsed && end.was_down(), collapsed && !end.was_down());
     let fallen: Vec<_> = bodies
         .iter()
         .filter(|body| body.kind == PartKind::Barrel)
@@ -593,7 +677,7 @@ fn stack_case(run: &RoomRun, end: &StackEnd) -> StackCase {
     };
     StackCase {
         valid: !matches!(end.outcome, Outcome::Invalid { .. }),
-        down,
+        fallen_before,
         fell_at: end.lost_seat.map(|(time, _)| time).filter(|_| falls),
         knocked: falls && end.knocked_over,
         touched: end.touched.map(|touch| (touch.time, run.bodies[touch.by].stack, touch.impulse)),

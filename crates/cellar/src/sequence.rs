@@ -1,6 +1,7 @@
 //! Sequences of shocks: the room after one shock, in which the next starts, and the runs of all shocks as one.
 
 use barrelstack::outcome::Outcome;
+use barrelstack_space::Fate;
 
 use crate::island::plus;
 use crate::result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, Touch};
@@ -13,30 +14,30 @@ pub fn after(mut room: Room, run: &RoomRun) -> Room {
     for (placed, stack) in room.stacks.iter_mut().zip(&run.stacks) {
         let own = run.bodies[stack.bodies.clone()].iter().map(|body| body.own);
         placed.start = Some(own.collect());
+        placed.carried_on = true;
         placed.shifts.clear();
     }
     room
 }
 
 /// `true` if another shock can follow a run: it was not stopped, and its computation did not fail.
-pub(crate) fn goes_on(run: &RoomRun) -> bool {
+pub(crate) fn can_continue(run: &RoomRun) -> bool {
     let valid = |stack: &StackEnd| !matches!(stack.outcome, Outcome::Invalid { .. });
     !run.interrupted && run.stacks.iter().all(valid)
 }
 
-/// Returns the runs of the shocks of a sequence as one run, whose clock runs on without the quiet between them:
-/// every shock starts at the end of the one before.
-pub(crate) fn joined(mut shocks: Vec<RoomRun>) -> Option<RoomRun> {
-    for at in 1..shocks.len() {
-        let (before, after) = shocks.split_at_mut(at);
-        keep_fallen(&before[at - 1], &mut after[0]);
-    }
-    let mut all = shocks.first()?.clone();
-    for next in &shocks[1..] {
-        add(&mut all, next);
+/// Returns the runs of the first shock and of the later ones as one run, whose clock runs on without the quiet between
+/// them: every shock starts at the end of the one before.
+pub(crate) fn joined(first: RoomRun, later: Vec<RoomRun>) -> RoomRun {
+    let mut all = first.clone();
+    let mut shocks = vec![first];
+    for mut next in later {
+        keep_fallen(&shocks[shocks.len() - 1], &mut next);
+        add(&mut all, &next);
+        shocks.push(next);
     }
     all.shocks = shocks;
-    Some(all)
+    all
 }
 
 /// A stack or a body that has fallen in an earlier shock has fallen at time zero, even if it stands in its place again.
@@ -44,7 +45,7 @@ fn keep_fallen(before: &RoomRun, run: &mut RoomRun) {
     for (old, new) in before.stacks.iter().zip(&mut run.stacks) {
         if let (Outcome::Collapse { .. }, Some((_, body))) = (&old.outcome, old.lost_seat) {
             (new.lost_seat, new.knocked_over) = (Some((0.0, body)), false);
-            if !matches!(new.outcome, Outcome::Invalid { .. } | Outcome::Interrupted) {
+            if !matches!(new.outcome, Outcome::Invalid { .. }) {
                 new.outcome = old.outcome.clone();
             }
         }
@@ -59,7 +60,10 @@ fn keep_fallen(before: &RoomRun, run: &mut RoomRun) {
 /// Adds a run to the runs before it.
 fn add(all: &mut RoomRun, next: &RoomRun) {
     let from = all.end_time;
-    all.bodies.iter_mut().zip(&next.bodies).for_each(|(one, next)| add_body(one, next, from));
+    let stood: Vec<bool> = all.stacks.iter().map(|stack| stack.lost_seat.is_none()).collect();
+    for (one, next) in all.bodies.iter_mut().zip(&next.bodies) {
+        add_body(one, next, from, stood[one.stack]);
+    }
     all.stacks.iter_mut().zip(&next.stacks).for_each(|(one, next)| add_stack(one, next, from));
     for meeting in &next.meetings {
         match all.meetings.iter_mut().find(|one| one.stacks == meeting.stacks) {
@@ -87,15 +91,28 @@ fn add(all: &mut RoomRun, next: &RoomRun) {
     }
 }
 
-fn add_body(all: &mut BodyEnd, next: &BodyEnd, from: f64) {
-    let (left, fell, drop) = (all.fate.left_seat, all.fate.fell_at, all.fate.drop);
-    let force = all.fate.fall_force;
-    all.fate = next.fate;
-    all.fate.left_seat =
-        left.or(next.fate.left_seat.map(|(time, loss, heading)| (from + time, loss, heading)));
-    all.fate.fell_at = fell.or(next.fate.fell_at.map(|time| from + time));
-    all.fate.drop = drop.max(next.fate.drop);
-    all.fate.fall_force = force.max(next.fate.fall_force);
+/// Adds the end of a body of a stack that stood before the shock, or did not.
+fn add_body(all: &mut BodyEnd, next: &BodyEnd, from: f64, stood: bool) {
+    let (one, two) = (all.fate, next.fate);
+    let left = two.left_seat.map(|(time, loss, heading)| (from + time, loss, heading));
+    all.fate = Fate {
+        left_seat: one.left_seat.or(left),
+        fell_at: one.fell_at.or(two.fell_at.map(|time| from + time)),
+        drop: one.drop.max(two.drop),
+        fall_force: one.fall_force.max(two.fall_force),
+        whole_run: one.whole_run.or_larger(two.whole_run),
+        ..two
+    };
+    if stood {
+        all.fate.peak_slip = [0, 1].map(|axis| one.peak_slip[axis].max(two.peak_slip[axis]));
+        all.fate.peak_uplift = one.peak_uplift.max(two.peak_uplift);
+        all.fate.until_loss = one.until_loss.or_larger(two.until_loss);
+    } else {
+        all.fate.peak_slip = one.peak_slip;
+        all.fate.peak_uplift = one.peak_uplift;
+        all.fate.until_loss = one.until_loss;
+        all.fate.moved_at_collapse = one.moved_at_collapse;
+    }
     (all.to, all.own) = (next.to, next.own);
 }
 
@@ -112,7 +129,7 @@ fn add_stack(all: &mut StackEnd, next: &StackEnd, from: f64) {
         all.lost_seat = next.lost_seat.map(|(time, body)| (from + time, body));
         all.knocked_over = next.knocked_over;
     }
-    if stood || matches!(next.outcome, Outcome::Invalid { .. } | Outcome::Interrupted) {
+    if stood || matches!(next.outcome, Outcome::Invalid { .. }) {
         all.outcome = next.outcome.clone();
     }
     all.first_fall = all.first_fall.or(next.first_fall.map(|time| from + time));

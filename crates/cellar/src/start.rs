@@ -105,7 +105,7 @@ impl StartSpec {
 
 /// Where a stack starts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Begin {
+pub(crate) struct StackStart {
     /// Poses of all bodies.
     pub(crate) poses: Option<Vec<[f64; 7]>>,
     /// Shifts after that.
@@ -120,12 +120,12 @@ pub(crate) struct Begin {
 ///
 /// # Errors
 /// If the file cannot be read, or a stack or a body is unknown.
-pub(crate) fn begins(
+pub(crate) fn starts(
     start: &StartSpec,
     host: &Host,
     stacks: &[Standing],
     models: &[Model],
-) -> Result<BTreeMap<String, Begin>, ScenarioError> {
+) -> Result<BTreeMap<String, StackStart>, ScenarioError> {
     let mut all = BTreeMap::new();
     if let Some(file) = &start.file {
         let wrong = |message: String| host.error(&["start.file"], message);
@@ -151,9 +151,9 @@ pub(crate) fn begins(
         let body = shift.body.as_deref().map(|body| body_named(body, &shift.stack, model));
         let body = body.transpose().map_err(|message| wrong(("body", message)))?;
         let own = own_shift(standing, body, shift.by, shift.turn);
-        let begin: &mut Begin = all.entry(shift.stack.clone()).or_default();
-        begin.shifts.push(own);
-        (begin.path, begin.line) = (path, None);
+        let stated: &mut StackStart = all.entry(shift.stack.clone()).or_default();
+        stated.shifts.push(own);
+        (stated.path, stated.line) = (path, None);
     }
     Ok(all)
 }
@@ -295,7 +295,7 @@ fn of_file(
     text: &str,
     stacks: &[Standing],
     models: &[Model],
-    all: &mut BTreeMap<String, Begin>,
+    all: &mut BTreeMap<String, StackStart>,
 ) -> Result<(), (usize, String)> {
     let lines = (1..).zip(text.trim_start_matches('\u{feff}').lines());
     let mut lines = lines.filter(|(_, line)| !line.trim().is_empty());
@@ -304,7 +304,7 @@ fn of_file(
         return Err((1, message.to_owned()));
     };
     let columns = Columns::of(header).map_err(|message| (first, message))?;
-    let mut posed = BTreeMap::<String, Posed>::new();
+    let (mut posed, mut shifted) = (BTreeMap::<String, Posed>::new(), BTreeMap::new());
     for (line, text) in lines {
         let at_line = |message| (line, message);
         let row = columns.row(text).map_err(at_line)?;
@@ -319,10 +319,18 @@ fn of_file(
             add_pose(&row, model, body, line, &mut posed).map_err(at_line)?;
             continue;
         }
+        if let Some(before) = shifted.insert((name.to_owned(), body), line) {
+            let of = row.text("body");
+            let of = if of.is_empty() { String::new() } else { format!("body \"{of}\" of ") };
+            let message = format!(
+                "a second row of {of}stack \"{name}\", after that in line {before}: state their sum in one row"
+            );
+            return Err((line, message));
+        }
         let [x, y, z, degrees] = row.numbers(SHIFTED).map_err(at_line)?;
-        let begin = all.entry(name.to_owned()).or_default();
-        begin.shifts.push(own_shift(standing, body, [x, y, z], degrees.to_radians()));
-        (begin.path, begin.line) = ("start.file".to_owned(), Some(line));
+        let stated = all.entry(name.to_owned()).or_default();
+        stated.shifts.push(own_shift(standing, body, [x, y, z], degrees.to_radians()));
+        (stated.path, stated.line) = ("start.file".to_owned(), Some(line));
     }
     for (name, (bodies, line)) in posed {
         let (_, model) = stack_named(&name, stacks, models).map_err(|message| (line, message))?;
@@ -334,9 +342,9 @@ fn of_file(
             );
             return Err((line, message));
         }
-        let begin = all.entry(name).or_default();
-        begin.poses = Some(bodies.into_values().collect());
-        (begin.path, begin.line) = ("start.file".to_owned(), Some(line));
+        let stated = all.entry(name).or_default();
+        stated.poses = Some(bodies.into_values().collect());
+        (stated.path, stated.line) = ("start.file".to_owned(), Some(line));
     }
     Ok(())
 }

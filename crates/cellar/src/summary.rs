@@ -47,7 +47,7 @@ described! {
         /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
         /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
         pub inspection: Vec<String>,
-        /// The shocks of a sequence, in order; empty for a single shock. All other values of a sequence are those of all
+        /// The shocks of a sequence, in order; empty for a single shock, and if no run counts. All other values of a sequence are those of all
         /// its shocks in one: their times run on without the quiet between them.
         pub shocks: Vec<ShockAnswer>,
         /// The run that is shown.
@@ -66,7 +66,7 @@ described! {
         pub program: &'static str,
         /// Version of the program.
         pub version: &'static str,
-        /// Source of the motion and its processing, one sentence each.
+        /// Source of the motion and its processing, and of the places from which bodies start, one sentence each.
         pub provenance: Vec<String>,
         /// Wall-clock time of the work; null if not measured.
         pub wall_seconds: Option<f64> as "s",
@@ -103,7 +103,8 @@ described! {
         pub by_themselves: f64 as "1",
         /// Mean number of stacks that are knocked over: a body of another stack touched them before they lost a seat.
         pub knocked_over: f64 as "1",
-        /// Share of stacks that fall by themselves, over all stacks and variants; its interval treats a room as one draw.
+        /// Share of the stacks standing before the run that fall by themselves, over all variants; its interval treats a
+        /// room as one draw.
         pub share_by_themselves: Mean,
         /// Share of stacks that are knocked over, likewise.
         pub share_knocked_over: Mean,
@@ -248,7 +249,7 @@ described! {
         /// For each aisle, the variants in which it is blocked after the shock.
         pub blocked: Vec<Count>,
         /// Variants in which a body still moves when the shock ends: the next shock starts from its place, at rest.
-        pub restless: Count,
+        pub still_moving: Count,
         /// The stacks, in the order of the plan.
         pub stacks: Vec<ShockStack>,
         /// The run that is shown; null if it did not reach the shock.
@@ -282,7 +283,7 @@ described! {
         /// Number of barrels that fall.
         pub barrels_fallen: usize,
         /// Number of stacks of which a body still moves when the shock ends.
-        pub restless: usize,
+        pub still_moving: usize,
         /// Time in the record of the shock at which the shock ends: all bodies rest, its duration is over, or it was
         /// stopped.
         pub end_time: f64 as "s",
@@ -419,8 +420,9 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     let all = counted(cases);
     let plan = &prepared.plan;
     let share = |of: usize| {
-        let stacks = plan.stacks.len().max(1) as f64;
-        Mean::of(&all.iter().map(|case| f64::from(fallen(case)[of]) / stacks).collect::<Vec<_>>())
+        let standing = all.iter().filter(|case| stood(case) > 0);
+        let shares = standing.map(|case| f64::from(fallen(case)[of]) / f64::from(stood(case)));
+        Mean::of(&shares.collect::<Vec<_>>())
     };
     let [own, knocked] =
         [0, 1].map(|which| mean(all.iter().map(|case| f64::from(fallen(case)[which]))));
@@ -492,20 +494,29 @@ pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> Cell
     summary
 }
 
-/// Returns the sources of the motions of all shocks, each once.
-fn provenance(prepared: &Prepared) -> Vec<String> {
+/// Returns the sources of the motions of all shocks, each once, and those of the places from which bodies start.
+pub(crate) fn provenance(prepared: &Prepared) -> Vec<String> {
     let mut all = prepared.ground.provenance();
     for step in prepared.later.iter().flat_map(|later| later.ground.provenance()) {
         if !all.contains(&step) {
             all.push(step);
         }
     }
+    let start = &prepared.cellar.start;
+    all.extend(
+        start.file.as_ref().map(|file| format!("Bodies start from the file {}.", file.path)),
+    );
+    match start.shifts.len() {
+        0 => {}
+        1 => all.push("One body or stack is shifted before the run.".to_owned()),
+        many => all.push(format!("{many} shifts of bodies or stacks are applied before the run.")),
+    }
     all
 }
 
 /// Returns the answers for the shocks of a sequence.
-fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> {
-    if prepared.later.is_empty() {
+pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> {
+    if prepared.later.is_empty() || all.is_empty() {
         return Vec::new();
     }
     let later = prepared.later.iter().map(|later| (&later.ground, later.onset));
@@ -522,7 +533,7 @@ fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> 
         let aisles = 0..prepared.cellar.aisles.len();
         let stack = |(at, standing): (usize, &crate::scenario::Standing)| ShockStack {
             name: standing.name.clone(),
-            stood: Count::of(&own, |case| !case.stacks[at].down),
+            stood: Count::of(&own, |case| !case.stacks[at].fallen_before),
             by_itself: Count::of(&own, |case| case.stacks[at].by_itself()),
             knocked_over: Count::of(&own, |case| case.stacks[at].knocked),
             barrels_fallen: mean(own.iter().map(|case| case.stacks[at].barrels as f64)),
@@ -541,7 +552,7 @@ fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> 
             blocked: aisles
                 .map(|aisle| Count::of(&own, |case| case.aisles[aisle].blocked_at.is_some()))
                 .collect(),
-            restless: Count::of(&own, |case| case.restless > 0),
+            still_moving: Count::of(&own, |case| case.still_moving > 0),
             stacks: prepared.plan.stacks.iter().enumerate().map(stack).collect(),
             shown: shown.shocks.get(at).map(|case| {
                 let [by_themselves, knocked_over] = fallen(case);
@@ -550,7 +561,7 @@ fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> 
                     by_themselves,
                     knocked_over,
                     barrels_fallen: barrels(case),
-                    restless: case.restless,
+                    still_moving: case.still_moving,
                     end_time: case.end_time,
                 }
             }),
@@ -566,11 +577,14 @@ fn barrels(case: &Case) -> usize {
 
 /// Returns the number of stacks that stand before a case.
 fn stood(case: &Case) -> u32 {
-    u32::try_from(case.stacks.iter().filter(|stack| !stack.down).count()).unwrap_or(u32::MAX)
+    u32::try_from(case.stacks.iter().filter(|stack| !stack.fallen_before).count())
+        .unwrap_or(u32::MAX)
 }
 
 /// Returns each warning once, with the stacks that it concerns in place of the name of one stack.
-fn grouped<'a>(warnings: impl Iterator<Item = &'a (Option<String>, String)>) -> Vec<String> {
+pub(crate) fn grouped<'a>(
+    warnings: impl Iterator<Item = &'a (Option<String>, String)>,
+) -> Vec<String> {
     let mut all: Vec<(&str, BTreeSet<&str>)> = Vec::new();
     for (stack, text) in warnings {
         let at = all.iter().position(|(known, _)| known == text).unwrap_or_else(|| {
@@ -635,7 +649,9 @@ fn stacks(prepared: &Prepared, all: &[&Case]) -> Vec<StackAnswer> {
             barrels_fallen: mean(own().map(|one| one.barrels as f64)),
             wine_lost: mean(own().map(|one| one.wine[1])),
             moved: Range::of(
-                own().filter(|one| one.fell_at.is_none() && !one.down).map(|one| one.moved),
+                own()
+                    .filter(|one| one.fell_at.is_none() && !one.fallen_before)
+                    .map(|one| one.moved),
             ),
         }
     };
@@ -693,7 +709,7 @@ fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
     let stack = |(stack, standing): (&StackCase, &crate::scenario::Standing)| ShownStack {
         name: standing.name.clone(),
         fate: match (stack.fell_at, stack.knocked) {
-            (None, _) if stack.down => "fallen-before",
+            (None, _) if stack.fallen_before => "fallen-before",
             (None, _) => "stands",
             (Some(_), false) => "falls-by-itself",
             (Some(_), true) => "knocked-over",

@@ -8,7 +8,7 @@ use barrelstack::variants::words::{ENOUGH, percent};
 use barrelstack_report::{Tone, capital, listed, measured};
 
 use crate::plan::liters;
-use crate::summary::{AisleAnswer, CellarSummary, Count, ShockAnswer, ShownShock};
+use crate::summary::{AisleAnswer, CellarSummary, Count, Mean, ShockAnswer, ShownShock};
 
 /// Returns a number of things, such as "1 stack" or "3 stacks".
 pub(crate) fn plural(count: u32, thing: &str) -> String {
@@ -57,60 +57,103 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
     )
 }
 
-/// Returns the time (s) that a run which is shown leaves of the motion; `None` if it covers the motion.
+/// Returns the longest time (s) that the run that is shown leaves of the motion of a shock; `None` if it covers all.
 fn missing(summary: &CellarSummary) -> Option<f64> {
+    if !summary.shocks.is_empty() {
+        return longest_cut(summary.shocks.iter());
+    }
     let motion = summary.motion.as_ref()?;
     Some(motion.duration - summary.shown.end_time).filter(|missing| *missing > CUT)
+}
+
+/// Returns the longest time (s) that a run leaves of the motion of a shock; `None` if it covers all.
+pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> Option<f64> {
+    let left = |shock: &ShockAnswer| {
+        Some(shock.motion.as_ref()?.duration - shock.shown.as_ref()?.end_time)
+    };
+    shocks.filter_map(left).reduce(f64::max).filter(|missing| *missing > CUT)
+}
+
+/// Returns the sentence on shocks that are followed until a time (s) before the end of the motion.
+pub(crate) fn followed(cut: f64) -> String {
+    format!("A shock is followed only until {cut:.1} s before its motion ends.")
+}
+
+/// Returns a share with its interval, such as "80 % (95 % interval 61 % to 92 %)".
+pub(crate) fn mean_share(share: &Mean) -> String {
+    let [mean, low, high] = [share.mean, share.interval[0], share.interval[1]].map(percent);
+    format!("{mean} (95 % interval {low} to {high})")
+}
+
+/// Returns the number of stacks that stand before the run that is shown.
+fn standing(summary: &CellarSummary) -> usize {
+    summary.plan.stacks - summary.shown.fallen_before as usize
+}
+
+/// Returns a clause on the variants in which a stack falls, after a run in which none does; empty if there are none.
+fn but_some_fall(summary: &CellarSummary) -> String {
+    match summary.room.some_fall.of_variants {
+        0 => String::new(),
+        some => {
+            let variants = plural(summary.counted, "variant");
+            format!(", but at least one falls in {some} of {variants}")
+        }
+    }
 }
 
 /// Returns the result of the run that is shown, in the sentence that people repeat.
 pub fn headline(summary: &CellarSummary) -> String {
     let shown = &summary.shown;
     if !summary.shocks.is_empty() {
-        return sentence(summary, &format!("{}{}.", shock_by_shock(summary), blocked(summary)));
+        return of_sequence(summary);
     }
-    let before = shown.fallen_before as usize;
-    let all = summary.plan.stacks - before;
+    let (all, before) = (standing(summary), shown.fallen_before > 0);
     let (own, knocked) = (shown.by_themselves, shown.knocked_over);
     if own + knocked == 0 {
-        let stand = if before > 0 {
-            match all {
-                0 => "No stack stood before the shaking".to_owned(),
-                1 => "The only stack that stood before the shaking survives".to_owned(),
-                _ => format!("All {all} stacks that stood before the shaking survive"),
-            }
-        } else if all == 1 {
-            "The only stack stands".to_owned()
-        } else {
-            format!("All {all} stacks stand")
+        let stand = match (all, before) {
+            (0, _) => "No stack stood before the shaking".to_owned(),
+            (1, true) => "The only stack that stood before the shaking survives".to_owned(),
+            (_, true) => format!("All {all} stacks that stood before the shaking survive"),
+            (1, false) => "The only stack stands".to_owned(),
+            (_, false) => format!("All {all} stacks stand"),
         };
-        let stand = match missing(summary) {
-            Some(missing) => format!(
-                "{stand} until {:.1} s, where the run ends, {missing:.1} s before the motion does",
-                shown.end_time
-            ),
-            None => stand,
-        };
-        let some = &summary.room.some_fall;
-        return if some.of_variants == 0 {
-            format!("{stand}.")
-        } else {
+        let until = missing(summary).filter(|_| all > 0).map_or(String::new(), |missing| {
             format!(
-                "{stand} in the run that is shown ({}), but at least one falls in {} of {}.",
-                shown_run(summary),
-                some.of_variants,
-                plural(summary.counted, "variant")
+                " until {:.1} s, where the run ends, {missing:.1} s before the motion does",
+                shown.end_time
             )
+        });
+        let but = but_some_fall(summary);
+        let run = if but.is_empty() {
+            String::new()
+        } else {
+            format!(" in the run that is shown ({})", shown_run(summary))
         };
+        return format!("{stand}{until}{run}{but}.");
     }
-    if all == 1 && before == 0 {
+    if all == 1 && !before {
         return sentence(summary, &format!("the only stack falls{}.", blocked(summary)));
     }
     let starts = shown.starts.filter(|_| summary.plan.rows > 1);
     let starts = starts.map_or(String::new(), |row| format!("row {row} starts it: "));
-    let stood = if before > 0 { "that stood before the shaking " } else { "" };
-    let fall = falling(own, &format!("{all} stacks {stood}"), knocked);
+    let stood = if before { " that stood before the shaking" } else { "" };
+    let fall = falling(own, &format!("{all} stacks{stood}"), knocked);
     sentence(summary, &format!("{starts}{fall}{}.", blocked(summary)))
+}
+
+/// Returns the result of the run that is shown of a sequence.
+fn of_sequence(summary: &CellarSummary) -> String {
+    let cut = missing(summary).map_or(String::new(), |missing| {
+        format!("; a shock is followed only until {missing:.1} s before its motion ends")
+    });
+    let shown = &summary.shown;
+    let but = if shown.by_themselves + shown.knocked_over == 0 {
+        but_some_fall(summary)
+    } else {
+        String::new()
+    };
+    let shocks = shock_by_shock(summary);
+    sentence(summary, &format!("{shocks}{}{cut}{but}.", blocked(summary)))
 }
 
 /// Returns a clause on the stacks that fall, such as "2 of 4 stacks fall by themselves, 1 more is knocked over".
@@ -135,26 +178,31 @@ fn shock_by_shock(summary: &CellarSummary) -> String {
     let stated: Vec<_> =
         stated.filter(|(_, shown)| all.len() <= LISTED || changes(shown)).collect();
     if stated.is_empty() {
-        return format!("no stack falls in {} shocks", all.len());
+        return format!("no stack falls in any of the {} shocks", all.len());
     }
-    let clause = |at: usize, shown: &ShownShock| {
-        let stacks = plural(shown.stood, "stack");
-        let of = if at == 0 { stacks } else { format!("the {} that still stand", shown.stood) };
-        match (shown.stood, changes(shown)) {
+    let clause = |first: bool, shown: &ShownShock| {
+        let (stood, changes) = (shown.stood, changes(shown));
+        let of = match (stood, first) {
+            (1, true) => "the only stack".to_owned(),
+            (1, false) => "the only stack that still stands".to_owned(),
+            (_, true) => plural(stood, "stack"),
+            (_, false) => format!("the {stood} that still stand"),
+        };
+        match (stood, changes) {
+            (0, _) if first => "no stack stands before it".to_owned(),
             (0, _) => "no stack stands any more".to_owned(),
-            (1, false) => "the only stack that still stands survives".to_owned(),
-            (_, false) if at == 0 => format!("all {of} stand"),
+            (1, false) => format!("{of} survives"),
+            (_, false) if first => format!("all {of} stand"),
             (_, false) => format!("{of} survive"),
-            (1, true) if shown.knocked_over == 0 => {
-                "the only stack that still stands falls".to_owned()
-            }
-            (1, true) => "the only stack that still stands is knocked over".to_owned(),
+            (1, true) if shown.knocked_over == 0 => format!("{of} falls"),
+            (1, true) => format!("{of} is knocked over"),
             (_, true) => falling(shown.by_themselves, &of, shown.knocked_over),
         }
     };
     let stated = stated.into_iter().enumerate().map(|(at, (number, shown))| {
         let shock = if at == 0 { " shock" } else { "" };
-        format!("in the {}{shock} {}", ordinal(number), clause(at, shown))
+        let first = number == 1 && summary.shown.fallen_before == 0;
+        format!("in the {}{shock} {}", ordinal(number), clause(first, shown))
     });
     stated.collect::<Vec<_>>().join("; ")
 }
@@ -169,48 +217,55 @@ fn ordinal(number: u32) -> String {
     word.map_or_else(|| format!("{number}th"), |word| (*word).to_owned())
 }
 
-/// Returns the sentence on a shock over all variants.
-fn of_shock(shock: &ShockAnswer, of: u32) -> String {
+/// Returns the sentences on a shock over all variants.
+fn of_shock(shock: &ShockAnswer, of: u32, last: bool) -> String {
     let motion = shock.motion.as_ref().map_or_else(
         || "ground at rest".to_owned(),
-        |motion| {
-            format!(
-                "{}, up to {:.2} g and {:.0} cm/s along x",
-                motion.name,
-                motion.pga / STANDARD_GRAVITY,
-                100.0 * motion.pgv
-            )
-        },
+        |motion| format!("{}, {} along x", motion.name, peaks(motion.pga, motion.pgv)),
     );
-    format!("Shock {} ({motion}): {}.{}", shock.shock, survival(shock, of), restless(shock, of))
+    let end = still_moving(shock, of, last);
+    format!("Shock {} ({motion}): {}.{end}", shock.shock, survival(shock, of))
 }
 
 /// Returns a clause on the stacks that survive a shock, with counts and intervals over the variants.
-fn survival(shock: &ShockAnswer, of: u32) -> String {
-    let barrels = span(&shock.barrels_fallen, of, 0, "");
-    let barrels = barrels.trim_end();
-    if of == 1 {
-        return format!(
-            "of {} that stand before it {} fall by themselves and {} are knocked over; {barrels} barrels fall",
-            plural_of(shock.stood, "stack"),
-            shock.by_themselves,
-            shock.knocked_over
-        );
+pub(crate) fn survival(shock: &ShockAnswer, of: u32) -> String {
+    let fallen = barrels_fall(&shock.barrels_fallen, of);
+    if shock.stood_in == 0 {
+        let variants = if of == 1 { "" } else { " in any variant" };
+        return format!("no stack stands before it{variants}; {fallen}");
     }
-    let Some(survive) = &shock.share_survive else {
-        return "no stack stands before it in any variant".to_owned();
-    };
+    if of == 1
+        && let Some(shown) = &shock.shown
+    {
+        let (stood, own, knocked) = (shown.stood, shown.by_themselves, shown.knocked_over);
+        let survive = match (stood, own + knocked) {
+            (1, 0) => "the only stack that stands before it survives".to_owned(),
+            (_, 0) => format!("the {stood} stacks that stand before it survive"),
+            (1, _) if knocked == 0 => "the only stack that stands before it falls".to_owned(),
+            (1, _) => "the only stack that stands before it is knocked over".to_owned(),
+            (_, _) => falling(own, &format!("the {stood} stacks that stand before it"), knocked),
+        };
+        return format!("{survive}; {fallen}");
+    }
+    let survive = shock.share_survive.unwrap_or(Mean { mean: 0.0, interval: [0.0, 1.0] });
     format!(
         "where any stack stands before it, all of them survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
-         are knocked over; {} of them survive (95 % interval {} to {}). {barrels} barrels fall",
+         are knocked over; of them survive {}; {fallen}",
         survived(shock),
         shock.stood,
         shock.by_themselves,
         shock.knocked_over,
-        percent(survive.mean),
-        percent(survive.interval[0]),
-        percent(survive.interval[1])
+        mean_share(&survive)
     )
+}
+
+/// Returns a clause on the barrels that fall, such as "5 to 9 barrels fall".
+fn barrels_fall(barrels: &Range, of: u32) -> String {
+    match span(barrels, of, 0, "").trim_end() {
+        "1" => "1 barrel falls".to_owned(),
+        "0" => "no barrel falls".to_owned(),
+        many => format!("{many} barrels fall"),
+    }
 }
 
 /// Returns the variants in which all stacks that stand before a shock survive it, out of those in which any stands.
@@ -221,20 +276,13 @@ fn survived(shock: &ShockAnswer) -> String {
     }
 }
 
-/// Returns a number of things that is whole.
-fn plural_of(count: f64, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1.0 { "" } else { "s" })
-}
-
 /// Returns a sentence on the variants in which bodies still move at the end of a shock; empty if there are none.
-fn restless(shock: &ShockAnswer, of: u32) -> String {
-    if shock.restless.of_variants == 0 {
+fn still_moving(shock: &ShockAnswer, of: u32, last: bool) -> String {
+    if shock.still_moving.of_variants == 0 {
         return String::new();
     }
-    format!(
-        " In {} a body still moves when it ends; a shock that follows starts from its place, at rest.",
-        share(&shock.restless, of)
-    )
+    let next = if last { "" } else { "; the next shock starts from its place, at rest" };
+    format!(" In {} a body still moves when it ends{next}.", share(&shock.still_moving, of))
 }
 
 /// Returns whether what still stands after the first shock survives the second, whose strength is described, in one
@@ -245,25 +293,27 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
         return None;
     }
     let stacks = summary.plan.stacks;
+    let cut = missing(summary).map_or(String::new(), |cut| format!(" {}", followed(cut)));
+    if shock.stood_in == 0 {
+        let variants = if of == 1 { String::new() } else { format!(" in any of {of} variants") };
+        return Some(format!("No stack stands after the main shock{variants}.{cut}"));
+    }
     if of == 1 {
         let shown = shock.shown.as_ref()?;
         let left = shown.stood - shown.by_themselves - shown.knocked_over;
         return Some(format!(
-            "Of {stacks} stacks {} stand after the main shock and {left} after {strength}, in one run; a share needs several variants.",
+            "Of {stacks} stacks {} stand after the main shock and {left} after {strength}, in one run; a share needs several \
+             variants.{cut}",
             shown.stood
         ));
     }
-    let Some(survive) = &shock.share_survive else {
-        return Some(format!("No stack stands after the main shock in any of {of} variants."));
-    };
+    let survive = shock.share_survive?;
     Some(format!(
         "Of {stacks} stacks {:.1} stand after the main shock on average. Where any stands, {strength} is survived by all of \
-         them in {}, and by {} of them on average (95 % interval {} to {}).",
+         them in {}, and on average by {}.{cut}",
         shock.stood,
         survived(shock),
-        percent(survive.mean),
-        percent(survive.interval[0]),
-        percent(survive.interval[1])
+        mean_share(&survive)
     ))
 }
 
@@ -288,7 +338,7 @@ fn blocked(summary: &CellarSummary) -> String {
             _ => format!("; all {all} aisles stay passable"),
         };
     };
-    let after = format!("after {last:.1} s");
+    let after = shock_at(summary, last).unwrap_or_else(|| format!("after {last:.1} s"));
     match (times.len(), all) {
         (1, 1) => format!("; the aisle is blocked {after}"),
         (2, 2) => format!("; both aisles are blocked {after}"),
@@ -298,12 +348,27 @@ fn blocked(summary: &CellarSummary) -> String {
     }
 }
 
+/// Returns the shock of a sequence in which the run that is shown is at a time (s) from the start of the shaking; `None`
+/// for a single shock.
+fn shock_at(summary: &CellarSummary, time: f64) -> Option<String> {
+    let mut left = summary.onset + time;
+    let number = summary.shocks.iter().find_map(|shock| {
+        let end_time = shock.shown.as_ref()?.end_time;
+        let within = left <= end_time;
+        left -= end_time;
+        within.then_some(shock.shock)
+    });
+    Some(format!("in the {} shock", ordinal(number?)))
+}
+
 /// Returns the tone of the verdict.
 pub fn tone(summary: &CellarSummary) -> Tone {
     match summary.room.some_fall.of_variants {
         _ if summary.counted == 0 || summary.unfinished.is_some() => Tone::Invalid,
         // As for one stack, few variants that stand are no verdict.
-        0 if summary.counted < ENOUGH || missing(summary).is_some() => Tone::Neutral,
+        0 if summary.counted < ENOUGH || standing(summary) == 0 || missing(summary).is_some() => {
+            Tone::Neutral
+        }
         0 => Tone::Stands,
         _ => Tone::Falls,
     }
@@ -315,36 +380,13 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         return Vec::new();
     }
     let CellarSummary { room, counted: of, plan, .. } = summary;
-    let mut all = vec![match of {
-        0 => "No run has a valid result.".to_owned(),
-        1 => format!(
-            "This is one run of the room, {}; a share needs several variants.",
-            if summary.shown.variant == 0 { "as stated" } else { "one variant" }
-        ),
-        _ if plan.stacks == 1 => format!("The stack falls in {}.", share(&room.some_fall, *of)),
-        _ => format!(
-            "At least one stack falls in {}. On average {:.1} of {} stacks fall by themselves ({}, 95 % interval {} to \
-             {}){}.",
-            share(&room.some_fall, *of),
-            room.by_themselves,
-            plan.stacks,
-            percent(room.share_by_themselves.mean),
-            percent(room.share_by_themselves.interval[0]),
-            percent(room.share_by_themselves.interval[1]),
-            if room.knocked_over > 0.0 {
-                format!(
-                    " and {:.1} are knocked over ({}, {} to {})",
-                    room.knocked_over,
-                    percent(room.share_knocked_over.mean),
-                    percent(room.share_knocked_over.interval[0]),
-                    percent(room.share_knocked_over.interval[1]),
-                )
-            } else {
-                ", and none is knocked over".to_owned()
-            },
-        ),
-    }];
-    all.extend(summary.shocks.iter().map(|shock| of_shock(shock, *of)));
+    if *of == 0 {
+        return vec!["No run has a valid result.".to_owned()];
+    }
+    let mut all = vec![falls(summary)];
+    let last = summary.shocks.len();
+    let shocks = (1..).zip(&summary.shocks);
+    all.extend(shocks.map(|(number, shock)| of_shock(shock, *of, number == last)));
     if let Some(motion) = summary.motion.as_ref().filter(|_| summary.shocks.is_empty()) {
         let other = summary.other_component.as_ref();
         let other = other
@@ -407,6 +449,40 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         ));
     }
     all
+}
+
+/// Returns the sentence on the stacks that fall over all variants.
+fn falls(summary: &CellarSummary) -> String {
+    let CellarSummary { room, counted: of, plan, .. } = summary;
+    let all = standing(summary);
+    if *of == 1 {
+        let run = if summary.shown.variant == 0 { "as stated" } else { "one variant" };
+        return format!("This is one run of the room, {run}; a share needs several variants.");
+    }
+    if all == 0 {
+        return "All stacks had fallen before the run, so that none falls in it.".to_owned();
+    }
+    if plan.stacks == 1 {
+        return format!("The stack falls in {}.", share(&room.some_fall, *of));
+    }
+    let stood = if all < plan.stacks { " that stood before the run" } else { "" };
+    let of_shares = |share: &Mean| {
+        let [low, high] = share.interval.map(percent);
+        (percent(share.mean), low, high)
+    };
+    let (own, low, high) = of_shares(&room.share_by_themselves);
+    let knocked = if room.knocked_over > 0.0 {
+        let (knocked, low, high) = of_shares(&room.share_knocked_over);
+        format!(" and {:.1} are knocked over ({knocked}, {low} to {high})", room.knocked_over)
+    } else {
+        ", and none is knocked over".to_owned()
+    };
+    format!(
+        "At least one stack falls in {}. On average {:.1} of {all} stacks{stood} fall by themselves ({own}, 95 % interval \
+         {low} to {high}){knocked}.",
+        share(&room.some_fall, *of),
+        room.by_themselves,
+    )
 }
 
 /// Returns the peaks of a component of the ground motion from its acceleration (m/s²) and its velocity (m/s).

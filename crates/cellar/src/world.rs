@@ -219,6 +219,9 @@ fn start_from(
     }
     state.twists.fill(Twist::default());
     state.contact_elements = ContactElements::default();
+    if placed.carried_on {
+        return Ok(());
+    }
     match deepest(state) {
         Some((bodies, depth)) if depth > limit => {
             let [first, second] =

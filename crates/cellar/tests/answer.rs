@@ -101,7 +101,7 @@ fn results_do_not_depend_on_threads_and_stacks_draw_their_own_imperfections() {
     let prepared = Prepared::new(&small()).unwrap();
     let go = &mut |_: &barrelstack_cellar::Advance| ControlFlow::Continue(());
     let alone = prepared.run(1, 1, go).unwrap();
-    let cases = prepared.cases(&[0, 1], &|_| ControlFlow::Continue(())).unwrap();
+    let cases = prepared.cases(&[0, 1], None, &|_| ControlFlow::Continue(())).unwrap();
     assert_eq!(cases[1].as_ref().unwrap(), &prepared.case(1, &alone));
     let room = prepared.room(1).unwrap();
     let [one, two] = [0, 1].map(|at| room.stacks[at].scenario.stack().unwrap());

@@ -3,7 +3,13 @@
 use std::ops::ControlFlow;
 
 use barrelstack::variants::RunChoice;
-use barrelstack_cellar::{Answer, Cellar, CellarFailure, RoomRun, answer};
+use barrelstack_cellar::kept::Part;
+use barrelstack_cellar::summary::ShockAnswer;
+use barrelstack_cellar::{
+    Answer, Cellar, CellarFailure, Prepared, RoomRun, Settings, aftershocks, answer, answer_with,
+    run as run_room, run_part, sequence, words,
+};
+use barrelstack_report::Tone;
 
 use crate::common::bits;
 
@@ -51,11 +57,13 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     let knocked = first.knocked_over + second.knocked_over;
     assert_eq!((summary.room.by_themselves, summary.room.knocked_over), (own, knocked));
     // The runs end before the record does, so the room does not rest, and the answer says so.
-    assert_eq!(first.restless.of_variants, 2);
-    let said = barrelstack_cellar::words::sentences(summary).join(" ");
+    assert_eq!(first.still_moving.of_variants, 2);
+    let said = words::sentences(summary).join(" ");
     assert!(said.contains("Shock 2 (") && said.contains("still moves when it ends"), "{said}");
     assert!(summary.headline.contains("in the first shock"), "{}", summary.headline);
     assert!(summary.headline.contains("; in the second "), "{}", summary.headline);
+    assert!(summary.headline.contains("is followed only until"), "{}", summary.headline);
+    assert_ne!(words::tone(summary), Tone::Stands);
     let files = answer.files().unwrap();
     let (_, csv) = files.iter().find(|(name, _)| name == "shocks.csv").unwrap();
     assert_eq!(String::from_utf8_lossy(csv).lines().count(), 1 + 2 * 2);
@@ -170,6 +178,10 @@ fn a_surveyed_room_starts_from_its_displacements() {
         said.contains("mine.toml:7:") && said.contains("1-1 ") && said.contains("1-2 "),
         "{said}"
     );
+    // The check finds the same without a run.
+    let prepared = Prepared::new(&cellar(into, &quick)).unwrap();
+    assert_eq!(prepared.check_start().unwrap_err().to_string(), said);
+    assert!(prepared.plan.summary.sentences().concat().contains("start from stated places"));
     for (text, place, words) in [
         ("[[start.shift]]\nstack = \"3-1\"\n", "mine.toml:8:", "there is no stack \"3-1\""),
         (
@@ -183,4 +195,101 @@ fn a_surveyed_room_starts_from_its_displacements() {
         assert!(said.contains(place) && said.contains(words), "{said}");
     }
     refused(&"[[start.shift]]\nstack = \"1-1\"\n".repeat(1001), &["1001 shifts", "in a file"]);
+}
+
+#[test]
+fn bodies_that_an_earlier_run_left_pressed_together_go_on() {
+    let prepared = Prepared::new(&cellar("", &["run.duration=0.5 s"])).unwrap();
+    let first = prepared.run(0, 1, &mut |_| ControlFlow::Continue(())).unwrap();
+    let mut pressed = first.clone();
+    // A barrel is pressed 3 cm into its neighbor, as a heavy heap may do.
+    let two: Vec<usize> = (0..pressed.bodies.len())
+        .filter(|at| ["B1.1", "B1.2"].contains(&pressed.bodies[*at].name.as_str()))
+        .filter(|at| pressed.bodies[*at].stack == 0)
+        .collect();
+    let apart = pressed.bodies[two[1]].own[0] - pressed.bodies[two[0]].own[0];
+    let toward = 0.06_f64.copysign(apart);
+    pressed.bodies[two[0]].own[0] += toward;
+    let room = || prepared.room(0).unwrap();
+    let settings = Settings { threads: 1, frames: false };
+    let from = |run: &RoomRun, carried: bool| {
+        let mut room = sequence::after(room(), run);
+        room.stacks.iter_mut().for_each(|placed| placed.carried_on = carried);
+        run_room(&room, &settings, &mut |_| ControlFlow::Continue(()))
+    };
+    let refused = from(&pressed, false).unwrap_err().to_string();
+    assert!(refused.contains("overlap"), "{refused}");
+    assert!(from(&pressed, true).is_ok() && from(&first, true).is_ok());
+}
+
+#[test]
+fn aftershocks_of_several_strengths_follow_one_main_shock() {
+    let stated = cellar("", &["motion.scale.factor=2.5"]);
+    let found =
+        aftershocks::aftershocks(&stated, &[0.5, 1.0], None, &mut |_| ControlFlow::Continue(()))
+            .unwrap();
+    assert_eq!((found.counted, found.stacks, found.aftershocks.len()), (2, 2, 2));
+    // Every strength has the answer of the sequence that it is.
+    for one in &found.aftershocks {
+        let sequence = stated.clone().with_aftershock(one.factor, None).unwrap();
+        let alone = answered(&sequence, RunChoice::Typical).unwrap().summary;
+        let [main, after] = [&alone.shocks[0], &alone.shocks[1]];
+        let numbers = |shock: &ShockAnswer| {
+            (
+                shock.stood,
+                shock.stood_in,
+                shock.by_themselves,
+                shock.knocked_over,
+                shock.share_survive,
+            )
+        };
+        assert_eq!(numbers(&one.shock), numbers(after));
+        assert_eq!(numbers(found.main.as_ref().unwrap()), numbers(main));
+        let fell: u32 = found
+            .inspection
+            .iter()
+            .map(|margin| margin.falls[usize::from(one.factor > 0.5)].of_variants)
+            .sum();
+        assert_eq!(f64::from(fell) / 2.0, after.by_themselves + after.knocked_over);
+    }
+    let said = &found.headline;
+    assert!(said.starts_with("Of 2 stacks ") && said.contains("is followed only until"), "{said}");
+    let files = aftershocks::files(&found).unwrap();
+    let json = String::from_utf8_lossy(&files[1].1).into_owned();
+    assert!(json.contains("\"schema\": \"aftershocks/1\""), "{json}");
+    let stopped =
+        aftershocks::aftershocks(&stated, &[0.5, 1.0], None, &mut |_| ControlFlow::Break(()));
+    let stopped = stopped.unwrap();
+    assert!(stopped.headline.contains("there is no verdict"), "{}", stopped.headline);
+    assert!(stopped.main.is_none() && stopped.inspection.is_empty());
+}
+
+/// Variants in a folder: parts of two machines, work that was stopped, and files of another cellar.
+#[test]
+fn variants_that_are_kept_are_gathered_and_not_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let keep = folder.path().join("kept");
+    let stated = cellar("", &["run.duration=2 s"]);
+    let on = &mut |_| ControlFlow::Continue(());
+    let whole = answered(&stated, RunChoice::Typical).unwrap();
+    let parts = [1, 2].map(|part| run_part(&stated, Part { part, of: 2 }, &keep, on).unwrap());
+    assert_eq!(parts, [[2, 2], [1, 1]]);
+    // A file that is there is read: a time that was changed in it is in the answer.
+    let gathered = answer_with(&stated, RunChoice::Typical, Some(&keep), on).unwrap();
+    assert_eq!(gathered.cases, whole.cases);
+    assert_eq!(gathered.summary.headline, whole.summary.headline);
+    let one = keep.join("variant-0001.json");
+    let text = std::fs::read_to_string(&one).unwrap();
+    let end_time = whole.cases[1].end_time;
+    std::fs::write(&one, text.replace(&format!("\"end_time\":{end_time:?}"), "\"end_time\":1.25"))
+        .unwrap();
+    let changed = answer_with(&stated, RunChoice::Typical, Some(&keep), on).unwrap();
+    assert_eq!(changed.cases[1].end_time, 1.25);
+    let other = cellar("", &["run.duration=1 s"]);
+    let refused = answer_with(&other, RunChoice::Typical, Some(&keep), on).unwrap_err().to_string();
+    assert!(refused.contains("variant-0000.json: it is of the cellar "), "{refused}");
+    assert!(refused.contains("another folder"), "{refused}");
+    std::fs::write(&one, "{}").unwrap();
+    let broken = answer_with(&stated, RunChoice::Typical, Some(&keep), on).unwrap_err().to_string();
+    assert!(broken.contains("is not the result of a variant"), "{broken}");
 }

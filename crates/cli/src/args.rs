@@ -1,7 +1,9 @@
 //! Command-line arguments.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
+use barrelstack_cellar::kept::Part;
 use clap::{Parser, Subcommand};
 
 /// End of the first page of help.
@@ -135,6 +137,14 @@ pub(crate) struct RunArgs {
     /// Write the places of all bodies at the end of a cellar into this new file, for start.file.
     #[arg(long, value_name = "FILE")]
     pub(crate) state: Option<PathBuf>,
+    /// Keep the result of every variant of a cellar in this folder, and do not run again those that
+    /// are there: work that was stopped goes on.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) keep: Option<PathBuf>,
+    /// Run only this part of the variants of a cellar, such as 1/8 to 8/8, and keep their results;
+    /// a run without this option then gathers them.
+    #[arg(long, requires = "keep", value_name = "PART/PARTS", conflicts_with_all = ["out", "state", "json"])]
+    pub(crate) part: Option<PartName>,
     /// Draw the stack in the summary with ASCII characters only.
     #[arg(long, conflicts_with = "json")]
     pub(crate) plain: bool,
@@ -144,6 +154,24 @@ pub(crate) struct RunArgs {
     /// Show no progress; warnings are still printed.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// A part of some work, such as 3/8.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PartName(pub(crate) Part);
+
+impl FromStr for PartName {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let two = text
+            .split_once('/')
+            .and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
+        match two {
+            Some((part, of)) if (1..=of).contains(&part) => Ok(Self(Part { part, of })),
+            Some(_) | None => Err("expected a part and the number of parts, such as 3/8"),
+        }
+    }
 }
 
 /// Arguments of `demo`.

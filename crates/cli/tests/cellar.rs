@@ -158,7 +158,7 @@ fn the_second_shock_from_the_state_after_the_first_has_the_bits_of_the_sequence(
     // The room is at rest between the shocks, and the results of a shock are those of its run.
     let shocks = twice["shocks"].as_array().unwrap();
     for (shock, alone) in shocks.iter().zip([&first, &second]) {
-        assert_eq!(shock["restless"]["of_variants"], 0, "{shock}");
+        assert_eq!(shock["still_moving"]["of_variants"], 0, "{shock}");
         for count in ["by_themselves", "knocked_over", "barrels_fallen"] {
             assert_eq!(shock["shown"][count], alone["shown"][count], "{count}: {shock}");
         }
@@ -193,6 +193,10 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         ("stack,dx\n1-1,0\n", "unknown column \"dx\""),
         ("stack,dx (m)\n1-1,far\n", "survey.csv:2: column \"dx (m)\": expected a number"),
         ("stack,dx (m)\n1-1,inf\n", "expected a number"),
+        (
+            "stack,dx (m)\n1-1,0.1\n1-1,0.1\n",
+            "survey.csv:3: a second row of stack \"1-1\", after that in line 2",
+        ),
         ("stack,dx (m)\n\n9-1,0.1\n", "survey.csv:3: column \"stack\": there is no stack \"9-1\""),
         (
             "stack,body,dx (m)\n1-1,B9.9,0.1\n",
@@ -220,6 +224,41 @@ fn a_state_that_was_changed_by_hand_is_refused_at_its_line() {
         said.contains(":4:") && said.contains("line 3 of the file") && said.contains("overlap"),
         "{said}"
     );
+}
+
+#[test]
+fn the_residual_margin_is_a_list_of_strengths_and_an_order_of_inspection() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let place = out.display().to_string();
+    let output = barrelstack([
+        "aftershock",
+        "demo-cellar",
+        "--scale=0.5,0.25",
+        "--variants=2",
+        "-q",
+        "--set=stack.levels=2",
+        "--set=block.1.rows=1",
+        "--set=run.duration=5 s",
+        "--out",
+        &place,
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stdout(&output);
+    let read = fs::read(out.join("aftershocks.json")).unwrap();
+    let summary: Value = serde_json::from_slice(&read).unwrap();
+    let factors: Vec<f64> = summary["aftershocks"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["factor"].as_f64().unwrap())
+        .collect();
+    assert_eq!(factors, [0.25, 0.5]);
+    assert!(said.contains(summary["headline"].as_str().unwrap()), "{said}");
+    assert!(said.contains("an aftershock of 0.25 and ") && said.contains("one of 0.5"), "{said}");
+    for name in ["report.html", "aftershocks.csv", "inspection.csv"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
 }
 
 #[test]
@@ -252,6 +291,11 @@ fn an_aftershock_is_answered_in_one_sentence() {
     for (arguments, words) in [
         (&["aftershock", "demo-cellar", "--scale=-1"][..], "--scale -1: expected a factor above 0"),
         (&["aftershock", "demo-cellar", "--scale=nan"], "expected a factor above 0"),
+        (&["aftershock", "demo-cellar", "--scale=0.5,0.5"], "0.5 is given twice"),
+        (
+            &["aftershock", "demo-cellar", "--scale=0.5,0.7", "--variant=1"],
+            "--variant selects the run that is shown",
+        ),
         (&["aftershock", "demo-napa"], "kind = \"cellar\""),
         (&["aftershock", "demo-cellar", "--record=nowhere.AT2", "-q"], "nowhere.AT2"),
     ] {

@@ -86,6 +86,8 @@ kinds! {
     Falls "falls" 'F' "falls by itself";
     /// Something that is knocked over.
     Knocked "knocked" 'K' "is knocked over";
+    /// Something that lies on the floor from the start.
+    Down "floor" 'O' "had fallen before";
     /// Something that is wrongly placed.
     Wrong "wrong" '!' "wrongly placed";
 }

@@ -104,6 +104,13 @@ pub struct PeakMotion {
 }
 
 impl PeakMotion {
+    /// Returns the larger of the displacements, slips and tilts of two spans of time.
+    #[must_use]
+    pub fn or_larger(mut self, other: Self) -> Self {
+        self.raise(other.displacement, other.slip, other.tilt);
+        self
+    }
+
     fn raise(&mut self, displacement: f64, slip: f64, tilt: f64) {
         self.displacement = self.displacement.max(displacement);
         self.slip = self.slip.max(slip);

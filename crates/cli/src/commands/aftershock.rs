@@ -1,23 +1,28 @@
 //! `barrelstack aftershock`: whether what still stands after the motion of a cellar survives an aftershock.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use anyhow::{Context as _, bail};
-use barrelstack_cellar::words;
+use barrelstack::export::Folder;
+use barrelstack_cellar::{Cellar, aftershocks, words};
 
 use super::Loaded;
 use crate::args::{RunArgs, ScenarioArgs, VariantArgs};
 use crate::figures::PaperName;
+use crate::printer;
+use crate::progress::Progress;
 
 /// Arguments of `aftershock`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct AftershockArgs {
     /// A cellar: a file (TOML), the name of a built-in cellar, or - for standard input.
     scenario: String,
-    /// Strength of the aftershock: factor of the motion of the cellar, or of the record.
-    #[arg(long, value_name = "FACTOR", default_value_t = 0.5)]
-    scale: f64,
+    /// Strength of the aftershock: factor of the motion of the cellar, or of the record. Several
+    /// factors, such as 0.25,0.5,0.75, give the residual margin: each follows the same main shock.
+    #[arg(long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5])]
+    scale: Vec<f64>,
     /// File of the aftershock, in place of the motion of the cellar.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -42,11 +47,16 @@ pub(crate) struct AftershockArgs {
 
 /// Runs a cellar through its motion and the aftershock; the first line answers the question.
 pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
-    let scale = args.scale;
-    if !(scale > 0.0 && scale <= 100.0) {
+    let mut strengths = args.scale.clone();
+    strengths.sort_by(f64::total_cmp);
+    let valid = |scale: &&f64| **scale > 0.0 && **scale <= 100.0;
+    if let Some(scale) = strengths.iter().find(|scale| !valid(scale)) {
         bail!(
             "--scale {scale}: expected a factor above 0 and up to 100, such as 0.5 for half the strength"
         );
+    }
+    if let Some(twice) = strengths.windows(2).find(|two| two[0] == two[1]) {
+        bail!("--scale: {} is given twice; leave one of them out", twice[0]);
     }
     let scenario =
         ScenarioArgs { scenario: args.scenario.clone(), set: args.set.clone(), record: None };
@@ -63,10 +73,13 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
             .with_context(|| format!("cannot interpret the path {}", record.display()))
     });
     let record = record.transpose()?;
+    let [scale] = strengths[..] else {
+        return residual(args, &scenario, cellar, &strengths, record.as_deref());
+    };
     let cellar = cellar.with_aftershock(scale, record.as_deref())?;
     let strength = match &args.record {
-        Some(record) => format!("{} as an aftershock, scaled by {scale},", record.display()),
-        None => format!("an aftershock of {scale} times its strength"),
+        Some(record) => format!("the aftershock {} scaled by {scale}", record.display()),
+        None => format!("an aftershock of {scale} times the strength of the main shock"),
     };
     let run = RunArgs {
         scenario,
@@ -79,9 +92,56 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
         paper: PaperName::A4,
         with_engine: None,
         state: None,
+        keep: None,
+        part: None,
         plain: false,
         json: args.json,
         quiet: args.quiet,
     };
     super::cellar::run(&run, cellar, &|answer| words::aftershock(&answer.summary, &strength))
+}
+
+/// Runs a cellar through its motion and aftershocks of several strengths, each after the same main shock.
+fn residual(
+    args: &AftershockArgs,
+    scenario: &ScenarioArgs,
+    cellar: Cellar,
+    strengths: &[f64],
+    record: Option<&Path>,
+) -> anyhow::Result<ExitCode> {
+    if args.variants.variant.is_some() {
+        bail!(
+            "--variant selects the run that is shown, and with several strengths none is shown; leave it out"
+        );
+    }
+    let (cellar, _) = super::cellar::selected(cellar, args.variants)?;
+    let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
+    let start = Instant::now();
+    let progress = Progress::new(!args.quiet);
+    let summary = aftershocks::aftershocks(&cellar, strengths, record, &mut |reached| {
+        progress.advance(reached)
+    });
+    drop(progress);
+    let mut summary = summary.map_err(|error| super::cellar::placed(error, &cellar, scenario))?;
+    summary.wall_seconds = Some(start.elapsed().as_secs_f64());
+    crate::interrupt::finished();
+    // The verdict is printed even if the files cannot be written.
+    let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
+        crate::interrupt::writes_to(folder.path());
+        let files = aftershocks::files(&summary).context("cannot write the summary")?;
+        Ok(folder.write_files(&files)?)
+    });
+    if args.json {
+        printer::document(&summary)?;
+    } else {
+        let mut lines = vec![summary.title.clone(), format!("  {}", summary.headline)];
+        lines.extend(aftershocks::sentences(&summary).into_iter().map(|text| format!("  {text}")));
+        printer::lines(lines)?;
+        if let (Some(folder), Ok(())) = (&folder, &written) {
+            printer::lines(["", &format!("report: {}", folder.report().display())])?;
+        }
+        summary.warnings.iter().for_each(|warning| printer::warning(warning));
+    }
+    written?;
+    Ok(super::status(summary.counted == 0 && summary.unfinished.is_none()))
 }

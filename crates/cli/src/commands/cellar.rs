@@ -7,10 +7,11 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 use barrelstack::export::Folder;
 use barrelstack::variants::RunChoice;
-use barrelstack_cellar::{Answer, Cellar, CellarFailure, Plan, RoomFailure, report, words};
+use barrelstack_cellar::kept::Part;
+use barrelstack_cellar::{Answer, Cellar, CellarFailure, Plan, Prepared, RoomFailure, report, words};
 use barrelstack_report::{Characters, Figure};
 
-use crate::args::{CheckArgs, RunArgs, ScenarioArgs, VariantArgs};
+use crate::args::{CheckArgs, PartName, RunArgs, ScenarioArgs, VariantArgs};
 use crate::printer;
 use crate::progress::Progress;
 
@@ -36,6 +37,10 @@ pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCod
     }
     let mut problems = plan.problems.into_iter().map(|(error, _)| error);
     let Some(first) = problems.next() else {
+        if !cellar.start.is_as_built() {
+            let started = Prepared::new(cellar).and_then(|prepared| prepared.check_start());
+            started.map_err(|error| placed(error, cellar, &args.scenario))?;
+        }
         if !args.json {
             stands(cellar, &args.scenario)?;
         }
@@ -91,6 +96,9 @@ pub(super) fn run(
         }
     }
     let (cellar, choice) = selected(cellar, args.variants)?;
+    if let (Some(PartName(part)), Some(keep)) = (args.part, &args.keep) {
+        return run_part(args, &cellar, part, keep);
+    }
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if let Some(path) = &args.state {
         is_new(path, "--state")?;
@@ -98,7 +106,9 @@ pub(super) fn run(
     let start = Instant::now();
     let progress = Progress::new(!args.quiet);
     let answer =
-        barrelstack_cellar::answer(&cellar, choice, &mut |reached| progress.advance(reached));
+        barrelstack_cellar::answer_with(&cellar, choice, args.keep.as_deref(), &mut |reached| {
+            progress.advance(reached)
+        });
     drop(progress);
     let mut answer = answer.map_err(|error| placed(error, &cellar, &args.scenario))?;
     answer.summary.wall_seconds = Some(start.elapsed().as_secs_f64());
@@ -113,8 +123,18 @@ pub(super) fn run(
         Ok(())
     });
     let written = written.and_then(|()| match &args.state {
-        Some(path) if !answer.is_stopped() => crate::store::store(path, answer.state().as_bytes()),
-        Some(_) | None => Ok(()),
+        Some(path) if !answer.is_stopped() && !answer.is_invalid() => {
+            crate::store::store(path, answer.state().as_bytes())
+        }
+        Some(path) => {
+            let reason = if answer.is_stopped() { "was stopped" } else { "has no valid result" };
+            printer::warning(&format!(
+                "{} is not written: the run that is shown {reason}",
+                path.display()
+            ));
+            Ok(())
+        }
+        None => Ok(()),
     });
     if args.json {
         printer::document(&answer.summary)?;
@@ -132,6 +152,22 @@ pub(super) fn run(
     Ok(super::status(answer.is_invalid()))
 }
 
+/// Runs a part of the variants of a cellar and keeps their results.
+fn run_part(args: &RunArgs, cellar: &Cellar, part: Part, keep: &Path) -> anyhow::Result<ExitCode> {
+    let progress = Progress::new(!args.quiet);
+    let found =
+        barrelstack_cellar::run_part(cellar, part, keep, &mut |reached| progress.advance(reached));
+    drop(progress);
+    let [done, of] = found.map_err(|error| placed(error, cellar, &args.scenario))?;
+    crate::interrupt::finished();
+    let Part { part, of: parts } = part;
+    printer::lines([format!(
+        "part {part} of {parts}: {done} of {of} variants are in {}; with the same --keep and without --part, all parts are gathered",
+        keep.display()
+    )])?;
+    Ok(ExitCode::SUCCESS)
+}
+
 fn printed(answer: &Answer, characters: Characters) -> anyhow::Result<()> {
     let summary = &answer.summary;
     let mut lines = vec![summary.title.clone(), format!("  {}", summary.headline)];
@@ -142,7 +178,7 @@ fn printed(answer: &Answer, characters: Characters) -> anyhow::Result<()> {
 }
 
 /// Returns the cellar with the requested number of variants, and the run to show.
-fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cellar, RunChoice)> {
+pub(super) fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cellar, RunChoice)> {
     let stated = cellar.stated().imperfections().map_or(0, |imperfections| imperfections.variants);
     let count = args.variants.unwrap_or(stated);
     let cellar = cellar.with_variants(count);
@@ -156,13 +192,14 @@ fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cellar, RunCho
 }
 
 /// Adds to an error the position in the file.
-fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
+pub(super) fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CellarFailure::Plan(error) => error.into(),
         CellarFailure::Stack(failure) => super::placed(failure, cellar.stated(), args),
         CellarFailure::Room(RoomFailure::Stack { name, failure }) => {
             super::placed(*failure, cellar.stated(), args).context(format!("stack {name}"))
         }
+        CellarFailure::Kept { .. } => error.into(),
         CellarFailure::Room(error) => anyhow::Error::from(error).context(args.scenario.clone()),
     }
 }

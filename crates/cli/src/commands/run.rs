@@ -29,6 +29,9 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         Loaded::Scenario(scenario) => scenario,
         Loaded::Cellar(cellar) => return super::cellar::run(args, *cellar, &|_| None),
     };
+    if args.keep.is_some() {
+        bail!("--keep: only variants of a cellar are kept one by one; leave it out for one stack");
+    }
     if args.state.is_some() {
         bail!("--state: only the run of a cellar is continued; leave it out for one stack");
     }

@@ -50,6 +50,7 @@ documents! {
     "summary" Summary: "run --json, and summary.json of --out";
     "space" barrelstack_space::Summary: "run --json where stack.view is \"spatial\", and summary.json of --out";
     "cellar" barrelstack_cellar::summary::CellarSummary: "run --json of a cellar, and cellar.json of --out";
+    "aftershocks" barrelstack_cellar::aftershocks::AftershockSummary: "aftershock --json with several strengths, and aftershocks.json of --out";
     "cellar-plan" barrelstack_cellar::plan::PlanSummary: "check --json of a cellar";
     "check" barrelstack::check::Checked: "check --json";
     "stability" barrelstack::stability::StabilityTable: "check --table --json";

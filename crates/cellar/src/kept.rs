@@ -1,0 +1,123 @@
+//! Results of variants in a folder, so that work that was stopped goes on, and several machines share it.
+
+use std::path::{Path, PathBuf};
+
+use barrelstack_input::system;
+use serde::{Deserialize, Serialize};
+
+use crate::sample::{Case, CellarFailure, Prepared};
+
+/// A folder with the results of variants of one cellar, one file for each.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    folder: PathBuf,
+    /// Fingerprint of the cellar.
+    cellar_hash: String,
+}
+
+/// Layout and version of a file.
+const SCHEMA: &str = "cellar-variant/1";
+
+/// A file with the result of a variant.
+#[derive(Serialize, Deserialize)]
+struct File<C> {
+    schema: String,
+    /// Version of the program, whose results another version may not continue.
+    version: String,
+    cellar_hash: String,
+    case: C,
+}
+
+/// Share of the variants that a machine runs: those whose numbers leave the remainder `part - 1` when divided by `of`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Number of the part, from 1.
+    pub part: u32,
+    /// Number of parts.
+    pub of: u32,
+}
+
+impl Part {
+    /// `true` if a variant belongs to the part.
+    pub fn has(self, variant: u32) -> bool {
+        variant % self.of == self.part - 1
+    }
+}
+
+impl Kept {
+    /// Creates the folder if it is missing.
+    ///
+    /// # Errors
+    /// If the folder cannot be created.
+    pub fn open(folder: &Path, prepared: &Prepared) -> Result<Self, CellarFailure> {
+        std::fs::create_dir_all(folder).map_err(|error| failure(folder, &system::words(&error)))?;
+        let cellar_hash = prepared.plan.summary.cellar_hash.clone();
+        Ok(Self { folder: folder.to_owned(), cellar_hash })
+    }
+
+    fn path(&self, variant: u32) -> PathBuf {
+        self.folder.join(format!("variant-{variant:04}.json"))
+    }
+
+    /// Returns the result of a variant; `None` if it is not in the folder.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is that of another cellar or of another version of the program.
+    pub fn read(&self, variant: u32) -> Result<Option<Case>, CellarFailure> {
+        let path = self.path(variant);
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(failure(&path, &system::words(&error))),
+        };
+        let file: File<Case> = serde_json::from_slice(&bytes).map_err(|error| {
+            failure(&path, &format!("it is not the result of a variant ({error})"))
+        })?;
+        let own = (SCHEMA, env!("CARGO_PKG_VERSION"));
+        if (file.schema.as_str(), file.version.as_str()) != own {
+            return Err(failure(
+                &path,
+                &format!(
+                    "it is of version {} ({}), not {} ({})",
+                    file.version, file.schema, own.1, own.0
+                ),
+            ));
+        }
+        if file.cellar_hash != self.cellar_hash {
+            let message = format!(
+                "it is of the cellar {}, and this one is {}: another file, other changes or another number of variants",
+                file.cellar_hash, self.cellar_hash
+            );
+            return Err(failure(&path, &message));
+        }
+        if file.case.variant != variant {
+            return Err(failure(&path, &format!("it is of variant {}", file.case.variant)));
+        }
+        Ok(Some(file.case))
+    }
+
+    /// Writes the result of a variant whose computation did not fail.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, case: &Case) -> Result<(), CellarFailure> {
+        if !case.valid {
+            return Ok(());
+        }
+        let path = self.path(case.variant);
+        let file = File {
+            schema: SCHEMA.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            cellar_hash: self.cellar_hash.clone(),
+            case,
+        };
+        let text =
+            serde_json::to_string(&file).map_err(|error| failure(&path, &error.to_string()))?;
+        system::store(&path, text.as_bytes())
+            .map_err(|error| failure(&path, &system::words(&error)))
+    }
+}
+
+fn failure(path: &Path, reason: &str) -> CellarFailure {
+    CellarFailure::Kept { path: path.display().to_string(), reason: reason.to_owned() }
+}
