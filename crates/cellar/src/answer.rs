@@ -115,9 +115,9 @@ pub fn run_part(
 }
 
 /// Returns an observer that several threads may call.
-pub(crate) fn shared<'a>(
-    observer: &'a mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
-) -> impl Fn(Advance) -> ControlFlow<()> + Sync + 'a {
+pub(crate) fn shared(
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> impl Fn(Advance) -> ControlFlow<()> + Sync + '_ {
     let observer = Mutex::new(observer);
     move |reached| match observer.lock() {
         Ok(mut observer) => observer(reached),

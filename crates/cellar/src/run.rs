@@ -73,7 +73,7 @@ pub fn run(
 ///
 /// # Errors
 /// As for [`run`].
-pub fn check_overlaps(room: &Room) -> Result<(), RoomFailure> {
+pub(crate) fn check_overlaps(room: &Room) -> Result<(), RoomFailure> {
     let world = World::of(room, 0)?;
     Running::start(&world, None).check_overlaps()
 }

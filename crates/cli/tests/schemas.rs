@@ -184,6 +184,8 @@ fn of_rooms(documents: &mut Documents) {
     let room = ["demo-cellar", "--set=stack.levels=1", "--set=run.duration=1 s"];
     assert_eq!(documents.run(&[&["run", "--variants=1"], &room[..]].concat(), 0)["counted"], 1);
     assert_eq!(documents.run(&[&["check"], &room[..]].concat(), 0)["stacks"], 4);
+    let several = ["aftershock", "--variants=0", "--scale=0.5,1"];
+    assert_eq!(documents.run(&[&several, &room[..]].concat(), 0)["counted"], 1);
     let narrow = [
         "check",
         "demo-cellar",

@@ -55,8 +55,9 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
             "--scale {scale}: expected a factor above 0 and up to 100, such as 0.5 for half the strength"
         );
     }
-    if let Some(twice) = strengths.windows(2).find(|two| two[0] == two[1]) {
-        bail!("--scale: {} is given twice; leave one of them out", twice[0]);
+    let same = strengths.windows(2).find(|two| two[0] == two[1]);
+    if let Some(twice) = same.and_then(<[f64]>::first) {
+        bail!("--scale: {twice} is given twice; leave one of them out");
     }
     let scenario =
         ScenarioArgs { scenario: args.scenario.clone(), set: args.set.clone(), record: None };

@@ -8,7 +8,9 @@ use anyhow::{Context as _, bail};
 use barrelstack::export::Folder;
 use barrelstack::variants::RunChoice;
 use barrelstack_cellar::kept::Part;
-use barrelstack_cellar::{Answer, Cellar, CellarFailure, Plan, Prepared, RoomFailure, report, words};
+use barrelstack_cellar::{
+    Answer, Cellar, CellarFailure, Plan, Prepared, RoomFailure, report, words,
+};
 use barrelstack_report::{Characters, Figure};
 
 use crate::args::{CheckArgs, PartName, RunArgs, ScenarioArgs, VariantArgs};
