@@ -16,6 +16,7 @@
 
 mod answer;
 mod collect;
+pub mod comparison;
 mod contact_kinds;
 pub mod geometry;
 mod history;

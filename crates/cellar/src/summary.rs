@@ -560,7 +560,7 @@ fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<ShockAnswer> 
 }
 
 /// Returns the number of barrels that fall in a case.
-fn barrels(case: &Case) -> usize {
+pub(crate) fn barrels(case: &Case) -> usize {
     case.stacks.iter().map(|stack| stack.barrels).sum()
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
 }
 
 /// Returns the time (s) that a run which is shown leaves of the motion; `None` if it covers the motion.
-fn missing(summary: &CellarSummary) -> Option<f64> {
+pub(crate) fn missing(summary: &CellarSummary) -> Option<f64> {
     let motion = summary.motion.as_ref()?;
     Some(motion.duration - summary.shown.end_time).filter(|missing| *missing > CUT)
 }
