@@ -156,7 +156,7 @@ fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cellar, RunCho
 }
 
 /// Adds to an error the position in the file.
-fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
+pub(super) fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CellarFailure::Plan(error) => error.into(),
         CellarFailure::Stack(failure) => super::placed(failure, cellar.stated(), args),
