@@ -14,13 +14,14 @@ use crate::ensemble::CaseResult;
 use crate::outcome::Outcome;
 use crate::report;
 use crate::run::{Run, RunFailure};
-use crate::scenario::{Scenario, View};
+use crate::scenario::{Scenario, Setting, View};
 use crate::summary::{AnySummary, Summary};
 use crate::variants::{Advance, Answer, Shown, Spread, common_number};
 
-pub use labels::labels;
+pub use labels::{labels, labels_by};
 pub use page::document;
 pub use paired::Paired;
+pub use tables::inputs;
 
 /// One run of a comparison, in a plane or in space.
 #[derive(Clone, Debug)]
@@ -290,14 +291,22 @@ pub const MOST: usize = 6;
 /// # Errors
 /// When there are too few or too many runs, or two runs have equal inputs.
 pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
-    match scenarios.len() {
+    let print = |(name, scenario): &(String, Scenario)| (name.clone(), scenario.fingerprint());
+    check_distinct(&scenarios.iter().map(print).collect::<Vec<_>>(), MOST)
+}
+
+/// Checks that there are two to `most` runs, given by name and fingerprint, and that no two are equal.
+///
+/// # Errors
+/// As for [`check`].
+pub fn check_distinct(runs: &[(String, u64)], most: usize) -> Result<(), CompareError> {
+    match runs.len() {
         found @ 0..=1 => return Err(CompareError::TooFew(found)),
-        found if found > MOST => return Err(CompareError::TooMany { found, most: MOST }),
+        found if found > most => return Err(CompareError::TooMany { found, most }),
         _ => {}
     }
-    for (at, (second, scenario)) in scenarios.iter().enumerate() {
-        let print = scenario.fingerprint();
-        if let Some((first, _)) = scenarios[..at].iter().find(|(_, s)| s.fingerprint() == print) {
+    for (at, (second, print)) in runs.iter().enumerate() {
+        if let Some((first, _)) = runs[..at].iter().find(|(_, other)| other == print) {
             return Err(CompareError::Identical { first: first.clone(), second: second.clone() });
         }
     }
@@ -352,13 +361,17 @@ described! {
 
 /// Returns the inputs that differ between scenarios, in the order of the scenario file.
 pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec<Difference> {
-    let all: Vec<_> = scenarios.into_iter().map(Scenario::settings).collect();
+    differing(&scenarios.into_iter().map(Scenario::settings).collect::<Vec<_>>())
+}
+
+/// Returns the inputs that differ between runs, each given by all its settings, in the order of the settings.
+pub fn differing(all: &[Vec<Setting>]) -> Vec<Difference> {
     let mut list: Vec<Difference> = Vec::new();
     for setting in all.iter().flatten() {
         if list.iter().any(|known| known.path == setting.path) {
             continue;
         }
-        let value = |settings: &Vec<crate::scenario::Setting>| {
+        let value = |settings: &Vec<Setting>| {
             settings.iter().find(|s| s.path == setting.path).map(|s| s.value.clone())
         };
         list.push(Difference {

@@ -17,6 +17,7 @@
 pub mod aftershocks;
 mod answer;
 mod collect;
+pub mod comparison;
 mod contact_kinds;
 pub mod geometry;
 mod history;

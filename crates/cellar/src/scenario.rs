@@ -17,7 +17,7 @@ use barrelstack::scenario::stack::STACK;
 use barrelstack::scenario::template::{Host, Language};
 use barrelstack::scenario::tree::{Entry, Node, Origin, Table, Value};
 use barrelstack::scenario::unknowns::UNKNOWNS;
-use barrelstack::scenario::{Dimension, Scenario, Until};
+use barrelstack::scenario::{Dimension, Scenario, Setting, Until};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::writer::{Writer, to_toml};
 use barrelstack_input::{FileRef, fnv1a, named, section, table};
@@ -367,6 +367,21 @@ impl Cellar {
     /// `true` if a text, or a text that it extends, is of the kind of a cellar. A text that cannot be read is not.
     pub fn is_stated(path: Option<&Path>, bytes: &[u8]) -> bool {
         is_cellar(path, bytes, 8)
+    }
+
+    /// Returns the same cellar with values changed by further overrides, which replace earlier ones.
+    ///
+    /// # Errors
+    /// As for [`Cellar::load`].
+    pub fn with(&self, changes: &[String]) -> Result<Self, ScenarioError> {
+        Self::of(&self.host.with(changes, &LANGUAGE)?)
+    }
+
+    /// Returns all values with their meanings, without the title, in the order of the file.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut all = barrelstack_input::listing::settings(&self.write(), &CELLAR);
+        all.retain(|setting| !["title", "schema", "kind"].contains(&setting.path.as_str()));
+        all
     }
 
     /// Returns the number of barrels.

@@ -571,7 +571,7 @@ pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<Sh
 }
 
 /// Returns the number of barrels that fall in a case.
-fn barrels(case: &Case) -> usize {
+pub(crate) fn barrels(case: &Case) -> usize {
     case.stacks.iter().map(|stack| stack.barrels).sum()
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
 }
 
 /// Returns the longest time (s) that the run that is shown leaves of the motion of a shock; `None` if it covers all.
-fn missing(summary: &CellarSummary) -> Option<f64> {
+pub(crate) fn missing(summary: &CellarSummary) -> Option<f64> {
     if !summary.shocks.is_empty() {
         return longest_cut(summary.shocks.iter());
     }

@@ -9,6 +9,7 @@ mod common;
 
 mod alone;
 mod answer;
+mod comparison;
 mod plan;
 mod sequence;
 mod stacks;

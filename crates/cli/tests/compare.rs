@@ -115,3 +115,98 @@ fn a_verified_run_keeps_its_verification_in_summary_and_report() {
             .is_null()
     );
 }
+
+/// Two stacks of two levels in a room, shaken for a short time.
+const ROOM: [&str; 7] = [
+    "compare",
+    "demo-cellar",
+    "--set=stack.levels=2",
+    "--set=block.1.rows=1",
+    "--set=run.duration=6 s",
+    "--set=motion.scale.factor=2.5",
+    "-q",
+];
+
+#[test]
+fn two_layouts_of_a_room_are_compared_variant_by_variant() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("both").display().to_string();
+    let more = ["--variants=2", "--against=block.1.spacing=\"1 m\"", "--out", &out];
+    let output = barrelstack([&ROOM[..], &more].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let found = json(&fs::read_to_string(folder.path().join("both/comparison.json")).unwrap());
+    let said = stdout(&output);
+    assert!(said.starts_with("Spacing 1 m instead of 0.3 m: "), "{said}");
+    assert_eq!(said.lines().next(), found["headline"].as_str());
+    assert!(said.contains("\n  layout ") && said.contains("\nreport: "), "{said}");
+    assert_eq!(found["paired"][0]["variants"], 2);
+    let all = ["comparison.json", "figures", "layouts.csv", "report.html", "report.md"];
+    assert_eq!(names(&folder.path().join("both")).unwrap(), all);
+    let page = fs::read_to_string(folder.path().join("both/report.html")).unwrap();
+    assert!(page.contains(">Loss against capacity<") && page.contains(">Differences<"));
+    // The numbers are those of the runs.
+    let run = ["run", "--variants=2", "--json", "--set=block.1.spacing=1 m"];
+    let run = stdout(&barrelstack([&run[..], &ROOM[1..]].concat()));
+    let (run, second) = (json(&run), &found["layouts"][1]);
+    assert_eq!(second["cellar_hash"], run["plan"]["cellar_hash"]);
+    assert_eq!(second["by_themselves"]["mean"], run["room"]["by_themselves"]);
+    assert_eq!(second["wine_lost"], run["room"]["wine_lost"][1]);
+    assert_eq!(second["aisles"], run["aisles"]);
+}
+
+#[test]
+fn usual_changes_of_a_room_are_ranked_and_those_that_do_not_fit_have_their_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("usual").display().to_string();
+    // One level has nothing to strap, to stop or to spare.
+    let more = ["--set=stack.levels=1", "--variants=0", "--usual", "--json", "--out", &out];
+    let room: Vec<&str> = ROOM.into_iter().filter(|one| !one.contains("levels")).collect();
+    let output = barrelstack([&room[..], &more].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let found = json(&stdout(&output));
+    let names = |key: &str| -> Vec<String> {
+        let all = found[key].as_array().unwrap();
+        all.iter().map(|one| one["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(names("layouts"), ["as it is", "spacing 1 m", "every stack turned by 90°"]);
+    assert_eq!(names("left_out").len(), 3);
+    for one in found["left_out"].as_array().unwrap() {
+        assert!(one["reason"].as_str().unwrap().contains("one level"), "{one}");
+    }
+    assert_eq!(found["order"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn layouts_that_cannot_be_compared_are_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("none");
+    for (arguments, words) in [
+        (vec!["demo-cellar"], ["found 1", "--against PATH=VALUE"]),
+        (vec!["demo-cellar", "demo-cellar"], ["demo-cellar and demo-cellar", "the same run"]),
+        (
+            vec!["demo-napa", "demo-cellar"],
+            ["demo-cellar: this is a cellar, and demo-napa is not", "stacks with stacks"],
+        ),
+        (
+            vec!["demo-cellar", "--against=stack.levles=4"],
+            ["stack.levles", "did you mean `levels`"],
+        ),
+        (
+            vec!["demo-cellar", "--against=block.1.spacing=3 m"],
+            ["into the right wall", "enlarge the room"],
+        ),
+        (
+            vec!["demo-cellar", "--usual", "--label=a", "--label=b"],
+            ["--label", "2 names for 1 run"],
+        ),
+        (vec!["demo-napa", "--usual"], ["--usual", "give a cellar"]),
+        (
+            vec!["demo-cellar", "--usual", "--record=nowhere.AT2"],
+            ["nowhere.AT2", "correct the path after --record"],
+        ),
+    ] {
+        let all = ["compare"].into_iter().chain(arguments).chain(["--out", out.to_str().unwrap()]);
+        refused("not compared", &barrelstack(all), &out, &words);
+        assert!(!out.exists());
+    }
+}

@@ -274,6 +274,21 @@ fn of_a_stopped_comparison_the_finished_run_is_kept_and_nothing_is_compared() {
 }
 
 #[test]
+fn of_stopped_layouts_the_finished_ones_are_kept_and_there_is_no_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let room = ["compare", "demo-cellar", "--set=stack.levels=1", "--set=run.duration=1 s"];
+    let layouts = ["--variants=1", "--against=block.1.spacing=1 m", "--out=out", "--json"];
+    let both = [&room[..], &layouts].concat();
+    let first = json(&stops_at("1:runs:1", &both, folder.path(), false));
+    assert!(first["error"].as_str().unwrap().contains("stopped"), "{first}");
+    let document = json(&stops_at("2:runs:1", &both, folder.path(), true));
+    assert_eq!(document["headline"], "Stopped after 1 of 2 layouts: there is no verdict.");
+    assert_eq!(document["unfinished"].as_array().unwrap().len(), 1);
+    assert!(document["paired"].as_array().unwrap().is_empty());
+    assert!(folder.path().join("out/report.html").exists());
+}
+
+#[test]
 fn what_is_stopped_in_space_has_no_outcome_and_keeps_its_variants() {
     let folder = tempfile::tempdir().unwrap();
     let space = [&SHORT[..], &["--set=stack.view=spatial", "--json"]].concat();

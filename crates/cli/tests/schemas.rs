@@ -180,7 +180,7 @@ fn path(folder: &Path, name: &str) -> String {
 }
 
 /// Reads the documents of rooms.
-fn of_rooms(documents: &mut Documents) {
+fn of_rooms(documents: &mut Documents, out: &str) {
     let room = ["demo-cellar", "--set=stack.levels=1", "--set=run.duration=1 s"];
     assert_eq!(documents.run(&[&["run", "--variants=1"], &room[..]].concat(), 0)["counted"], 1);
     assert_eq!(documents.run(&[&["check"], &room[..]].concat(), 0)["stacks"], 4);
@@ -194,6 +194,9 @@ fn of_rooms(documents: &mut Documents) {
     ];
     let wrong = documents.run(&narrow, 2);
     assert_eq!(wrong["problems"].as_array().unwrap().len(), 1, "{wrong}");
+    let layouts = ["compare", "--variants=1", "--against=block.1.spacing=1 m", "--out", out];
+    let compared = documents.run(&[&layouts[..], &room].concat(), 0);
+    assert!(compared["paired"][0]["barrels_fallen"]["interval"].is_null(), "{compared}");
 }
 
 #[test]
@@ -242,7 +245,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
         assert_eq!(value["run"]["interrupted"], true);
     }
 
-    of_rooms(&mut documents);
+    of_rooms(&mut documents, &at("layouts"));
     documents.run(&["check", "candia-8-barrels"], 0);
     documents.run(&["check", "bouncing-disc"], 0);
     let against = "--against=run.duration=0.5 s";

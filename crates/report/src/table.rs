@@ -126,6 +126,25 @@ impl Table {
         Self { rows: things.into_iter().map(row).collect(), ..Self::new(caption, &heads) }
     }
 
+    /// Writes the table as lines of text: a heading line with units, then every row, with aligned columns.
+    pub fn to_lines(&self) -> Vec<String> {
+        let heads = self.columns.iter().map(Column::heading).collect();
+        let row = |row: &Vec<Cell>| {
+            (0..self.columns.len())
+                .map(|at| row.get(at).map_or_else(|| number::MISSING.into(), Cell::shown))
+                .collect()
+        };
+        let rows: Vec<Vec<String>> =
+            std::iter::once(heads).chain(self.rows.iter().map(row)).collect();
+        let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        let line = |row: &Vec<String>| {
+            let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
+            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+        };
+        rows.iter().map(line).collect()
+    }
+
     /// Writes the table as CSV: a heading line with units, then every row at full precision.
     pub fn to_csv(&self) -> String {
         let mut out = String::new();

@@ -58,6 +58,23 @@ pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
             .collect();
         words.join(", ").replace(", with", " with")
     });
+    distinct(names)
+}
+
+/// Names runs by the inputs that differ, such as "block 1 spacing 1"; with more inputs than a name can state, the given
+/// names are kept.
+pub fn labels_by(names: &[String], differing: &[Difference]) -> Vec<String> {
+    let name = |(at, name): (usize, &String)| {
+        if differing.is_empty() || differing.len() > MOST {
+            return name.clone();
+        }
+        differing.iter().map(|one| other(one, at)).collect::<Vec<_>>().join(", ")
+    };
+    distinct(names.iter().enumerate().map(name))
+}
+
+/// Numbers names that occur again.
+fn distinct(names: impl Iterator<Item = String>) -> Vec<String> {
     let mut named: Vec<String> = Vec::new();
     for name in names {
         let again = named.iter().filter(|known| **known == name).count();

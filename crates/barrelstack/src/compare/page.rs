@@ -15,13 +15,14 @@ use crate::variants::{Spread, words};
 pub fn document(sides: &[Side]) -> Document {
     let differing = differences(sides.iter().map(|side| &side.stated));
     let mut blocks = vec![Block::Players(players(sides))];
+    let letters: Vec<String> = (0..sides.len()).map(|at| letter(at).to_string()).collect();
     let mut section = |title: &str, content: Vec<Block>| {
         if !content.is_empty() {
             blocks.push(Block::heading(2, title));
             blocks.extend(content);
         }
     };
-    section("Differences", vec![Block::Table(tables::inputs(sides, &differing))]);
+    section("Differences", vec![Block::Table(tables::inputs(&letters, &differing))]);
     section("Outcomes", vec![Block::Table(tables::outcomes(sides))]);
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));

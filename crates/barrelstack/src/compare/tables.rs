@@ -17,14 +17,11 @@ fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &
     table
 }
 
-/// Tabulates the inputs that differ.
-pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
-    let mut table = table(
-        "Inputs that differ. All others are equal.",
-        &[("input", "")],
-        sides,
-        &[("meaning", "")],
-    );
+/// Tabulates the inputs that differ between runs with these names.
+pub fn inputs(names: &[String], differing: &[Difference]) -> Table {
+    let mut table = Table::new("Inputs that differ. All others are equal.", &[("input", "")]);
+    table.columns.extend(names.iter().map(|name| Column::new(name, "")));
+    table.columns.push(Column::new("meaning", ""));
     for one in differing {
         let mut row = vec![Cell::text(&one.path)];
         let shown = |value: &String| report::shown(&one.path, value);

@@ -41,7 +41,10 @@ use crate::watch::after_collapse;
 pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
 pub use decides::{Constant, Fitted, ShareAt, Unknown};
-pub use remedy::{ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, remedy, remedy_by};
+pub use remedy::{
+    ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, lowered, remedy, remedy_by,
+    strapped_together,
+};
 pub use spread::{FEW, LEVEL, Range, Spread, fails};
 
 /// A scenario in one plane, with all its variants.

@@ -243,6 +243,18 @@ fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     Some(Change { kind: "straps", levels, pretension: Some(pretension), changes, scenario })
 }
 
+/// Returns, as overrides, the change to fewer levels; straps on levels that no longer exist are removed. `None` for a
+/// scene without a stack.
+pub fn lowered(scenario: &Scenario, levels: u32) -> Option<Vec<String>> {
+    Some(lower(scenario, levels)?.changes)
+}
+
+/// Returns, as overrides, the change that straps all levels together at a pretension (N); `None` if the stack already has
+/// straps that are at least as tight, or if the straps would tear.
+pub fn strapped_together(scenario: &Scenario, pretension: f64) -> Option<Vec<String>> {
+    Some(strapped(scenario, pretension)?.changes)
+}
+
 /// Returns the fields of a table that the scenario states, as TOML.
 fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     let settings = scenario.settings();

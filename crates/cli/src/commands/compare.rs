@@ -1,9 +1,10 @@
-//! `barrelstack compare`: two or more runs side by side.
+//! `barrelstack compare`: two or more runs side by side, of stacks or of cellars.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::bail;
+use barrelstack::Scenario;
 use barrelstack::compare::{self, Comparison, Difference, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
@@ -11,6 +12,7 @@ use barrelstack::variants::RunChoice;
 use barrelstack_report::listed;
 use barrelstack_space::AnyAnswer;
 
+use super::Loaded;
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{Interrupt, Stopped};
 use crate::printer;
@@ -20,44 +22,51 @@ const EXAMPLES: &str = "\
 Examples:
   barrelstack compare demo-napa --against stack.levels=4
   barrelstack compare mine.toml --against interface.rack-ground.friction.coefficient=0.1
-  barrelstack compare strapped.toml loose.toml --record my-site.AT2 --out comparison";
+  barrelstack compare strapped.toml loose.toml --record my-site.AT2 --out comparison
+  barrelstack compare demo-cellar --against 'block.1.spacing=1 m'
+  barrelstack compare demo-cellar --usual";
 
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct CompareArgs {
-    /// Scenario files (TOML) or names of built-in scenarios.
+    /// Scenario files (TOML) or names of built-in scenarios; or cellars.
     #[arg(value_name = "SCENARIO", required = true)]
     scenarios: Vec<String>,
     /// Add a run of the first scenario with this value changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
+    /// Add the usual changes of the first cellar, each where it fits: wider spacing, all levels
+    /// strapped together, stops under every rack, one level less, every stack turned by 90°.
+    #[arg(long)]
+    pub(super) usual: bool,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     set: Vec<String>,
     /// File of the ground motion of all runs, in place of the motions that the scenarios state.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Number of variants of each stack to run, in place of imperfections.variants; 0 runs only the
-    /// stacks as stated.
+    /// Number of variants of each stack or cellar to run, in place of imperfections.variants; 0 runs
+    /// them only as stated.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
-    variants: Option<u32>,
+    pub(super) variants: Option<u32>,
     /// Name of a run, in place of a description of its differences; may be repeated, in the order
     /// of the runs.
     #[arg(long, value_name = "WORDS")]
-    label: Vec<String>,
-    /// Folder for report.html, report.md and figures/; must be new or empty.
+    pub(super) label: Vec<String>,
+    /// Folder for report.html, report.md and figures/, for cellars also layouts.csv and
+    /// comparison.json; must be new or empty.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-compare")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
     /// Allow a folder that is not empty, and replace the files of an earlier comparison.
     #[arg(long)]
-    overwrite: bool,
+    pub(super) overwrite: bool,
     /// Print one JSON document in place of the sentences.
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
     /// Show no progress.
     #[arg(long, short)]
-    quiet: bool,
+    pub(super) quiet: bool,
 }
 
 /// Runs all scenarios and writes the comparison.
@@ -68,25 +77,53 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
             "standard input can be read for one run only: write the scenario to a file and give its name"
         );
     }
-    let mut scenarios = Vec::new();
+    let (mut scenarios, mut cellars) = (Vec::new(), Vec::new());
     for (name, one) in &requested {
-        let mut scenario = super::load(one)?;
+        match super::load_any(one)? {
+            Loaded::Scenario(scenario) => scenarios.push((name.clone(), *scenario)),
+            Loaded::Cellar(cellar) => cellars.push((name.clone(), *cellar)),
+        }
+    }
+    match (scenarios.first(), cellars.first()) {
+        (Some((stack, _)), Some((cellar, _))) => bail!(
+            "{cellar}: this is a cellar, and {stack} is not: compare cellars with cellars, or stacks with stacks"
+        ),
+        (None, _) => super::layouts::compare(args, &requested, cellars),
+        (Some(_), None) if args.usual => {
+            bail!("--usual: these are changes of a room; leave it out, or give a cellar")
+        }
+        (Some(_), None) => stacks(args, &requested, scenarios),
+    }
+}
+
+/// Replaces the first names of runs by those that are given.
+pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<()> {
+    if given.len() > names.len() {
+        bail!("--label: there are {} names for {} runs", given.len(), names.len());
+    }
+    names.splice(..given.len(), given.iter().cloned());
+    Ok(())
+}
+
+/// Runs all stacks, given with their arguments, and writes the comparison.
+fn stacks(
+    args: &CompareArgs,
+    requested: &[(String, ScenarioArgs)],
+    mut scenarios: Vec<(String, Scenario)>,
+) -> anyhow::Result<ExitCode> {
+    for (_, scenario) in &mut scenarios {
         let variants = VariantArgs { variants: args.variants, variant: None };
-        super::run::selected(&mut scenario, variants)?;
-        scenarios.push((name.clone(), scenario));
+        super::run::selected(scenario, variants)?;
     }
     compare::check(&scenarios)?;
-    if args.label.len() > scenarios.len() {
-        bail!("--label: there are {} names for {} runs", args.label.len(), scenarios.len());
-    }
     let mut names = compare::labels(&scenarios);
-    names.splice(..args.label.len(), args.label.iter().cloned());
+    name(&mut names, &args.label)?;
     for ((name, _), label) in scenarios.iter_mut().zip(names) {
         *name = label;
     }
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut answers = Vec::new();
-    for ((name, scenario), (_, one)) in scenarios.iter().zip(&requested) {
+    for ((name, scenario), (_, one)) in scenarios.iter().zip(requested) {
         let answer = super::run::answered(scenario, RunChoice::Typical, !args.quiet)
             .map_err(|error| super::placed(error, scenario, one))?;
         let stopped = answer.is_stopped();

@@ -7,6 +7,7 @@ mod check;
 pub(crate) mod compare;
 mod demo;
 pub(crate) mod heights;
+mod layouts;
 pub(crate) mod motion;
 mod page;
 pub(crate) mod protect;
@@ -69,7 +70,7 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     match load_any(args)? {
         Loaded::Scenario(scenario) => Ok(*scenario),
         Loaded::Cellar(_) => anyhow::bail!(
-            "{}: this is a cellar, which `barrelstack check` and `barrelstack run` read; give the scenario of one stack",
+            "{}: this is a cellar, which `barrelstack check`, `run`, `aftershock` and `compare` read; give the scenario of one stack",
             args.scenario
         ),
     }

@@ -10,6 +10,7 @@ use barrelstack_campaign::decision::DecisionDocument;
 use barrelstack_campaign::heights::HeightsDocument;
 use barrelstack_campaign::protect::ProtectDocument;
 use barrelstack_campaign::score::ScoreDocument;
+use barrelstack_cellar::comparison::CellarComparison;
 use barrelstack_report::described;
 use serde_json::Value;
 
@@ -54,6 +55,7 @@ documents! {
     "cellar-plan" barrelstack_cellar::plan::PlanSummary: "check --json of a cellar";
     "check" barrelstack::check::Checked: "check --json";
     "stability" barrelstack::stability::StabilityTable: "check --table --json";
+    "cellar-comparison" CellarComparison: "compare --json of cellars, and comparison.json of --out";
     "comparison" Comparison: "compare --json";
     "heights" HeightsDocument: "heights --json, and heights.json of --out";
     "protect" ProtectDocument: "protect --json, and protect.json of --out";
@@ -71,7 +73,7 @@ documents! {
 /// Prints the schema of one document, or lists all documents.
 pub(crate) fn schema(args: &SchemaArgs) -> anyhow::Result<ExitCode> {
     let Some(name) = &args.name else {
-        let lines = DOCUMENTS.iter().map(|known| format!("{:14}{}", known.name, known.of));
+        let lines = DOCUMENTS.iter().map(|known| format!("{:19}{}", known.name, known.of));
         printer::lines(lines)?;
         return Ok(ExitCode::SUCCESS);
     };

@@ -161,6 +161,18 @@ impl Host {
         Self::parse(&format!("{name}.toml"), text.as_bytes(), overrides, language)
     }
 
+    /// Returns the file with further overrides, which replace earlier overrides of the same values.
+    ///
+    /// # Errors
+    /// If an override is invalid.
+    pub fn with(&self, overrides: &[String], language: &Language) -> Result<Self, ScenarioError> {
+        let mut changed = self.clone();
+        let first = changed.sources.overrides.len();
+        changed.sources.overrides.extend_from_slice(overrides);
+        merge::apply_overrides(&mut changed.table, language.root, &changed.sources, first)?;
+        Ok(changed)
+    }
+
     /// Opens the whole file for reading.
     ///
     /// # Errors

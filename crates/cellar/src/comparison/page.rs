@@ -1,0 +1,274 @@
+//! The page, the tables and the files of a comparison of layouts.
+
+use barrelstack::compare::inputs;
+use barrelstack::report::WORDS;
+use barrelstack::variants::FEW;
+use barrelstack::variants::words::percent;
+use barrelstack_report::{
+    Block, Cell, Document, Figure, Table, Verdict, capital, described, listed, measured,
+};
+
+use super::words::{amount, estimate, sentences};
+use super::{CellarComparison, Change, Estimate, Layout, LayoutAnswer, LayoutPair, LeftOut};
+use crate::plan::liters;
+use crate::sample::CELL;
+use crate::words::span;
+
+/// Number of sentences that support the headline before the others, which are collapsed on screen.
+const OPENING: usize = 3;
+
+/// A row of a table: a layout with its pair, or a change that was not run.
+enum Row<'a> {
+    Run(&'a LayoutAnswer, Option<&'a LayoutPair>),
+    LeftOut(&'a LeftOut),
+}
+
+impl Row<'_> {
+    fn name(&self) -> Cell {
+        Cell::text(match self {
+            Self::Run(one, _) => &one.name,
+            Self::LeftOut(one) => &one.name,
+        })
+    }
+
+    /// Returns a cell on a layout with a valid result; missing for all others.
+    fn of(&self, cell: impl FnOnce(&LayoutAnswer) -> Cell) -> Cell {
+        match self {
+            Self::Run(one, _) if one.counted > 0 => cell(one),
+            Self::Run(..) | Self::LeftOut(_) => Cell::Missing,
+        }
+    }
+
+    /// Returns a cell on the pair of a layout; missing without pairs.
+    fn paired(&self, cell: impl FnOnce(&LayoutPair) -> Cell) -> Cell {
+        match self {
+            Self::Run(_, Some(pair)) if pair.variants > 0 => cell(pair),
+            Self::Run(..) | Self::LeftOut(_) => Cell::Missing,
+        }
+    }
+
+    /// Returns the reason why there is no result; missing where there is one.
+    fn reason(&self) -> Cell {
+        match self {
+            Self::Run(one, _) if one.counted > 0 => Cell::text(""),
+            Self::Run(..) => Cell::text("no run has a valid result"),
+            Self::LeftOut(one) => Cell::text(format!("not run: {}", one.reason)),
+        }
+    }
+}
+
+/// Returns the layouts by the share of their barrels that falls, and then the changes that were not run.
+fn rows(found: &CellarComparison) -> Vec<Row<'_>> {
+    let run = found.ranked().into_iter().map(|(one, pair)| Row::Run(one, pair));
+    run.chain(found.left_out.iter().map(Row::LeftOut)).collect()
+}
+
+/// Returns a change with its sign and its interval.
+fn change(change: &Change, scale: f64) -> Cell {
+    let signed = |value: f64| match amount(value) {
+        shown if value > 0.0 && shown != "0" => format!("+{shown}"),
+        shown => shown,
+    };
+    let difference = signed(scale * change.difference);
+    Cell::text(change.interval.map_or_else(
+        || difference.clone(),
+        |[low, high]| format!("{difference} ({} to {})", signed(scale * low), signed(scale * high)),
+    ))
+}
+
+/// Returns the table of losses against capacity, in the order of the share of the barrels that falls.
+pub fn table(found: &CellarComparison) -> Table {
+    Table::of(
+        "Loss against capacity, in the order of the share of the barrels that falls. Means over the variants, with their 95 % \
+         intervals; differences to the first layout are those of the same variants. Wine and money are expected losses \
+         under the central assumption.",
+        rows(found),
+        &[
+            ("layout", "", &Row::name),
+            ("barrels", "", &|row| row.of(|one| Cell::text(one.capacity.to_string()))),
+            ("fall", "", &|row| row.of(|one| Cell::text(estimate(&one.barrels_fallen)))),
+            ("difference", "", &|row| row.paired(|pair| change(&pair.barrels_fallen, 1.0))),
+            ("share", "", &|row| row.of(|one| Cell::text(percent(one.share_lost.mean)))),
+            ("difference", "points", &|row| row.paired(|pair| change(&pair.share_lost, 100.0))),
+            ("wine lost", "", &|row| row.of(|one| Cell::text(liters(one.wine_lost)))),
+            ("cost", "US$", &|row| {
+                row.of(|one| Cell::text(one.cost.map(|dollars| measured(dollars, 0)).join(" to ")))
+            }),
+            ("result", "", &Row::reason),
+        ],
+    )
+}
+
+/// Returns the table of how the stacks fall and what they block.
+fn courses(found: &CellarComparison) -> Table {
+    let blocked = |one: &LayoutAnswer| {
+        let of = |aisle: &crate::summary::AisleAnswer| {
+            Some(format!("{} {}", aisle.name, percent(aisle.blocked.share?)))
+        };
+        Cell::text(one.aisles.iter().filter_map(of).collect::<Vec<_>>().join(", "))
+    };
+    let first = |one: &LayoutAnswer| {
+        let entered = one.aisles.iter().map(|aisle| aisle.entered.of_variants).max().unwrap_or(0);
+        Cell::maybe(one.first_barrel.as_ref().map(|range| span(range, entered, 1, "s")))
+    };
+    Table::of(
+        format!(
+            "How the stacks fall: means over the variants with their 95 % intervals. Spread: stacks that fall, for each that \
+             falls by itself. Aisles: share of the variants in which an aisle is blocked at the end. The time of the first \
+             barrel in an aisle is counted from the start of the shaking, over 5 to 95 % of the variants in which it \
+             happens, or all if they are fewer than {FEW}. Forces last some milliseconds and grow with the assumed \
+             stiffness of the contact."
+        ),
+        rows(found),
+        &[
+            ("layout", "", &Row::name),
+            ("stacks", "", &|row| row.of(|one| Cell::text(one.stacks.to_string()))),
+            ("fall by themselves", "", &|row| {
+                row.of(|one| Cell::text(estimate(&one.by_themselves)))
+            }),
+            ("difference", "", &|row| row.paired(|pair| change(&pair.by_themselves, 1.0))),
+            ("knocked over", "", &|row| row.of(|one| Cell::text(estimate(&one.knocked_over)))),
+            ("difference", "", &|row| row.paired(|pair| change(&pair.knocked_over, 1.0))),
+            ("spread", "", &|row| row.of(|one| Cell::measured(one.spread, 1))),
+            ("aisles blocked", "", &|row| row.of(blocked)),
+            ("first barrel in an aisle", "", &|row| row.of(first)),
+            ("largest force on a wall or column", "kN", &|row| {
+                row.of(|one| Cell::measured(one.peak_force.map(|force| 1e-3 * force), 0))
+            }),
+        ],
+    )
+}
+
+/// Returns the table of all layouts with one number in each cell, for programs.
+pub fn csv(found: &CellarComparison) -> Table {
+    let number = |value: f64| Cell::Number(value, 6);
+    let count = |value: u32| number(f64::from(value));
+    let bound =
+        |both: Option<[f64; 2]>, which: usize| Cell::number(both.map(|both| both[which]), 6);
+    let of = |row: &Row<'_>, of: fn(&LayoutAnswer) -> &Estimate, which: usize| {
+        row.of(|one| match which {
+            0 => number(of(one).mean),
+            which => bound(of(one).interval, which - 1),
+        })
+    };
+    let pair = |row: &Row<'_>, of: fn(&LayoutPair) -> &Change, which: usize| {
+        row.paired(|pair| match which {
+            0 => number(of(pair).difference),
+            which => bound(of(pair).interval, which - 1),
+        })
+    };
+    Table::of(
+        "",
+        rows(found),
+        &[
+            ("layout", "", &Row::name),
+            ("capacity", "barrels", &|row| row.of(|one| number(one.capacity as f64))),
+            ("stacks", "", &|row| row.of(|one| number(one.stacks as f64))),
+            ("variants", "", &|row| row.of(|one| count(one.counted))),
+            ("fall by themselves", "stacks", &|row| of(row, |one| &one.by_themselves, 0)),
+            ("fall by themselves low", "stacks", &|row| of(row, |one| &one.by_themselves, 1)),
+            ("fall by themselves high", "stacks", &|row| of(row, |one| &one.by_themselves, 2)),
+            ("knocked over", "stacks", &|row| of(row, |one| &one.knocked_over, 0)),
+            ("knocked over low", "stacks", &|row| of(row, |one| &one.knocked_over, 1)),
+            ("knocked over high", "stacks", &|row| of(row, |one| &one.knocked_over, 2)),
+            ("spread", "1", &|row| row.of(|one| Cell::number(one.spread, 6))),
+            ("barrels fallen", "1", &|row| of(row, |one| &one.barrels_fallen, 0)),
+            ("barrels fallen low", "1", &|row| of(row, |one| &one.barrels_fallen, 1)),
+            ("barrels fallen high", "1", &|row| of(row, |one| &one.barrels_fallen, 2)),
+            ("share lost", "1", &|row| of(row, |one| &one.share_lost, 0)),
+            ("wine lost", "m3", &|row| row.of(|one| number(one.wine_lost))),
+            ("cost low", "US$", &|row| row.of(|one| number(one.cost[0]))),
+            ("cost high", "US$", &|row| row.of(|one| number(one.cost[1]))),
+            ("share with a blocked aisle", "1", &|row| {
+                row.of(|one| Cell::number(one.some_blocked.and_then(|count| count.share), 6))
+            }),
+            ("median of the first barrel in an aisle", "s", &|row| {
+                row.of(|one| Cell::number(one.first_barrel.map(|range| range.p50), 6))
+            }),
+            ("largest force", "N", &|row| row.of(|one| Cell::number(one.peak_force, 6))),
+            ("pairs", "", &|row| row.paired(|pair| count(pair.variants))),
+            ("difference of barrels", "1", &|row| pair(row, |pair| &pair.barrels_fallen, 0)),
+            ("difference of barrels low", "1", &|row| pair(row, |pair| &pair.barrels_fallen, 1)),
+            ("difference of barrels high", "1", &|row| pair(row, |pair| &pair.barrels_fallen, 2)),
+            ("difference of share", "1", &|row| pair(row, |pair| &pair.share_lost, 0)),
+            ("difference of share low", "1", &|row| pair(row, |pair| &pair.share_lost, 1)),
+            ("difference of share high", "1", &|row| pair(row, |pair| &pair.share_lost, 2)),
+            ("result", "", &Row::reason),
+        ],
+    )
+}
+
+/// Builds the comparison of layouts as a document that is independent of any output format.
+pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
+    let heading = |text: &str| Block::heading(2, text);
+    let mut blocks = vec![
+        heading("Loss against capacity"),
+        Block::Table(table(found)),
+        heading("How the stacks fall"),
+        Block::Table(courses(found)),
+        heading("Where barrels end"),
+    ];
+    blocks.extend(layouts.iter().enumerate().map(|(at, layout)| {
+        let caption = format!(
+            "{} from above. Stacks have the color of what happens to them in the most typical run. Shades (barrels): share \
+             of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
+            capital(&layout.name)
+        );
+        Block::Figure(Figure::new(format!("plan-{}", at + 1), caption, layout.picture.clone()))
+    }));
+    if !found.differences.is_empty() {
+        let names: Vec<String> = layouts.iter().map(|layout| layout.name.clone()).collect();
+        blocks.push(heading("Differences"));
+        blocks.push(Block::Table(inputs(&names, &found.differences)));
+    }
+    let mut opening = sentences(found);
+    let fine = opening.split_off(OPENING.min(opening.len()));
+    Document {
+        title: title(layouts),
+        verdict: Verdict {
+            headline: found.headline.clone(),
+            sentences: opening,
+            fine,
+            ..Verdict::default()
+        },
+        blocks,
+        provenance: provenance(layouts, found),
+        words: WORDS.to_vec(),
+        warnings: found.warnings.clone(),
+    }
+}
+
+/// Returns the names of the layouts, followed by the title if all cellars have the same.
+fn title(layouts: &[Layout]) -> String {
+    let names = format!("Comparison of {}", listed(layouts.iter().map(|one| one.name.clone())));
+    let first = layouts.first().map(|one| &one.cellar.title);
+    match first.filter(|first| layouts.iter().all(|one| one.cellar.title == **first)) {
+        Some(title) => format!("{names}: {title}"),
+        None => names,
+    }
+}
+
+fn provenance(layouts: &[Layout], found: &CellarComparison) -> Vec<(String, String)> {
+    let mut pairs = vec![("program".to_owned(), format!("{} {}", found.program, found.version))];
+    let cellar = |one: &LayoutAnswer| (format!("cellar of {}", one.name), one.cellar_hash.clone());
+    pairs.extend(found.layouts.iter().map(cellar));
+    for step in layouts.iter().flat_map(|layout| &layout.summary.provenance) {
+        let pair = ("motion".to_owned(), step.clone());
+        if !pairs.contains(&pair) {
+            pairs.push(pair);
+        }
+    }
+    pairs
+}
+
+/// Returns the files of a comparison besides its page, by name.
+///
+/// # Errors
+/// If the document cannot be written as JSON.
+pub fn files(found: &CellarComparison) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
+    let json = described::to_json(found)? + "\n";
+    Ok(vec![
+        ("layouts.csv".to_owned(), csv(found).to_csv().into_bytes()),
+        ("comparison.json".to_owned(), json.into_bytes()),
+    ])
+}

@@ -1,0 +1,260 @@
+//! A comparison of layouts as sentences, the effect first.
+
+use barrelstack::variants::words::percent;
+use barrelstack_report::{capital, measured};
+
+use super::{CellarComparison, Change, Estimate, LayoutAnswer, LayoutPair, LeftOut};
+use crate::plan::liters;
+use crate::words::plural;
+
+/// Returns the effect in one sentence or two: what changes from the first layout to the second, or which of several layouts
+/// loses the smallest share of its barrels.
+pub fn headline(found: &CellarComparison) -> String {
+    if !found.unfinished.is_empty() {
+        let done = found.layouts.len();
+        let all = u32::try_from(done + found.unfinished.len()).unwrap_or(u32::MAX);
+        return format!("Stopped after {done} of {}: there is no verdict.", plural(all, "layout"));
+    }
+    let effect = match (found.layouts.as_slice(), found.paired.as_slice()) {
+        ([first, second], [pair]) => {
+            let names = instead(&second.name, &first.name);
+            match unpaired(first, second, pair) {
+                Some(reason) => format!("{reason}."),
+                None => format!("{names}: {}.", clause(first, second, pair)),
+            }
+        }
+        ([first, _, ..], _) => best(found, first),
+        _ => "Nothing is compared.".to_owned(),
+    };
+    let other = found.paired.iter().any(|pair| !pair.same_motion);
+    let motions = if other {
+        "The motions differ, so no difference is that of the layouts alone. "
+    } else {
+        ""
+    };
+    format!("{motions}{effect}")
+}
+
+/// Returns the sentence on the layout that loses the smallest share of its barrels.
+fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
+    let judged: Vec<_> = found.ranked().into_iter().filter(|(one, _)| one.counted > 0).collect();
+    let many = judged.len();
+    if judged.iter().all(|(one, _)| one.barrels_fallen.mean == 0.0) && many > 0 {
+        return format!("No barrel falls in any of {many} layouts.");
+    }
+    match judged.first() {
+        None => "No layout has a valid result.".to_owned(),
+        Some((one, Some(pair))) if pair.variants == 0 => format!("{}.", unresolved(first, one)),
+        Some((one, Some(pair))) if pair.share_lost.difference < 0.0 => format!(
+            "Of {many} layouts, \"{}\" loses the fewest barrels for its capacity: {}.",
+            one.name,
+            clause(first, one, pair)
+        ),
+        Some(_) => format!(
+            "None of {} other layouts loses fewer barrels for its capacity than \"{}\", of whose {} barrels {} fall{}.",
+            many - 1,
+            first.name,
+            first.capacity,
+            estimate(&first.barrels_fallen),
+            on_average(first.counted)
+        ),
+    }
+}
+
+/// Returns the reason why two layouts have no pairs; `None` if they have.
+fn unpaired(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Option<String> {
+    (pair.variants == 0).then(|| unresolved(first, second))
+}
+
+fn unresolved(first: &LayoutAnswer, second: &LayoutAnswer) -> String {
+    match [first, second].into_iter().find(|one| one.counted == 0) {
+        Some(one) => {
+            format!("\"{}\" has no valid result, so nothing is compared with it", one.name)
+        }
+        None => format!(
+            "\"{}\" and \"{}\" have no variant in common, so nothing is paired",
+            first.name, second.name
+        ),
+    }
+}
+
+/// Returns two names as a change, such as "Spacing 1 m instead of 0.3 m": words with which both begin are said once.
+fn instead(second: &str, first: &str) -> String {
+    let words = |name: &str| name.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let [own, its] = [second, first].map(words);
+    let alike = own.iter().zip(&its).take_while(|(one, two)| one == two).count();
+    let alike = if alike < own.len().min(its.len()) { alike } else { 0 };
+    format!("{} instead of {}", capital(second), its[alike..].join(" "))
+}
+
+/// Returns the clause on the barrels that fall in a layout in place of those in the first.
+fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> String {
+    let Change { first: from, second: to, difference, .. } = pair.barrels_fallen;
+    if from == 0.0 && to == 0.0 {
+        return format!("no barrel falls in either, in {}", variants(pair));
+    }
+    let average = on_average(pair.variants);
+    if first.capacity == second.capacity {
+        return format!(
+            "{} in place of {}{average}, {} ({})",
+            fall(to, ""),
+            amount(from),
+            words_of(difference, ["fewer", "more", "as many"]),
+            interval(&pair.barrels_fallen, 1.0, ["fewer", "more"], pair)
+        );
+    }
+    let points = 100.0 * pair.share_lost.difference;
+    let [lost, before] = [pair.share_lost.second, pair.share_lost.first].map(percent);
+    format!(
+        "{} in place of {} of {}{average}; that is {lost} of the capacity in place of {before}, {} ({})",
+        fall(to, &format!("of {} ", second.capacity)),
+        amount(from),
+        first.capacity,
+        words_of(points, ["points less", "points more", "as much"]),
+        interval(&pair.share_lost, 100.0, ["less", "more"], pair)
+    )
+}
+
+/// Returns a number of barrels that fall, with words behind the number.
+fn fall(barrels: f64, of: &str) -> String {
+    let shown = amount(barrels);
+    if shown == "1" && of.is_empty() {
+        return "1 barrel falls".to_owned();
+    }
+    format!("{shown} {of}barrels fall")
+}
+
+/// Returns the difference in words: less, more, or neither.
+fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
+    match amount(difference.abs()) {
+        none if none == "0" => same.to_owned(),
+        some => format!("{some} {}", if difference < 0.0 { less } else { more }),
+    }
+}
+
+/// Returns the interval of a change with the number of pairs, and whether it proves a difference.
+fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
+    let pairs = variants(pair);
+    let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
+        return format!("{pairs}, which gives no interval");
+    };
+    let bounds = |low: f64, high: f64| format!("95 % interval {} to {}", amount(low), amount(high));
+    if low > 0.0 {
+        format!("{}, {pairs}", bounds(low, high))
+    } else if high < 0.0 {
+        format!("{}, {pairs}", bounds(-high, -low))
+    } else {
+        format!(
+            "95 % interval {} {less} to {} {more}, {pairs}, which {} no difference",
+            amount(-low),
+            amount(high),
+            if pair.variants == 1 { "proves" } else { "prove" }
+        )
+    }
+}
+
+/// Returns the variants of a pair of layouts in words.
+fn variants(pair: &LayoutPair) -> String {
+    match (pair.variants, pair.same_draws) {
+        (1, _) => "one variant".to_owned(),
+        (many, true) => format!("the same {many} variants"),
+        (many, false) => format!("{many} variants with other draws"),
+    }
+}
+
+fn on_average(variants: u32) -> &'static str {
+    if variants > 1 { " on average" } else { "" }
+}
+
+/// Returns a mean number with at most one decimal.
+pub(super) fn amount(value: f64) -> String {
+    measured(value, 1)
+}
+
+/// Returns a mean with its interval, such as "12.4 (8 to 20)".
+pub(super) fn estimate(one: &Estimate) -> String {
+    let mean = amount(one.mean);
+    one.interval.map_or_else(
+        || mean.clone(),
+        |[low, high]| format!("{mean} ({} to {})", amount(low), amount(high)),
+    )
+}
+
+/// Returns the sentences that support the headline. Stopped work supports nothing.
+pub fn sentences(found: &CellarComparison) -> Vec<String> {
+    let mut all = Vec::new();
+    if found.unfinished.is_empty() {
+        let first = &found.layouts[0];
+        let ranked = found.ranked();
+        all.extend(ranked.iter().map(|(one, _)| describe(one)));
+        let pairs = || ranked.iter().filter_map(|(one, pair)| Some((*one, (*pair)?)));
+        if found.paired.len() > 1 {
+            all.extend(pairs().map(|(one, pair)| match unpaired(first, one, pair) {
+                Some(reason) => format!("{reason}."),
+                None => {
+                    format!("{}: {}.", instead(&one.name, &first.name), clause(first, one, pair))
+                }
+            }));
+            all.push("The intervals of all these differences hold together.".to_owned());
+        }
+        all.extend(pairs().filter_map(|(_, pair)| without(pair)));
+        if found.layouts.iter().any(|one| one.cut.is_some()) {
+            all.push(
+                "Runs end before their motion does, so a stack that stands at the end may still fall later."
+                    .to_owned(),
+            );
+        }
+    }
+    all.extend(found.left_out.iter().map(|one| {
+        let LeftOut { name, reason } = one;
+        format!("{} was not run: {reason}.", capital(name))
+    }));
+    all
+}
+
+/// Returns the sentence on a layout.
+fn describe(one: &LayoutAnswer) -> String {
+    let LayoutAnswer { name, capacity, stacks, share_lost, .. } = one;
+    if one.counted == 0 {
+        return format!("{}: no run has a valid result.", capital(name));
+    }
+    if [one.barrels_fallen, one.by_themselves, one.knocked_over].iter().all(|of| of.mean == 0.0) {
+        return format!("{}: of {capacity} barrels in {stacks} stacks none falls.", capital(name));
+    }
+    let share = percent(share_lost.mean);
+    let share = share_lost.interval.map_or_else(
+        || share.clone(),
+        |both| {
+            let [low, high] = both.map(percent);
+            format!("{share}, 95 % interval {low} to {high}")
+        },
+    );
+    let spread = one.spread.map_or_else(String::new, |spread| {
+        format!(", {} for each that falls by itself", amount(spread))
+    });
+    let [low, high] = one.cost.map(|dollars| measured(dollars, 0));
+    format!(
+        "{}: of {capacity} barrels {} fall{} ({share}). Of {stacks} stacks {} fall by themselves and {} are knocked \
+         over{spread}. About {} of wine is lost; with the burst barrels it is worth US${low} to US${high}.",
+        capital(name),
+        amount(one.barrels_fallen.mean),
+        on_average(one.counted),
+        estimate(&one.by_themselves),
+        estimate(&one.knocked_over),
+        liters(one.wine_lost),
+    )
+}
+
+/// Returns the sentence on the variants that are left out of the pairs; `None` if there are none.
+fn without(pair: &LayoutPair) -> Option<String> {
+    let count = u32::try_from(pair.left_out.len()).unwrap_or(u32::MAX);
+    let (has, are) = if count == 1 { ("has", "it is") } else { ("have", "they are") };
+    (count > 0).then(|| {
+        format!(
+            "{} {has} no valid result in \"{}\" or \"{}\"; {are} left out of the pairs.",
+            capital(&plural(count, "variant")),
+            pair.first,
+            pair.second
+        )
+    })
+}

@@ -1,0 +1,127 @@
+//! `barrelstack compare` of cellars: two or more layouts of rooms side by side.
+
+use std::process::ExitCode;
+
+use anyhow::bail;
+use barrelstack::export::Folder;
+use barrelstack::variants::RunChoice;
+use barrelstack_cellar::comparison::{self, CellarComparison, Layout, LeftOut, words};
+use barrelstack_cellar::{Cellar, Prepared};
+use barrelstack_report::listed;
+
+use super::compare::CompareArgs;
+use crate::args::ScenarioArgs;
+use crate::interrupt::Stopped;
+use crate::printer;
+use crate::progress::Progress;
+
+/// Name of the layout without changes.
+const AS_IT_IS: &str = "as it is";
+
+/// Runs all layouts, given with their arguments, and writes the comparison.
+pub(super) fn compare(
+    args: &CompareArgs,
+    requested: &[(String, ScenarioArgs)],
+    given: Vec<(String, Cellar)>,
+) -> anyhow::Result<ExitCode> {
+    let (runs, left_out) = layouts(args, given)?;
+    // Changes are those of the first cellar.
+    let of = |at: usize| &requested.get(at).unwrap_or(&requested[0]).1;
+    // A room that cannot be run is refused before another room is run for minutes.
+    for (at, (_, cellar)) in runs.iter().enumerate() {
+        Prepared::new(cellar).map_err(|error| super::cellar::placed(error, cellar, of(at)))?;
+    }
+    let folder = Folder::prepare(&args.out, args.overwrite)?;
+    let mut done = Vec::new();
+    for (at, (name, cellar)) in runs.iter().enumerate() {
+        let progress = Progress::new(!args.quiet);
+        let answer = barrelstack_cellar::answer(cellar, RunChoice::Typical, &mut |reached| {
+            progress.advance(reached)
+        });
+        drop(progress);
+        let answer = answer.map_err(|error| super::cellar::placed(error, cellar, of(at)))?;
+        if answer.is_stopped() {
+            break;
+        }
+        done.push(Layout::of(name.clone(), &answer));
+    }
+    crate::interrupt::finished();
+    if done.is_empty() {
+        return Err(Stopped.into());
+    }
+    let unfinished = runs.iter().skip(done.len()).map(|(name, _)| name.clone()).collect();
+    let found = comparison::compared(&done, unfinished, left_out);
+    crate::interrupt::writes_to(folder.path());
+    // The verdict is printed even if the files cannot be written.
+    let written =
+        folder.write_page(&comparison::document(&done, &found)).map_err(anyhow::Error::from);
+    let written = written.and_then(|()| Ok(folder.write_files(&comparison::files(&found)?)?));
+    printed(args, &found, &folder)?;
+    written?;
+    Ok(super::status(found.layouts.iter().any(|one| one.counted == 0)))
+}
+
+/// Prints the comparison.
+fn printed(args: &CompareArgs, found: &CellarComparison, folder: &Folder) -> anyhow::Result<()> {
+    if !found.unfinished.is_empty() {
+        printer::note(&format!(
+            "stopped before the end of {}: nothing is compared with it",
+            listed(found.unfinished.iter().map(|name| format!("\"{name}\"")))
+        ));
+    }
+    if args.json {
+        printer::document(found)?;
+    } else {
+        let indented = |text: String| format!("  {text}");
+        let mut lines = vec![found.headline.clone()];
+        lines.extend(words::sentences(found).into_iter().map(indented));
+        lines.push(String::new());
+        lines.extend(comparison::table(found).to_lines().into_iter().map(indented));
+        lines.extend([String::new(), format!("report: {}", folder.report().display())]);
+        printer::lines(lines)?;
+    }
+    found.warnings.iter().for_each(|warning| printer::warning(warning));
+    Ok(())
+}
+
+/// Returns the layouts to run with their names, the given ones first, and the changes that are not run.
+fn layouts(
+    args: &CompareArgs,
+    given: Vec<(String, Cellar)>,
+) -> anyhow::Result<(Vec<(String, Cellar)>, Vec<LeftOut>)> {
+    let given: Vec<(String, Cellar)> = given
+        .into_iter()
+        .map(|(name, cellar)| match args.variants {
+            Some(count) => (name, cellar.with_variants(count)),
+            None => (name, cellar),
+        })
+        .collect();
+    if given.len() > 1 || !args.usual {
+        comparison::check(&given)?;
+    }
+    let mut names = comparison::labels(&given);
+    if let (true, [name]) = (args.usual, names.as_mut_slice()) {
+        AS_IT_IS.clone_into(name);
+    }
+    super::compare::name(&mut names, &args.label)?;
+    let mut runs: Vec<(String, Cellar)> =
+        names.into_iter().zip(given).map(|(name, (_, cellar))| (name, cellar)).collect();
+    let mut left_out = Vec::new();
+    let usual = if args.usual { comparison::usual(&runs[0].1) } else { Vec::new() };
+    for change in usual {
+        let changed = change.changed.and_then(|cellar| {
+            let same = runs.iter().find(|(_, run)| run.fingerprint() == cellar.fingerprint());
+            same.map_or(Ok(cellar), |(name, _)| Err(format!("it is the layout \"{name}\"")))
+        });
+        match changed {
+            Ok(cellar) => runs.push((change.name, cellar)),
+            Err(reason) => left_out.push(LeftOut { name: change.name, reason }),
+        }
+    }
+    if runs.len() == 1 {
+        let reasons = left_out.iter().map(|one| format!("{}: {}", one.name, one.reason));
+        bail!("no usual change can be compared; {}", reasons.collect::<Vec<_>>().join("; "));
+    }
+    comparison::check(&runs)?;
+    Ok((runs, left_out))
+}
