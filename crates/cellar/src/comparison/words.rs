@@ -191,11 +191,16 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
         if found.paired.len() > 1 {
             all.extend(pairs().map(|(one, pair)| match unpaired(first, one, pair) {
                 Some(reason) => format!("{reason}."),
-                None => {
-                    format!("{}: {}.", instead(&one.name, &first.name), clause(first, one, pair))
-                }
+                None => format!(
+                    "{}, compared with \"{}\": {}.",
+                    capital(&one.name),
+                    first.name,
+                    clause(first, one, pair)
+                ),
             }));
-            all.push("The intervals of all these differences hold together.".to_owned());
+            if pairs().any(|(_, pair)| pair.barrels_fallen.interval.is_some()) {
+                all.push("The intervals of all these differences hold together.".to_owned());
+            }
         }
         all.extend(pairs().filter_map(|(_, pair)| without(pair)));
         if found.layouts.iter().any(|one| one.cut.is_some()) {
