@@ -113,7 +113,7 @@ fn the_effect_comes_first_and_every_number_is_said_once_computed() {
     let said = &found.headline;
     assert!(said.starts_with("Spacing 1 m instead of 0.3 m: "), "{said}");
     assert!(said.contains("the same 3 variants"), "{said}");
-    let barrels = barrelstack_report::measured(found.paired[0].barrels_fallen.second, 1);
+    let barrels = (10.0 * found.paired[0].barrels_fallen.second).round() / 10.0;
     assert!(said.contains(&format!(": {barrels} barrel")), "{said}");
     let sentences = words::sentences(&found).join(" ");
     assert!(sentences.contains("of 8 barrels") && sentences.contains("US$"), "{sentences}");

@@ -65,9 +65,9 @@ fn rows(found: &CellarComparison) -> Vec<Row<'_>> {
 
 /// Returns a change with its sign and its interval.
 fn change(change: &Change, scale: f64) -> Cell {
-    let signed = |value: f64| match amount(value) {
-        shown if value > 0.0 && shown != "0" => format!("+{shown}"),
-        shown => shown,
+    let signed = |value: f64| match amount(value.abs()) {
+        none if none == "0" => none,
+        some => format!("{}{some}", if value < 0.0 { "−" } else { "+" }),
     };
     let difference = signed(scale * change.difference);
     Cell::text(change.interval.map_or_else(

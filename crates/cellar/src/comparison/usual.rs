@@ -2,7 +2,6 @@
 
 use barrelstack::RunFailure;
 use barrelstack::device::WalkingStops;
-use barrelstack::scenario::Problem;
 use barrelstack::scenario::error::ScenarioError;
 use barrelstack::variants::{PRETENSIONS, lowered, strapped_together};
 use barrelstack_report::shortest;
@@ -43,10 +42,7 @@ pub fn usual(cellar: &Cellar) -> Vec<Usual> {
 
 /// Returns a cellar with changes, or the reason why it cannot be stated or does not fit its room.
 fn fitting(cellar: &Cellar, changes: &[String]) -> Result<Cellar, String> {
-    let reason = |error: &ScenarioError| match error.problem() {
-        Problem::Inconsistent { message } => message.clone(),
-        problem => problem.to_string(),
-    };
+    let reason = |error: &ScenarioError| error.problem().to_string();
     let count = cellar.stated().imperfections().map_or(0, |own| own.variants);
     let changed = cellar.with(changes).map_err(|error| reason(&error))?.with_variants(count);
     let plan = Plan::of(&changed).map_err(|error: RunFailure| error.to_string())?;

@@ -1,7 +1,7 @@
 //! A comparison of layouts as sentences, the effect first.
 
 use barrelstack::variants::words::percent;
-use barrelstack_report::{capital, measured};
+use barrelstack_report::{capital, measured, shortest};
 
 use super::{CellarComparison, Change, Estimate, LayoutAnswer, LayoutPair, LeftOut};
 use crate::plan::liters;
@@ -168,7 +168,7 @@ fn on_average(variants: u32) -> &'static str {
 
 /// Returns a mean number with at most one decimal.
 pub(super) fn amount(value: f64) -> String {
-    measured(value, 1)
+    shortest((10.0 * value).round() / 10.0)
 }
 
 /// Returns a mean with its interval, such as "12.4 (8 to 20)".
@@ -191,11 +191,16 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
         if found.paired.len() > 1 {
             all.extend(pairs().map(|(one, pair)| match unpaired(first, one, pair) {
                 Some(reason) => format!("{reason}."),
-                None => {
-                    format!("{}: {}.", instead(&one.name, &first.name), clause(first, one, pair))
-                }
+                None => format!(
+                    "{}, compared with \"{}\": {}.",
+                    capital(&one.name),
+                    first.name,
+                    clause(first, one, pair)
+                ),
             }));
-            all.push("The intervals of all these differences hold together.".to_owned());
+            if pairs().any(|(_, pair)| pair.barrels_fallen.interval.is_some()) {
+                all.push("The intervals of all these differences hold together.".to_owned());
+            }
         }
         all.extend(pairs().filter_map(|(_, pair)| without(pair)));
         if found.layouts.iter().any(|one| one.cut.is_some()) {

@@ -24,13 +24,13 @@ pub(super) fn compare(
     requested: &[(String, ScenarioArgs)],
     given: Vec<(String, Cellar)>,
 ) -> anyhow::Result<ExitCode> {
+    // A room that cannot be run is refused before another room is run for minutes; usual changes fit.
+    for ((_, cellar), (_, one)) in given.iter().zip(requested) {
+        Prepared::new(cellar).map_err(|error| super::cellar::placed(error, cellar, one))?;
+    }
     let (runs, left_out) = layouts(args, given)?;
     // Changes are those of the first cellar.
     let of = |at: usize| &requested.get(at).unwrap_or(&requested[0]).1;
-    // A room that cannot be run is refused before another room is run for minutes.
-    for (at, (_, cellar)) in runs.iter().enumerate() {
-        Prepared::new(cellar).map_err(|error| super::cellar::placed(error, cellar, of(at)))?;
-    }
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut done = Vec::new();
     for (at, (name, cellar)) in runs.iter().enumerate() {
