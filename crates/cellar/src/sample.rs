@@ -11,6 +11,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::run::{check_kept, end_time};
 use barrelstack::scenario::{Friction, Interface, NormalLaw, Scene};
 use barrelstack::variants::planes;
+use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::{Drive, Spatial};
 use barrelstack_input::fnv1a;
@@ -355,6 +356,7 @@ impl Prepared {
                 .collect(),
             map: map.cells().to_vec(),
             end_time: run.end_time,
+            cut_short: run.stacks.iter().any(|stack| stack.ending != Ending::Rest),
             still_moving: run.stacks.iter().filter(|stack| !stack.rests()).count(),
             stacks,
             warnings: run.warnings.clone(),
@@ -599,6 +601,8 @@ pub struct Case {
     pub map: Vec<bool>,
     /// Time (s) at which the last body came to rest.
     pub end_time: f64,
+    /// `true` if the run ended before all stacks were at rest.
+    pub cut_short: bool,
     /// Number of stacks of which a body still moved at the end.
     pub still_moving: usize,
     /// Warnings, one sentence each, with the name of the stack that a warning concerns.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use barrelstack::breakage::cost;
 use barrelstack::ground::MotionSummary;
+use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{LEVEL, Range};
 use barrelstack_fragility::wilson;
@@ -287,6 +288,8 @@ described! {
         /// Time in the record of the shock at which the shock ends: all bodies rest, its duration is over, or it was
         /// stopped.
         pub end_time: f64 as "s",
+        /// Time that the run leaves of the motion without all stacks at rest; 0 if it leaves none.
+        pub cut: f64 as "s",
     }
 
     /// The run that is shown.
@@ -298,6 +301,9 @@ described! {
         pub typical: bool,
         /// Time in the record at which the run ends: all bodies rest, its duration is over, or it was stopped.
         pub end_time: f64 as "s",
+        /// Time that the run leaves of the motion without all stacks at rest, the longest of a sequence; 0 if it leaves
+        /// none.
+        pub cut: f64 as "s",
         /// Row of the first stack that falls.
         pub starts: Option<u32>,
         /// Number of stacks that had fallen before the run.
@@ -563,11 +569,18 @@ pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<Sh
                     barrels_fallen: barrels(case),
                     still_moving: case.still_moving,
                     end_time: case.end_time,
+                    cut: cut(ground, case),
                 }
             }),
         }
     };
     grounds.enumerate().map(one).collect()
+}
+
+/// Returns the time (s) that a run leaves of its motion without all stacks at rest.
+fn cut(ground: &barrelstack_space::Ground, case: &Case) -> f64 {
+    let left = ground.end() - case.end_time;
+    if case.cut_short && left > CUT { left } else { 0.0 }
 }
 
 /// Returns the number of barrels that fall in a case.
@@ -729,6 +742,13 @@ fn shown_room(prepared: &Prepared, case: &Case, run: &RoomRun) -> ShownRoom {
         variant: case.variant,
         typical: false,
         end_time: run.end_time,
+        cut: if case.shocks.is_empty() {
+            cut(&prepared.ground, case)
+        } else {
+            let later = prepared.later.iter().map(|later| &later.ground);
+            let grounds = std::iter::once(&prepared.ground).chain(later);
+            grounds.zip(&case.shocks).map(|(ground, case)| cut(ground, case)).fold(0.0, f64::max)
+        },
         starts: first(case).map(|at| plan.stacks[at].row),
         fallen_before: u32::try_from(plan.stacks.len()).unwrap_or(u32::MAX) - stood(case),
         by_themselves,

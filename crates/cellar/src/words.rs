@@ -1,7 +1,6 @@
 //! Results of a cellar as sentences.
 
 use barrelstack::motion::STANDARD_GRAVITY;
-use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::Range;
 use barrelstack::variants::words::{ENOUGH, percent};
@@ -59,19 +58,13 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
 
 /// Returns the longest time (s) that the run that is shown leaves of the motion of a shock; `None` if it covers all.
 pub(crate) fn missing(summary: &CellarSummary) -> Option<f64> {
-    if !summary.shocks.is_empty() {
-        return longest_cut(summary.shocks.iter());
-    }
-    let motion = summary.motion.as_ref()?;
-    Some(motion.duration - summary.shown.end_time).filter(|missing| *missing > CUT)
+    Some(summary.shown.cut).filter(|cut| *cut > 0.0)
 }
 
 /// Returns the longest time (s) that a run leaves of the motion of a shock; `None` if it covers all.
 pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> Option<f64> {
-    let left = |shock: &ShockAnswer| {
-        Some(shock.motion.as_ref()?.duration - shock.shown.as_ref()?.end_time)
-    };
-    shocks.filter_map(left).reduce(f64::max).filter(|missing| *missing > CUT)
+    let cut = shocks.filter_map(|shock| Some(shock.shown.as_ref()?.cut)).fold(0.0, f64::max);
+    Some(cut).filter(|cut| *cut > 0.0)
 }
 
 /// Returns the sentence on shocks that are followed until a time (s) before the end of the motion.

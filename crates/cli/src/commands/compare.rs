@@ -29,6 +29,7 @@ Examples:
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "one field per switch")]
 pub(crate) struct CompareArgs {
     /// Scenario files (TOML) or names of built-in scenarios; or cellars.
     #[arg(value_name = "SCENARIO", required = true)]

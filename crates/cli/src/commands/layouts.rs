@@ -84,12 +84,12 @@ fn printed(args: &CompareArgs, found: &CellarComparison, folder: &Folder) -> any
     Ok(())
 }
 
+/// A cellar with its name in the comparison.
+type Named = (String, Cellar);
+
 /// Returns the layouts to run with their names, the given ones first, and the changes that are not run.
-fn layouts(
-    args: &CompareArgs,
-    given: Vec<(String, Cellar)>,
-) -> anyhow::Result<(Vec<(String, Cellar)>, Vec<LeftOut>)> {
-    let given: Vec<(String, Cellar)> = given
+fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>, Vec<LeftOut>)> {
+    let given: Vec<Named> = given
         .into_iter()
         .map(|(name, cellar)| match args.variants {
             Some(count) => (name, cellar.with_variants(count)),
