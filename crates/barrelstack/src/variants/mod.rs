@@ -41,8 +41,10 @@ use crate::watch::after_collapse;
 pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
 pub use decides::{Constant, Fitted, ShareAt, Unknown};
-pub use remedy::{ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, remedy, remedy_by};
-pub use spread::{FEW, LEVEL, Range, Spread, fails};
+pub use remedy::{
+    ENOUGH, Judged, Observer, PRETENSIONS, Remedy, Trial, Tried, Verdicts, remedy, remedy_by,
+};
+pub use spread::{FEW, LEVEL, Range, Spread, verdict};
 
 /// A scenario in one plane, with all its variants.
 #[derive(Clone, Debug)]
