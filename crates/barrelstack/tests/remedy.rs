@@ -72,6 +72,36 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
     assert!(kinds.contains(&"height"), "{kinds:?}");
 }
 
+/// The range of a change is that of the changed stack, run by itself; its draws are those of the stack as it is.
+#[test]
+fn a_change_has_the_range_of_the_changed_stack_and_its_order_in_draws() {
+    let base = ["imperfections.variants=16", "motion.scale.factor=0.7"];
+    let found = remedy(&answered(&scenario(&base))).unwrap();
+    let whole: Vec<&Tried> = found.tried.iter().filter(|one| one.share.is_some()).collect();
+    assert!(!whole.is_empty());
+    for one in whole {
+        let changes: Vec<&str> =
+            base.into_iter().chain(one.changes.iter().map(String::as_str)).collect();
+        let spread = answered(&scenario(&changes)).decides.summary.ensemble.unwrap();
+        assert!(spread.range.is_some());
+        assert_eq!(one.range, spread.range, "{one:?}");
+        let better = one.better_than_as_it_is.unwrap();
+        assert!((0.0..=1.0).contains(&better) && (!one.suffices || better > 0.6), "{one:?}");
+    }
+    for one in found.tried.iter().filter(|one| one.share.is_none()) {
+        assert_eq!((one.range, one.better_than_as_it_is), (None, None), "{one:?}");
+    }
+    let both = found.height.is_some() && found.straps.is_some();
+    assert_eq!(found.height_before_straps.is_some(), both);
+    let suffices = found.height.iter().chain(&found.straps).count();
+    assert_eq!(found.sentence().contains("(95 % range)"), suffices > 0);
+    // Without drawn constants there is no range.
+    let known = [&base[..], &["unknowns.drawn=false"]].concat();
+    let found = remedy(&answered(&scenario(&known))).unwrap();
+    assert!(found.tried.iter().all(|one| one.range.is_none()));
+    assert!(!found.sentence().contains("range"));
+}
+
 #[test]
 fn nothing_is_looked_for_where_the_stack_stands_or_its_motion_is_cut_short() {
     assert_eq!(remedy(&answered(&scenario(&["motion.scale.factor=0.01"]))), None);
@@ -108,6 +138,8 @@ fn sentences_say_what_suffices_and_what_does_not() {
         failed,
         share: Some(f64::from(failed) / 64.0),
         interval: Some([0.0, 0.09 + 0.03 * f64::from(failed)]),
+        range: None,
+        better_than_as_it_is: None,
     };
     let height = |failed| tried("height", 3, None, failed);
     let straps = |failed| tried("straps", 5, Some(4e3), failed);
@@ -117,6 +149,7 @@ fn sentences_say_what_suffices_and_what_does_not() {
             required_share: 0.95,
             height,
             straps,
+            height_before_straps: None,
             candidates: 9,
             tried,
             complete: true,
@@ -165,5 +198,53 @@ fn sentences_say_what_suffices_and_what_does_not() {
         ),
     ] {
         assert_eq!(said(height, straps, all), words);
+    }
+}
+
+#[test]
+fn sentences_say_what_the_uncertain_constants_leave_open() {
+    let tried = |kind, levels, pretension, range| Tried {
+        kind,
+        levels,
+        pretension,
+        changes: Vec::new(),
+        suffices: true,
+        variants: 64,
+        failed: 0,
+        share: Some(0.0),
+        interval: None,
+        range: Some(range),
+        better_than_as_it_is: Some(0.98),
+    };
+    let said = |height, straps, order| {
+        let found = Remedy {
+            height,
+            straps,
+            height_before_straps: order,
+            complete: true,
+            ..Remedy::default()
+        };
+        found.sentence().split_once(" Allowing").unwrap().1.to_owned()
+    };
+    let height = |high| Some(tried("height", 3, None, [0.0, high]));
+    let straps = |high| Some(tried("straps", 5, Some(4e3), [0.0, high]));
+    let seats = " for the uncertain friction, stiffness and damping of the seats, ";
+    for (found, words) in [
+        (
+            said(height(0.08), straps(0.12), Some(0.71)),
+            "0 to 8 % of the former and 0 to 12 % of the latter would fall (95 % range); fewer fall with three levels \
+             than with five levels strapped together at 4 kN in 71 % of the draws of these constants.",
+        ),
+        (
+            said(height(0.08), straps(0.08), Some(0.4)),
+            "0 to 8 % of either would fall (95 % range); fewer fall with five levels strapped together at 4 kN than with \
+             three levels in 60 % of the draws of these constants.",
+        ),
+        (
+            said(height(0.08), None, None),
+            "0 to 8 % of stacks with three levels would fall (95 % range).",
+        ),
+    ] {
+        assert_eq!(found, format!("{seats}{words}"));
     }
 }

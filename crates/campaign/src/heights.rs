@@ -2,7 +2,8 @@
 //!
 //! Stacks of two or more levels on one kind of rack are shaken by the bundled record of South Napa, by
 //! synthetic motions and by the user's own records. All motions are scaled to the same levels of peak ground
-//! velocity. Friction, stiffness and damping of the seats are drawn at random for each run.
+//! velocity. Friction, stiffness and damping of the seats are drawn at random for each run. The stacks are shaken in the
+//! planes across and along their barrels, or in space.
 
 mod field;
 mod json;
@@ -20,13 +21,14 @@ use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
 use crate::decision::{Cases, DecisionError, JudgedCase, LimitCurve, LimitState};
+use crate::direction::{Direction, check};
 use crate::pool;
 use crate::run::RunFailure;
+use crate::scenario::View;
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 use crate::system;
 use crate::uncertain::Sample;
 
-pub use crate::scenario::View;
 pub use json::HeightsDocument;
 pub use plan::{HIGHEST, LOWEST, VELOCITIES};
 pub(crate) use plan::{quoted, synthetic};
@@ -46,6 +48,9 @@ pub struct Request {
     pub seed: u32,
     /// Number of levels of the highest stacks, from [`LOWEST`] to [`HIGHEST`].
     pub highest: u32,
+    /// `true` if the stacks are shaken in space, in a horizontal direction that is drawn for every run; `false` for the
+    /// planes across and along the barrels.
+    pub in_space: bool,
 }
 
 impl Default for Request {
@@ -57,6 +62,7 @@ impl Default for Request {
             synthetic: 22,
             seed: 1,
             highest: HIGHEST,
+            in_space: false,
         }
     }
 }
@@ -66,6 +72,14 @@ impl Request {
     pub fn heights(&self) -> impl Iterator<Item = u32> + use<> {
         LOWEST..=self.highest
     }
+
+    /// Returns the directions in which the stacks are shaken.
+    pub fn directions(&self) -> Vec<Direction> {
+        if self.in_space {
+            return vec![Direction::Space];
+        }
+        View::ALL.into_iter().map(Direction::Plane).collect()
+    }
 }
 
 /// Results of stacks of one height in one direction of shaking.
@@ -74,7 +88,7 @@ pub struct Height {
     /// Number of levels of the stack.
     pub levels: u32,
     /// Direction of the shaking.
-    pub view: View,
+    pub direction: Direction,
     /// Fragility of collapse against peak ground velocity (PGV).
     pub by_velocity: LimitCurve,
     /// Fragility of collapse against peak ground acceleration (PGA).
@@ -82,7 +96,8 @@ pub struct Height {
     /// Mean share of the barrels that fall, for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
     /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the
-    /// friction and the seats of the catalog; `None` if the stack stands even at 1 g.
+    /// friction and the seats of the catalog; `None` if the stack stands even at 1 g. In space it is the smaller of those
+    /// across and along the barrels.
     pub static_margin: Option<f64>,
     /// Effect of the uncertain constants of the seats on the share of collapses, for each stripe of `by_velocity`; `None`
     /// if a run has no verdict, or if there are too few runs.
@@ -141,7 +156,7 @@ pub struct AsRecorded {
     /// Number of levels of the stack.
     pub levels: u32,
     /// Direction of the shaking.
-    pub view: View,
+    pub direction: Direction,
     /// Name of the horizontal component.
     pub motion: String,
     /// `true` if the stack collapsed.
@@ -182,8 +197,9 @@ pub struct Heights {
 impl Heights {
     /// Returns the results of stacks with a number of levels in a direction; `None` if such stacks were not
     /// run.
-    pub fn of(&self, levels: u32, view: View) -> Option<&Height> {
-        self.heights.iter().find(|height| height.levels == levels && height.view == view)
+    pub fn of(&self, levels: u32, direction: Direction) -> Option<&Height> {
+        let same = |height: &&Height| height.levels == levels && height.direction == direction;
+        self.heights.iter().find(same)
     }
 
     /// Returns the results as a document for programs, in SI units.
@@ -215,13 +231,14 @@ pub enum HeightsError {
     Decision(#[from] DecisionError),
 }
 
-/// Runs the studies of every height in both directions and evaluates them.
+/// Runs the studies of every height in every direction and evaluates them.
 ///
 /// The studies are stored in folders below `folder`, so that an interrupted run resumes from there. `report`
 /// receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
-/// If the rack, the barrel or the height is unknown, a record cannot be read, or a folder cannot be written.
+/// If the rack, the barrel or the height is unknown, the rack is not supported in space, a record cannot be read, or a
+/// folder cannot be written.
 pub fn heights(
     request: &Request,
     folder: &Path,
@@ -231,34 +248,38 @@ pub fn heights(
     if !(LOWEST..=HIGHEST).contains(&request.highest) {
         return Err(HeightsError::Levels(request.highest));
     }
-    let mut studies: Vec<(View, bool, Study)> = Vec::new();
-    for view in View::ALL {
+    let mut studies: Vec<(Direction, bool, Study)> = Vec::new();
+    for direction in request.directions() {
+        if direction == Direction::Space {
+            // Not every rack is supported in space.
+            check(&plan::at_rest(request, direction, LOWEST)?).map_err(HeightsError::Stack)?;
+        }
         for recorded in [false, true] {
-            let name = plan::name(view, recorded);
-            let study = Study::written(&name, &plan::text(request, view, recorded)?)?;
-            studies.push((view, recorded, study));
+            let name = plan::name(direction, recorded);
+            let study = Study::written(&name, &plan::text(request, direction, recorded)?)?;
+            studies.push((direction, recorded, study));
         }
     }
     let all: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
     let mut before = 0;
     let mut found = Vec::new();
-    for (view, recorded, study) in &studies {
+    for (direction, recorded, study) in &studies {
         let overall = |progress: &Progress| report(before + progress.tally.cases, all);
-        let name = plan::name(*view, *recorded);
+        let name = plan::name(*direction, *recorded);
         let place = folder.join(&name);
         system::folder_below(folder, Path::new(&name))
             .map_err(StudyError::system("create the folder", &place))?;
-        found.push((*view, study, study.run(&place, options, &overall)?));
+        found.push((*direction, study, study.run(&place, options, &overall)?));
         before += study.cases();
     }
-    let stacks: Vec<(u32, View)> = View::ALL
-        .into_iter()
-        .flat_map(|view| request.heights().map(move |levels| (levels, view)))
+    let directions = request.directions().into_iter();
+    let stacks: Vec<(u32, Direction)> = directions
+        .flat_map(|direction| request.heights().map(move |levels| (levels, direction)))
         .collect();
     let margins = margin::margins(request, &stacks, &|| report(all, all))?;
     let mut found = gather(request, &found, &|| report(all, all))?;
     for height in &mut found.heights {
-        let at = stacks.iter().position(|of| *of == (height.levels, height.view));
+        let at = stacks.iter().position(|of| *of == (height.levels, height.direction));
         height.static_margin = at.and_then(|at| margins[at]);
     }
     found.document = page::document(&found);
@@ -270,20 +291,20 @@ pub fn heights(
 /// `stop` may cancel.
 fn gather(
     request: &Request,
-    found: &[(View, &Study, Collected)],
+    found: &[(Direction, &Study, Collected)],
     stop: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Heights, HeightsError> {
     let (mut heights, mut recorded, mut samples) = (Vec::new(), Vec::new(), Vec::new());
     let (mut runs, mut left_out, mut fallen_at_rest, mut motions) = (0, 0, 0, 0);
     let mut ends = Vec::new();
-    for (view, study, collected) in found {
+    for (direction, study, collected) in found {
         let cases = Cases::read(collected)?;
         runs += collected.table.rows();
         left_out += cases.left_out;
         fallen_at_rest += cases.fallen_at_rest();
         ends.extend(cases.endings.sentences());
         if !cases.leveled {
-            recorded.extend(recorded_runs(&cases, collected, *view));
+            recorded.extend(recorded_runs(&cases, collected, *direction));
             continue;
         }
         motions = cases.records.len();
@@ -297,7 +318,7 @@ fn gather(
                 sample.lacks_a_verdict();
             }
             samples.push(sample);
-            heights.push(height(&of, levels, *view));
+            heights.push(height(&of, levels, *direction));
         }
     }
     let work: Vec<(&Height, Sample)> = heights.iter().zip(samples).collect();
@@ -325,7 +346,7 @@ fn gather(
     Ok(all)
 }
 
-fn height(cases: &Cases, levels: u32, view: View) -> Height {
+fn height(cases: &Cases, levels: u32, direction: Direction) -> Height {
     let pga = cases.measures.iter().position(|measure| measure.name == "pga");
     let levels_of_shaking = cases.groups(cases.main);
     let fallen = levels_of_shaking
@@ -333,7 +354,7 @@ fn height(cases: &Cases, levels: u32, view: View) -> Height {
         .map(|(_, of)| of.iter().map(|case| case.fallen_share()).sum::<f64>() / of.len() as f64);
     Height {
         levels,
-        view,
+        direction,
         fallen: fallen.collect(),
         static_margin: None,
         effects: Vec::new(),
@@ -349,7 +370,7 @@ fn levels_of(collected: &Collected, row: u32) -> Option<u32> {
     }
 }
 
-fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsRecorded> {
+fn recorded_runs(cases: &Cases, collected: &Collected, direction: Direction) -> Vec<AsRecorded> {
     let intensity = |name: &str, case: &JudgedCase| {
         let at = cases.measures.iter().position(|measure| measure.name == name)?;
         case.intensity(at)
@@ -357,7 +378,7 @@ fn recorded_runs(cases: &Cases, collected: &Collected, view: View) -> Vec<AsReco
     let run = |case: &JudgedCase| {
         Some(AsRecorded {
             levels: levels_of(collected, case.row)?,
-            view,
+            direction,
             motion: cases.records[case.record as usize].clone(),
             collapsed: case.collapsed,
             fallen: case.fallen_share(),

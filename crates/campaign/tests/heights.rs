@@ -3,8 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use barrelstack_campaign::heights::{HeightsError, Request, VELOCITIES, View, heights};
-use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack_campaign::Direction;
+use barrelstack_campaign::heights::{HeightsError, Request, VELOCITIES, heights};
+use barrelstack_campaign::study::{RunOptions, StudyError, StudyTable};
 use barrelstack_report::html;
 
 fn stopped_at_once(request: &Request) -> (Result<(), HeightsError>, u64) {
@@ -23,10 +24,13 @@ fn every_height_direction_motion_and_level_is_a_run() {
     let (result, runs) = stopped_at_once(&request);
     assert!(matches!(result, Err(HeightsError::Study(StudyError::Stopped))), "{result:?}");
     // Two components of the bundled record and three synthetic motions, and the record unscaled; two to six levels.
-    let stacks = 5 * View::ALL.len();
+    let stacks = 5 * request.directions().len();
     assert_eq!(usize::try_from(runs).unwrap(), stacks * (VELOCITIES.len() * 5 + 2));
-    let (_, fewer) = stopped_at_once(&Request { highest: 2, ..request });
+    let (_, fewer) = stopped_at_once(&Request { highest: 2, ..request.clone() });
     assert_eq!(5 * fewer, runs);
+    // In space there is one direction instead of two.
+    let (_, in_space) = stopped_at_once(&Request { in_space: true, ..request });
+    assert_eq!(2 * in_space, runs);
 }
 
 #[test]
@@ -37,6 +41,15 @@ fn an_unknown_rack_is_refused_with_those_there_are() {
         said,
         "there is no rack `shelf`; use one of two-barrel, two-barrel-feet, single-bar, four-barrel, rack-on-rack, two-barrel-inclined, candia-2008"
     );
+}
+
+#[test]
+fn a_rack_that_space_does_not_support_is_refused_before_anything_is_run() {
+    let request = Request { rack: "rack-on-rack".into(), in_space: true, ..Request::default() };
+    let (result, runs) = stopped_at_once(&request);
+    let said = result.expect_err("racks on posts").to_string();
+    assert!(said.contains("space supports only racks that lie on the barrels below"), "{said}");
+    assert_eq!(runs, 0);
 }
 
 #[test]
@@ -80,4 +93,33 @@ fn ranges_over_constants_are_the_same_wherever_they_are_stated() {
     let highest =
         |at: usize| found.heights.iter().map(move |h| h.effects[at].as_ref().unwrap().range[1]);
     assert!(highest(0).fold(0.0, f64::max) < highest(5).fold(0.0, f64::max));
+}
+
+/// In space the heights have the same statistics, from runs in one direction that is drawn for every run.
+#[test]
+fn heights_in_space_have_ranges_over_constants() {
+    let folder = tempfile::tempdir().unwrap();
+    let request = Request { synthetic: 2, highest: 2, in_space: true, ..Request::default() };
+    let report = |_, _| ControlFlow::Continue(());
+    let found = heights(&request, folder.path(), &RunOptions::default(), &report).unwrap();
+    assert_eq!((found.heights.len(), found.runs), (1, 4 * VELOCITIES.len() + 2));
+    let height = found.of(2, Direction::Space).unwrap();
+    let margin = height.static_margin.unwrap();
+    assert!(margin > 1.0 && margin < 9.8, "{margin}");
+    let document = serde_json::to_value(found.to_document()).unwrap();
+    let row = &document["heights"][0];
+    assert_eq!(row["direction"], "spatial");
+    let page = html(&found.document).replace('\u{a0}', " ");
+    for (at, velocity) in VELOCITIES.into_iter().enumerate() {
+        let [low, high] = height.at(velocity).unwrap().range.unwrap();
+        assert_eq!(row["at"][at]["range"], serde_json::json!([low, high]));
+        let words = format!("{:.0}–{:.0} %", 100.0 * low, 100.0 * high);
+        assert!(page.contains(&words), "{words}");
+    }
+    // Something falls in the strongest shaking, and the direction is a column of the table.
+    assert!(height.at(1.0).unwrap().stripe.failures > height.at(0.12).unwrap().stripe.failures);
+    let table = std::fs::read(folder.path().join("spatial/table.parquet")).unwrap();
+    let table = StudyTable::from_parquet(table).unwrap();
+    let turned = table.numbers("direction of the motion").unwrap();
+    assert!(turned.windows(2).any(|pair| pair[0] != pair[1]));
 }

@@ -13,7 +13,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{
-    Advance, Failed, Observer, Plane, Remedy, RunChoice, Spread, Trial, fails, planes, remedy_by,
+    Advance, Judged, Observer, Plane, Remedy, RunChoice, Spread, Trial, planes, remedy_by, verdict,
 };
 use barrelstack::watch::Ending;
 use barrelstack::{Progress, RunFailure, Scenario, pool};
@@ -253,7 +253,7 @@ struct InSpace {
 }
 
 impl Trial for InSpace {
-    fn run(&mut self, block: std::ops::Range<u32>, observer: Observer<'_>) -> Failed {
+    fn run(&mut self, block: std::ops::Range<u32>, observer: Observer<'_>) -> Judged {
         let numbers: Vec<u32> = (block.start + 1..=block.end).collect();
         let before = self.done;
         let cases = run_some(&self.plane, &self.ground, &numbers, &|done| observer(before + done));
@@ -261,8 +261,7 @@ impl Trial for InSpace {
         if cases.iter().any(|case| case.result.outcome == Ok(Outcome::Interrupted)) {
             return ControlFlow::Break(());
         }
-        let failed = cases.iter().filter(|case| fails(&case.result)).count();
-        ControlFlow::Continue(vec![u32::try_from(failed).unwrap_or(u32::MAX)])
+        ControlFlow::Continue(vec![cases.iter().map(|case| verdict(&case.result)).collect()])
     }
 }
 
@@ -282,7 +281,9 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
         let ground = Ground::of(&plane.scenario)?;
         Ok(Box::new(InSpace { plane, ground, done: 0 }))
     };
-    remedy_by(&answer.scenario, answer.summary.ensemble.iter(), &prepare, observer)
+    let verdicts = answer.cases.iter().skip(1).map(|case| verdict(&case.result)).collect();
+    let as_it_is = (answer.summary.ensemble.iter(), vec![verdicts]);
+    remedy_by(&answer.scenario, as_it_is, &prepare, observer)
 }
 
 /// Returns the variants of a scenario in space, with its records in memory.

@@ -61,7 +61,46 @@ impl Remedy {
         };
         let stopped =
             if self.complete { "" } else { " The search for further changes was stopped." };
-        format!("{}.{}{stopped}", capital(&sentence), self.confidence())
+        format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
+    }
+
+    /// States the ranges of the shares that fall with the sufficient changes over the uncertain constants, and in how
+    /// many of their draws the better one is better; empty if a range is unknown.
+    fn over_constants(&self) -> String {
+        let range = |one: &Tried| {
+            one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
+        };
+        let said = match (&self.height, &self.straps) {
+            (Some(height), Some(straps)) => match (range(height), range(straps)) {
+                (Some(one), Some(other)) if one == other => format!("{one} of either"),
+                (Some(one), Some(other)) => {
+                    format!("{one} of the former and {other} of the latter")
+                }
+                _ => return String::new(),
+            },
+            (Some(one), None) | (None, Some(one)) => match range(one) {
+                Some(range) => format!("{range} of stacks with {}", name(one)),
+                None => return String::new(),
+            },
+            (None, None) => return String::new(),
+        };
+        let both = self.height.as_ref().zip(self.straps.as_ref());
+        let order = both.zip(self.height_before_straps).map(|((height, straps), share)| {
+            let (better, worse, share) = match share {
+                share if share < 0.5 => (straps, height, 1.0 - share),
+                share => (height, straps, share),
+            };
+            format!(
+                "; fewer fall with {} than with {} in {} of the draws of these constants",
+                name(better),
+                name(worse),
+                percent(share)
+            )
+        });
+        format!(
+            " Allowing for the uncertain friction, stiffness and damping of the seats, {said} would fall (95 % range){}.",
+            order.unwrap_or_default()
+        )
     }
 
     /// States the upper confidence bounds of the shares that fall with the sufficient changes,
@@ -143,6 +182,7 @@ impl Remedy {
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
             "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share of a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
+             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included; a draw has the same constants for all changes, and a change is better in it if fewer stacks fall. \
              Straps are assumed not to slip on what they tie.",
             100.0 * self.required_share,
             self.candidates
@@ -164,6 +204,12 @@ impl Remedy {
                     }))
                 }),
                 ("suffices", "", &|one| Cell::text(verdict(one))),
+                ("range over uncertain constants", "", &|one| {
+                    Cell::maybe(one.range.map(|range| range.map(percent).join(" to ")))
+                }),
+                ("better than as it is, in draws", "", &|one| {
+                    Cell::maybe(one.better_than_as_it_is.map(percent))
+                }),
             ],
         )
     }

@@ -6,7 +6,7 @@ use barrelstack_motion::Random;
 use barrelstack_report::described;
 
 use super::draw::{self, Shared};
-use super::spread::{LEVEL, collapsed, judged};
+use super::spread::{LEVEL, verdict};
 use super::{Plane, Spread};
 use crate::ensemble::CaseResult;
 use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw, StackInterfaces, Unknowns};
@@ -371,28 +371,48 @@ fn correlations(constants: &[Drawn], of_friction: f64) -> Vec<Vec<f64>> {
 /// the order of their numbers. Returns `None` if the variants do not differ in their constants,
 /// if a variant has no verdict, or if there are too few variants.
 pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
+    let verdicts: Vec<Option<bool>> = results.get(1..)?.iter().map(verdict).collect();
+    let (fitted, constants) = fit(plane, &verdicts)?;
+    let constants: Vec<Constant<'_>> = constants.iter().map(Drawn::constant).collect();
+    Some(Fitted::of(&fitted, &constants))
+}
+
+/// Returns the share of collapses in every draw of the uncertain constants and of the regression, in the plane in which
+/// it is larger. A draw has the same constants for all stacks with the same planes. `verdicts` has the variants of every
+/// plane; `None` as in [`range`].
+pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<Vec<f64>> {
+    let of = |(plane, verdicts): (&Plane, &Vec<_>)| Some(fit(plane, verdicts)?.0.shares());
+    let shares = planes.iter().zip(verdicts).map(of).collect::<Option<Vec<Vec<f64>>>>()?;
+    let larger = |all: Vec<f64>, other: Vec<f64>| {
+        all.into_iter().zip(other).map(|(one, other)| one.max(other)).collect()
+    };
+    shares.into_iter().reduce(larger)
+}
+
+/// Fits the share of collapses to the verdicts of the variants, which are in the order of their numbers, and returns it
+/// with its constants.
+fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Drawn>)> {
     let imperfections = plane.scenario.imperfections()?;
     let unknowns = plane.scenario.unknowns()?;
     let stack = plane.scenario.stack()?;
-    let variants = results.get(1..)?;
-    if !unknowns.drawn || !variants.iter().all(judged) {
+    if !unknowns.drawn {
         return None;
     }
     let constants = drawn(&stack.interfaces, unknowns, stack.rack.posts.is_some());
-    let run = |(number, result): (u32, &CaseResult)| DrawnRun {
+    let run = |(number, failed): (u32, bool)| DrawnRun {
         deviates: constants
             .iter()
             .map(|one| draw::deviate(imperfections, unknowns, one.axis, number))
             .collect(),
         second_half: plane.exchanged.is_some() && plane.is_exchanged(number),
-        failed: collapsed(result),
+        failed,
     };
-    let runs: Vec<DrawnRun> = (1..).zip(variants).map(run).collect();
+    let failed = verdicts.iter().copied().collect::<Option<Vec<bool>>>()?;
+    let runs: Vec<DrawnRun> = (1..).zip(failed).map(run).collect();
     let mut random = Random::new(u64::from(imperfections.seed));
     let fitted = conditional(&runs, || random.uniform())?
         .correlated(correlations(&constants, unknowns.friction_correlation));
-    let constants: Vec<Constant<'_>> = constants.iter().map(Drawn::constant).collect();
-    Some(Fitted::of(&fitted, &constants))
+    Some((fitted, constants))
 }
 
 impl Spread {

@@ -42,10 +42,10 @@ pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
 pub use decides::{Constant, Fitted, ShareAt, Unknown};
 pub use remedy::{
-    ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, lowered, remedy, remedy_by,
-    strapped_together,
+    ENOUGH, Judged, Observer, PRETENSIONS, Remedy, Trial, Tried, Verdicts, lowered, remedy,
+    remedy_by, strapped_together,
 };
-pub use spread::{FEW, LEVEL, Range, Spread, fails};
+pub use spread::{FEW, LEVEL, Range, Spread, verdict};
 
 /// A scenario in one plane, with all its variants.
 #[derive(Clone, Debug)]

@@ -8,12 +8,13 @@
 mod search;
 
 use std::ops::{ControlFlow, Range};
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use barrelstack_fragility::{interval_of, share_less};
 use barrelstack_report::described;
 
 use self::search::{Counts, Plan};
-use super::{Answer, Plane, Spread, fails, planes};
+use super::{Answer, LEVEL, Plane, Spread, decides, planes, verdict};
 use crate::device::{Straps, Ties};
 use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
 use crate::ground::{GroundError, from_disk};
@@ -21,7 +22,7 @@ use crate::pool;
 use crate::run::CUT;
 use crate::scenario::{Scenario, Scene, Setting, Source};
 
-pub use self::search::{ENOUGH, Failed};
+pub use self::search::{ENOUGH, Judged, Verdicts};
 
 /// Pretensions (N) of the straps that are tried.
 ///
@@ -42,6 +43,10 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
+        /// Share of the draws of the uncertain constants in which fewer stacks fail with the height that suffices than
+        /// with the straps that suffice; equal shares count by half. Null if only one of them suffices, or if its range
+        /// is null.
+        pub height_before_straps: Option<f64> as "1",
         /// Number of changes that may be tried, each in every plane; the intervals hold
         /// simultaneously for all these changes.
         pub candidates: u32,
@@ -80,6 +85,13 @@ described! {
         /// correction); the intervals of all changes and planes of the search hold simultaneously
         /// with 95 % confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
+        /// Range of the share of stacks that fail, in the plane in which more do, over the uncertain constants of the
+        /// seats: it contains 95 % of the shares if these constants are drawn from their distributions, sampling error
+        /// included. Null if the share is null, and wherever the range of the stack as it is would be null.
+        pub range: Option<[f64; 2]> as "1",
+        /// Share of the draws of these constants in which fewer stacks fail than as it is; equal shares count by half.
+        /// A draw has the same constants for all changes. Null if a range is unknown.
+        pub better_than_as_it_is: Option<f64> as "1",
     }
 }
 
@@ -91,8 +103,8 @@ pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 pub trait Trial {
     /// Runs a block of variants, numbered from zero, in every plane.
     ///
-    /// Returns the number of failures in each plane, or `Break` if the observer cancels.
-    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Failed;
+    /// Returns the verdicts in each plane, or `Break` if the observer cancels.
+    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Judged;
 }
 
 /// Function that prepares the variants of a changed stack.
@@ -115,17 +127,24 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     let prepare = |scenario: &Scenario| -> Result<Box<dyn Trial>, GroundError> {
         Ok(Box::new(InPlanes::new(scenario)?))
     };
-    remedy_by(&answer.scenario, spreads.iter().map(|(_, spread)| *spread), &prepare, observer)
+    let of = |plane: &Plane| {
+        let shown = answer.shown().find(|shown| shown.run.assembly.view == plane.view())?;
+        let results = &shown.variants.as_ref()?.results;
+        Some(results.iter().skip(1).map(verdict).collect())
+    };
+    let verdicts = planes(&answer.scenario)?.iter().map_while(of).collect();
+    let as_it_is = (spreads.iter().map(|(_, spread)| *spread), verdicts);
+    remedy_by(&answer.scenario, as_it_is, &prepare, observer)
 }
 
 /// Searches for a remedy like [`remedy`], with runs prepared by `prepare`; `spreads` are the
-/// statistics of the stack without changes.
+/// statistics of the stack without changes, and `as_it_is` the verdicts of its variants.
 ///
 /// # Errors
 /// As [`remedy`].
 pub fn remedy_by<'a>(
     scenario: &Scenario,
-    spreads: impl Iterator<Item = &'a Spread>,
+    (spreads, as_it_is): (impl Iterator<Item = &'a Spread>, Verdicts),
     prepare: &Prepare<'_>,
     observer: Observer<'_>,
 ) -> Result<Option<Remedy>, GroundError> {
@@ -139,7 +158,7 @@ pub fn remedy_by<'a>(
         return Ok(None);
     }
     let mut found = Remedy { required_share: f64::from(ENOUGH) / 100.0, ..Remedy::default() };
-    look(scenario, prepare, observer, &mut found)?;
+    look(scenario, &as_it_is, (prepare, observer), &mut found)?;
     Ok(Some(found))
 }
 
@@ -151,8 +170,8 @@ fn enough(share: f64) -> bool {
 /// Tries all changes of a scenario, and stores the results in `found`.
 fn look(
     scenario: &Scenario,
-    prepare: &Prepare<'_>,
-    observer: Observer<'_>,
+    as_it_is: &Verdicts,
+    (prepare, observer): (&Prepare<'_>, Observer<'_>),
     found: &mut Remedy,
 ) -> Result<(), GroundError> {
     let Some(stack) = scenario.stack() else { return Ok(()) };
@@ -181,11 +200,28 @@ fn look(
         Ok(trial.run(block, observer))
     };
     let search::Found { counts, complete } = search::search::<GroundError>(&plan, &mut run)?;
-    let tried: Vec<Option<Tried>> = changes
+    let mut tried: Vec<Option<Tried>> = changes
         .iter()
         .zip(&counts)
         .map(|(change, counts)| Some(change.summarize(counts.as_ref()?, &plan)))
         .collect();
+    let draws: Vec<Option<Vec<f64>>> = counts
+        .iter()
+        .map(|counts| counts.as_ref().filter(|counts| counts.whole(&plan)))
+        .map(|counts| decides::draws(&planes, &counts?.verdicts))
+        .collect();
+    let before = decides::draws(&planes, as_it_is);
+    for (tried, draws) in tried.iter_mut().zip(&draws) {
+        let Some((tried, draws)) = tried.as_mut().zip(draws.as_ref()) else { continue };
+        tried.range = Some(range(draws));
+        tried.better_than_as_it_is = before.as_ref().map(|before| share_less(draws, before));
+    }
+    let suffices = |of: Range<usize>| {
+        of.into_iter().find(|at| tried[*at].as_ref().is_some_and(|one| one.suffices))
+    };
+    let both = suffices(0..heights).zip(suffices(heights..tried.len()));
+    let both = both.and_then(|(height, straps)| draws[height].as_ref().zip(draws[straps].as_ref()));
+    found.height_before_straps = both.map(|(height, straps)| share_less(height, straps));
     let (lower, strapped) = tried.split_at(heights);
     let first = |of: &[Option<Tried>]| of.iter().flatten().find(|tried| tried.suffices).cloned();
     (found.height, found.straps) = (first(lower), first(strapped));
@@ -193,6 +229,12 @@ fn look(
     found.candidates = u32::try_from(plan.changes()).unwrap_or(u32::MAX);
     found.complete = complete;
     Ok(())
+}
+
+/// Returns the range of draws of a share, rounded outward to hundredths.
+fn range(draws: &[f64]) -> [f64; 2] {
+    let found = interval_of(draws, LEVEL);
+    [(100.0 * found.low).floor() / 100.0, (100.0 * found.high).ceil() / 100.0]
 }
 
 /// A change of the stack, with the changed scenario.
@@ -286,6 +328,8 @@ impl Change {
             failed: counts.failed,
             share: whole.then(|| f64::from(counts.failed) / f64::from(counts.ran)),
             interval: counts.interval(plan).map(|interval| [interval.low, interval.high]),
+            range: None,
+            better_than_as_it_is: None,
         }
     }
 }
@@ -310,7 +354,7 @@ impl InPlanes {
 }
 
 impl Trial for InPlanes {
-    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Failed {
+    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Judged {
         let stopped = AtomicBool::new(false);
         let canceled = || {
             if observer(self.done.load(Ordering::Relaxed)).is_break() {
@@ -318,7 +362,6 @@ impl Trial for InPlanes {
             }
             stopped.load(Ordering::Relaxed)
         };
-        let failed: Vec<AtomicU32> = self.cases.iter().map(|_| AtomicU32::new(0)).collect();
         let places = block.start as usize + 1..block.end as usize + 1;
         let batches: Vec<(usize, &[Prepared])> = self
             .cases
@@ -329,20 +372,22 @@ impl Trial for InPlanes {
                 block.chunks(BATCH).map(move |batch| (plane, batch))
             })
             .collect();
-        let work = |(plane, cases): &(usize, &[Prepared])| {
-            let mut on_case = |result: &CaseResult| {
-                if fails(result) {
-                    failed[*plane].fetch_add(1, Ordering::Relaxed);
-                }
+        let work = |(_, cases): &(usize, &[Prepared])| {
+            let mut on_case = |_: &CaseResult| {
                 self.done.fetch_add(1, Ordering::Relaxed);
             };
-            // If the run was canceled, no variant of the block counts.
-            let _ = simulate(cases, &mut Audience { on_case: &mut on_case, stop: &canceled });
+            let results = simulate(cases, &mut Audience { on_case: &mut on_case, stop: &canceled });
+            results.iter().flatten().map(verdict).collect::<Vec<_>>()
         };
-        pool::map(&batches, work, &|_| ());
+        let found = pool::map(&batches, work, &|_| ());
+        // If the run was canceled, no variant of the block counts.
         if stopped.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
-        ControlFlow::Continue(failed.into_iter().map(AtomicU32::into_inner).collect())
+        let mut verdicts = vec![Vec::new(); self.cases.len()];
+        for ((plane, _), more) in batches.iter().zip(found) {
+            verdicts[*plane].extend(more);
+        }
+        ControlFlow::Continue(verdicts)
     }
 }

@@ -225,9 +225,9 @@ pub(super) fn judged(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }))
 }
 
-/// `true` if a case collapses or has no verdict; both count against a change.
-pub fn fails(result: &CaseResult) -> bool {
-    collapsed(result) || !judged(result)
+/// Returns whether a case collapses; `None` if it has no verdict.
+pub fn verdict(result: &CaseResult) -> Option<bool> {
+    judged(result).then(|| collapsed(result))
 }
 
 /// `true` if a case has a verdict and was shaken, so that it can be shown.

@@ -6,7 +6,7 @@ use super::page::span;
 use super::plan::VELOCITIES;
 use super::{AtLevel, Heights};
 use crate::decision::percent;
-use crate::scenario::View;
+use crate::direction::Direction;
 
 /// Number of levels of the lowest stacks that are compared with the field observations.
 const LOWEST_OBSERVED: u32 = 4;
@@ -26,9 +26,13 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
         "This is a weak check. No shares by height were published, the shaking at the stores was not recorded, and the \
          stacks stood in rows that knock each other down, which fells more stacks and is not modeled here."
             .into(),
-        "Each run is in one plane. A real stack is shaken across and along the barrels at once, so that its chance of \
-         collapse lies between the larger of the two chances and their sum."
-            .into(),
+        if all.request.in_space {
+            "Each run is in space, under all components of its motion; those of the record are scaled by one factor."
+        } else {
+            "Each run is in one plane. A real stack is shaken across and along the barrels at once, so that its chance of \
+             collapse lies between the larger of the two chances and their sum."
+        }
+        .into(),
     ]));
     blocks
 }
@@ -56,10 +60,11 @@ fn observations(all: &Heights) -> Table {
         let high = found.iter().copied().fold(0.0, f64::max);
         let mean = found.iter().sum::<f64>() / found.len().max(1) as f64;
         format!(
-            "{} on average, {} to {} by height and direction",
+            "{} on average, {} to {} by height{}",
             percent(mean),
             percent(low),
-            percent(high)
+            percent(high),
+            if all.request.in_space { "" } else { " and direction" }
         )
     };
     let collapse = range(|at| at.stripe.fraction());
@@ -90,16 +95,18 @@ fn recorded(all: &Heights) -> Table {
         "South Napa 2014 as recorded at Napa College, unscaled: outcome for each stack (friction of the catalog).",
         &columns,
     );
-    let mut rows: Vec<(&str, View)> = Vec::new();
+    let mut rows: Vec<(&str, Direction)> = Vec::new();
     for run in &all.recorded {
-        if !rows.contains(&(run.motion.as_str(), run.view)) {
-            rows.push((&run.motion, run.view));
+        if !rows.contains(&(run.motion.as_str(), run.direction)) {
+            rows.push((&run.motion, run.direction));
         }
     }
-    for (motion, view) in rows {
+    for (motion, direction) in rows {
         let of = |levels: Option<u32>| {
             all.recorded.iter().find(|run| {
-                run.motion == motion && run.view == view && levels.is_none_or(|l| run.levels == l)
+                run.motion == motion
+                    && run.direction == direction
+                    && levels.is_none_or(|l| run.levels == l)
             })
         };
         let Some(any) = of(None) else { continue };
@@ -107,7 +114,7 @@ fn recorded(all: &Heights) -> Table {
             Cell::text(motion),
             Cell::Number(100.0 * any.velocity, 3),
             Cell::Number(any.acceleration / barrelstack_motion::STANDARD_GRAVITY, 3),
-            Cell::text(view.words()),
+            Cell::text(direction.words()),
         ];
         row.extend(all.request.heights().map(|levels| match of(Some(levels)) {
             Some(run) if run.collapsed => {

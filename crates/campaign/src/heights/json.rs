@@ -40,8 +40,8 @@ described! {
     pub struct RecordedRow of run: &AsRecorded {
         /// Number of levels of the stack.
         pub levels: u32 = run.levels,
-        /// Direction of the shaking: across or along the barrels.
-        pub direction: &'static str ["transverse", "longitudinal"] = run.view.name(),
+        /// Direction of the shaking: across or along the barrels, or in space.
+        pub direction: &'static str ["transverse", "longitudinal", "spatial"] = run.direction.name(),
         /// Name of the horizontal component.
         pub motion: String = run.motion.clone(),
         /// `true` if the stack collapsed.
@@ -58,10 +58,12 @@ described! {
     pub struct HeightRow of height: &Height {
         /// Number of levels of the stack.
         pub levels: u32 = height.levels,
-        /// Direction of the shaking: across or along the barrels.
-        pub direction: &'static str ["transverse", "longitudinal"] = height.view.name(),
+        /// Direction of the shaking: across or along the barrels, or in space, in a horizontal direction that is drawn for
+        /// every run.
+        pub direction: &'static str ["transverse", "longitudinal", "spatial"] = height.direction.name(),
         /// Static margin: largest steady horizontal acceleration under which the stack stands, with the
-        /// friction and the seats of the catalog; null if the stack stands at 1 g.
+        /// friction and the seats of the catalog; null if the stack stands at 1 g. In space it is the smaller of those
+        /// across and along the barrels.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
         /// Results at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),

@@ -5,23 +5,31 @@ use std::ops::ControlFlow;
 use barrelstack::stability::stability;
 
 use super::{HeightsError, Request, plan};
+use crate::direction::Direction;
 use crate::pool;
 use crate::run::RunFailure;
-use crate::scenario::{Scenario, View};
+use crate::scenario::View;
 use crate::study::StudyError;
 
 /// Returns the static margin (m/s²) of a stack: `None` if the stack stands even at 1 g, zero if it falls
-/// under its own weight.
+/// under its own weight. In space it is the smaller of those across and along the barrels.
 fn margin(
     request: &Request,
-    (levels, view): (u32, View),
+    (levels, direction): (u32, Direction),
     stop: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Option<f64>, HeightsError> {
     if stop().is_break() {
         return Err(StudyError::Stopped.into());
     }
-    let text = format!("schema = 1\nmotion.none = true\n{}", plan::stack(request, view, levels)?);
-    let scenario = Scenario::from_str(&text).map_err(StudyError::from)?;
+    if direction == Direction::Space {
+        let mut least: Option<f64> = None;
+        for view in View::ALL {
+            let found = margin(request, (levels, Direction::Plane(view)), stop)?;
+            least = least.into_iter().chain(found).reduce(f64::min);
+        }
+        return Ok(least);
+    }
+    let scenario = plan::at_rest(request, direction, levels)?;
     match stability(&scenario) {
         // A tilted floor acts like a level floor with a steady horizontal acceleration of g times the tangent of the tilt.
         Ok(found) => {
@@ -36,10 +44,10 @@ fn margin(
 /// stack that stands even at 1 g.
 pub(super) fn margins(
     request: &Request,
-    stacks: &[(u32, View)],
+    stacks: &[(u32, Direction)],
     stop: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Option<f64>>, HeightsError> {
-    let of = |stack: &(u32, View)| margin(request, *stack, stop);
+    let of = |stack: &(u32, Direction)| margin(request, *stack, stop);
     pool::map(stacks, of, &|_| ()).into_iter().collect()
 }
 
@@ -53,6 +61,7 @@ mod tests {
 
     use super::*;
     use crate::outcome::Outcome;
+    use crate::scenario::Scenario;
 
     fn going() -> ControlFlow<()> {
         ControlFlow::Continue(())
@@ -61,24 +70,27 @@ mod tests {
     #[test]
     fn a_stack_stands_below_its_margin_and_falls_above_it() {
         let request = Request::default();
-        let stacks = [(6, View::Transverse), (2, View::Longitudinal), (4, View::Longitudinal)];
+        let [across, along] = View::ALL.map(Direction::Plane);
+        let stacks = [(6, across), (2, along), (4, along), (6, Direction::Space), (6, along)];
         let found: Vec<f64> =
             margins(&request, &stacks, &going).unwrap().into_iter().map(Option::unwrap).collect();
         println!("{found:?} m/s²");
-        for ((levels, view), margin) in stacks.iter().zip(&found) {
+        for ((levels, direction), margin) in stacks[..3].iter().zip(&found) {
             // An acceleration that grows to a share of the margin and stays near it for ten seconds.
             let falls = |share: f64| {
                 let text = format!(
                     "schema = 1\n{}[motion.pulse]\nkind = \"half-sine\"\namplitude = \"{} m/s^2\"\nperiod = \"80 s\"\n\
                      [run]\nduration = \"40 s\"\nstop_after_collapse = \"0 s\"\n",
-                    plan::stack(&request, *view, *levels).unwrap(),
+                    plan::stack(&request, *direction, *levels).unwrap(),
                     share * margin
                 );
                 Scenario::from_str(&text).unwrap().run().unwrap().outcome != Outcome::Stable
             };
-            assert_eq!([falls(0.8), falls(1.15)], [false, true], "{levels} {view:?}");
+            assert_eq!([falls(0.8), falls(1.15)], [false, true], "{levels} {direction:?}");
         }
         // The higher stack has the smaller margin.
         assert!(found[2] < found[1], "{found:?}");
+        // In space the smaller one counts.
+        assert_eq!(found[3], found[0].min(found[4]));
     }
 }

@@ -11,8 +11,9 @@ use crate::decision::{
     LimitCurve, chance_axis, fallen_at_rest, heading, left_out, percent, points, range, refusal,
     text,
 };
+use crate::direction::Direction;
+use crate::scenario::catalog;
 use crate::scenario::title::{counted, number};
-use crate::scenario::{View, catalog};
 
 /// Conditions for the rating "low": the maximum share of collapse, and the maximum upper bound of the
 /// probability of collapse.
@@ -87,9 +88,9 @@ fn named(velocity: f64) -> String {
 /// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which
 /// the upper bound of the probability of collapse is larger.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
-    View::ALL
-        .into_iter()
-        .filter_map(|view| all.of(levels, view)?.at(velocity))
+    let directions = all.request.directions().into_iter();
+    directions
+        .filter_map(|direction| all.of(levels, direction)?.at(velocity))
         .max_by(|a, b| a.interval.high.total_cmp(&b.interval.high))
 }
 
@@ -143,8 +144,9 @@ fn headline(all: &Heights) -> String {
     };
     let next = VELOCITIES.into_iter().find(|other| *other > velocity);
     format!(
-        "Up to {levels} levels {racks} have a low risk in {}, across the barrels and along them: {}{}.{}",
+        "Up to {levels} levels {racks} have a low risk in {}, {}: {}{}.{}",
         named(velocity),
+        in_planes(all, "across the barrels and along them", "shaken in all directions"),
         found(all, levels, velocity),
         next.map(|next| {
             format!("; in {} not even two levels do{}", named(next), weaker(all, next))
@@ -154,15 +156,29 @@ fn headline(all: &Heights) -> String {
     )
 }
 
+/// Returns the words for stacks in planes, or for those in space.
+fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
+    if all.request.in_space { space } else { planes }
+}
+
+/// Returns a direction as an insertion, such as ", along the barrels"; empty in space, where there is only one.
+fn inserted(direction: Direction) -> String {
+    match direction {
+        Direction::Plane(view) => format!(", {}", view.words()),
+        Direction::Space => String::new(),
+    }
+}
+
 /// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which the upper
 /// end of the range over the uncertain constants is larger.
 fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel, [f64; 2])> {
-    let found = |view| {
-        let height = all.of(levels, view)?;
+    let found = |direction| {
+        let height = all.of(levels, direction)?;
         let at = height.at(velocity)?;
         Some((height, at, at.range?))
     };
-    let found = View::ALL.into_iter().map(found).collect::<Option<Vec<_>>>()?;
+    let directions = all.request.directions().into_iter();
+    let found = directions.map(found).collect::<Option<Vec<_>>>()?;
     found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
 }
 
@@ -199,8 +215,8 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
         format!("; in {} up to {levels} levels do", named(velocity))
     });
     format!(
-        " {uncertain} not even two levels do: the probability is {shares} (95 % range), {}{decides}{weaker}.",
-        height.view.words()
+        " {uncertain} not even two levels do: the probability is {shares} (95 % range){}{decides}{weaker}.",
+        inserted(height.direction)
     )
 }
 
@@ -208,9 +224,10 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
 fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
-        "Range of the chance of collapse over the uncertain constants of the seats (95 %), and the constant that decides, in \
-         the direction with the higher end."
-            .to_owned(),
+        format!(
+            "Range of the chance of collapse over the uncertain constants of the seats (95 %), and the constant that decides{}.",
+            in_planes(all, ", in the direction with the higher end", "")
+        ),
         |levels, velocity| {
             Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
                 let decides = height.decisive(velocity);
@@ -224,11 +241,12 @@ fn over_constants_table(all: &Heights) -> Table {
 /// Returns the directions in which stacks of two levels are not rated low at a level of PGV (m/s), such as ",
 /// along the barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
-    let low = |view: &View| {
-        let at = all.of(LOWEST, *view).and_then(|height| height.at(velocity));
+    let low = |direction: &Direction| {
+        let at = all.of(LOWEST, *direction).and_then(|height| height.at(velocity));
         at.is_none_or(|at| rating(&at) == Rating::Good)
     };
-    let not: Vec<&str> = View::ALL.into_iter().filter(|view| !low(view)).map(View::words).collect();
+    let planes = all.request.directions().into_iter().filter(|one| *one != Direction::Space);
+    let not: Vec<&str> = planes.filter(|one| !low(one)).map(Direction::words).collect();
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
@@ -258,10 +276,15 @@ fn bound(high: f64) -> String {
 
 fn sentences(all: &Heights) -> Vec<String> {
     let mut said = vec![format!(
-        "Stacks of {} on {} racks were shaken {} times, across and along the barrels, by {} motions.",
+        "Stacks of {} on {} racks were shaken {} times, {}, by {} motions.",
         span(LOWEST, all.request.highest),
         all.request.rack,
         all.runs,
+        in_planes(
+            all,
+            "across and along the barrels",
+            "in space and in horizontal directions that were drawn for every run"
+        ),
         all.motions
     )];
     let share = |levels: u32| {
@@ -271,10 +294,11 @@ fn sentences(all: &Heights) -> Vec<String> {
     if let (Some((velocity, low)), Some((_, high))) = (share(3), share(6)) {
         said.push(format!(
             "In shaking as strong as near Napa in 2014 ({}), {} of the stacks of three levels and {} of those of six \
-             collapse in their weaker direction.",
+             collapse{}.",
             shaking(velocity),
             percent(low),
-            percent(high)
+            percent(high),
+            in_planes(all, " in their weaker direction", "")
         ));
     }
     // A height without a margin stands at 1 g.
@@ -283,10 +307,10 @@ fn sentences(all: &Heights) -> Vec<String> {
     if let Some((height, margin)) = weakest.and_then(|height| Some((height, height.static_margin?)))
     {
         said.push(format!(
-            "Stacks of {} levels have the smallest static margin, {}: they collapse under a steady push of {}, as on a floor \
+            "Stacks of {} levels have the smallest static margin{}: they collapse under a steady push of {}, as on a floor \
              tilted by {:.0} degrees.",
             height.levels,
-            height.view.words(),
+            inserted(height.direction),
             gravities(margin),
             tilt(margin)
         ));
@@ -309,10 +333,11 @@ fn blocks(all: &Heights) -> Vec<Block> {
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
-            "Each cell shows the share of stacks that collapse, in the direction with the higher bound, and in brackets the range \
+            "Each cell shows the share of stacks that collapse{}, and in brackets the range \
              of the true chance; each end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range \
              ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 studies. ! \
              medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
+            in_planes(all, ", in the direction with the higher bound", ""),
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * MEDIUM
@@ -330,11 +355,11 @@ fn blocks(all: &Heights) -> Vec<Block> {
              in California (Wald et al. 1999); elsewhere it is an assumption.",
         ),
         Block::Figure(chart(all)),
-        heading("Both directions"),
+        heading(in_planes(all, "Both directions", "In all directions")),
         Block::Table(static_margins(all)),
     ];
-    for view in View::ALL {
-        blocks.push(Block::Table(direction(all, view)));
+    for one in all.request.directions() {
+        blocks.push(Block::Table(direction(all, one)));
     }
     blocks.push(Block::Figure(medians(all)));
     blocks.push(Block::Table(median_table(all)));
@@ -390,15 +415,15 @@ fn card(all: &Heights) -> Table {
     )
 }
 
-fn direction(all: &Heights, view: View) -> Table {
+fn direction(all: &Heights, direction: Direction) -> Table {
     by_height(
         all,
         format!(
             "Collapse under shaking {}: number of stacks that collapse and number of stacks that were run.",
-            view.words()
+            direction.words()
         ),
         |levels, velocity| {
-            let found = all.of(levels, view).and_then(|height| height.at(velocity));
+            let found = all.of(levels, direction).and_then(|height| height.at(velocity));
             Cell::maybe(
                 found.map(|AtLevel { stripe, .. }| {
                     format!("{} of {}", stripe.failures, stripe.cases)
@@ -416,13 +441,25 @@ fn static_margins(all: &Heights) -> Table {
         level.map_or_else(|| "at none".to_owned(), shaking)
     };
     Table::of(
-        "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
-         with the friction and the seats of the catalog. If the shaking has pulses that last as long as the stack \
-         takes to tip over, a slightly larger acceleration makes it collapse.",
+        format!(
+            "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
+             with the friction and the seats of the catalog{}. If the shaking has pulses that last as long as the stack \
+             takes to tip over, a slightly larger acceleration makes it collapse.",
+            in_planes(
+                all,
+                "",
+                "; the smaller of those of the models in planes, across and along the barrels"
+            )
+        ),
         &all.heights,
         &[
             ("levels", "", &|height| Cell::text(height.levels.to_string())),
-            ("pushed", "", &|height| Cell::text(height.view.words())),
+            ("pushed", "", &|height| {
+                Cell::text(match height.direction {
+                    Direction::Plane(view) => view.words(),
+                    Direction::Space => "across or along the barrels",
+                })
+            }),
             ("static margin", "", &|height| {
                 Cell::text(height.static_margin.map_or_else(|| "above 1 g".to_owned(), gravities))
             }),
@@ -457,7 +494,10 @@ fn chart(all: &Heights) -> Figure {
     }
     Figure::new(
         "height-chart",
-        "Chance of collapse in the weaker direction as a function of height, at three strengths of shaking. Each end of a vertical bar is a bound with 95 % confidence.",
+        format!(
+            "Chance of collapse{} as a function of height, at three strengths of shaking. Each end of a vertical bar is a bound with 95 % confidence.",
+            in_planes(all, " in the weaker direction", "")
+        ),
         Plot {
             x: level_axis(all),
             y: chance_axis("chance of collapse"),
@@ -470,12 +510,12 @@ fn chart(all: &Heights) -> Figure {
 /// Plots, against height, the PGV at which half of the stacks collapse.
 fn medians(all: &Heights) -> Figure {
     let mut series = Vec::new();
-    for (index, view) in View::ALL.into_iter().enumerate() {
+    for (index, direction) in all.request.directions().into_iter().enumerate() {
         let shift = 0.05 * (2.0 * index as f64 - 1.0);
         let found: Vec<(f64, f64, Interval)> = all
             .heights
             .iter()
-            .filter(|height| height.view == view)
+            .filter(|height| height.direction == direction)
             .filter_map(|height| {
                 let fit = height.by_velocity.fit.as_ref().ok()?;
                 let at = f64::from(height.levels) + shift;
@@ -488,7 +528,7 @@ fn medians(all: &Heights) -> Figure {
             .collect();
         let x: Vec<f64> = found.iter().map(|(x, _, _)| *x).collect();
         let (y, bounds) = (found.iter().map(|f| f.1), found.iter().map(|f| f.2));
-        series.push(points(view.words(), &x, y, bounds, index));
+        series.push(points(direction.words(), &x, y, bounds, index));
     }
     Figure::new(
         "medians",
@@ -522,7 +562,7 @@ fn median_table(all: &Heights) -> Table {
         all.heights.iter().map(|height| (height, &height.by_velocity, &height.by_acceleration)),
         &[
             ("levels", "", &|(height, ..)| Cell::text(height.levels.to_string())),
-            ("shaken", "", &|(height, ..)| Cell::text(height.view.words())),
+            ("shaken", "", &|(height, ..)| Cell::text(height.direction.words())),
             ("median PGV", "cm/s", &|(_, pgv, _)| number(pgv, 100.0, |fit| fit.curve.median)),
             ("95 % interval", "cm/s", &|(_, pgv, _)| Cell::maybe(interval(pgv))),
             ("dispersion", "", &|(_, pgv, _)| number(pgv, 1.0, |fit| fit.curve.dispersion)),
@@ -538,9 +578,14 @@ fn rests_on(all: &Heights) -> Vec<String> {
         format!(
             "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
              synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of \
-             near faults){}, each scaled to every level of PGV.",
+             near faults){}, each scaled to every level of PGV{}.",
             all.request.synthetic,
-            if all.request.records.is_empty() { "" } else { ", and the given records" }
+            if all.request.records.is_empty() { "" } else { ", and the given records" },
+            in_planes(
+                all,
+                "",
+                ". A record has all its components, a synthetic motion one; the horizontal direction is drawn for every run"
+            )
         ),
         format!(
             "Full barrels, `{}` of the catalog. Friction, stiffness and damping of the seats are drawn for every run around \
@@ -548,9 +593,11 @@ fn rests_on(all: &Heights) -> Vec<String> {
              assumptions; wet floors and painted racks differ. Measure your own.",
             all.request.barrel
         ),
-        "Each stack stands alone, in a plane model: no neighbors, no walls, no straps. Collapse is the first loss of a seat \
-         by a barrel or a rack."
-            .into(),
+        format!(
+            "Each stack stands alone, in {}: no neighbors, no walls, no straps. Collapse is the first loss of a seat by a \
+             barrel or a rack.",
+            in_planes(all, "a plane model", "space")
+        ),
         "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. \
          Results at levels far from the original strength of a motion are the least certain."
             .into(),
@@ -572,7 +619,7 @@ pub(super) fn warnings(all: &Heights) -> Vec<String> {
                 "{} levels shaken {}: {} of {} collapse at {}, but only {} of {} at {} (p = {}). Stronger shaking is not \
                  always worse for this stack; this does not make the stack safe.",
                 height.levels,
-                height.view.words(),
+                height.direction.words(),
                 fall.from.failures,
                 fall.from.cases,
                 shaking(fall.from.intensity),

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{HeightsError, Request};
+use crate::direction::{Direction, turned};
 use crate::protect::NAPA;
 use crate::scenario::{Scenario, View, catalog};
 use crate::study::StudyError;
@@ -17,14 +18,18 @@ pub const HIGHEST: u32 = 6;
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
 
 /// Returns the name of a study, which is also the name of its folder.
-pub(super) fn name(view: View, recorded: bool) -> String {
-    format!("{}{}", view.name(), if recorded { "-as-recorded" } else { "" })
+pub(super) fn name(direction: Direction, recorded: bool) -> String {
+    format!("{}{}", direction.name(), if recorded { "-as-recorded" } else { "" })
 }
 
 /// Returns the text of a study file. The study runs every height under every motion at every level, or under
 /// the unscaled bundled record.
-pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
-    let (columns, rack) = columns_and_rack(request, view)?;
+pub(super) fn text(
+    request: &Request,
+    direction: Direction,
+    recorded: bool,
+) -> Result<String, HeightsError> {
+    let (columns, rack) = columns_and_rack(request, direction)?;
     let levels: Vec<String> = request.heights().map(|levels| levels.to_string()).collect();
     let mut text = format!(
         "schema = 1\n\
@@ -43,16 +48,16 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
          field = \"stack.levels\"\n\
          values = [{}]\n\n",
         request.rack,
-        view.words(),
+        direction.words(),
         request.seed,
-        view.name(),
+        direction.name(),
         request.barrel,
         levels.join(", ")
     );
     if !recorded {
-        let stack = format!("schema = 1\n{}[motion]\nnone = true\n", stack(request, view, 2)?);
-        let stack = Scenario::from_str(&stack).map_err(StudyError::from)?;
+        let stack = at_rest(request, direction, LOWEST)?;
         text.push_str(&factors(&stack));
+        text.push_str(&turned(&stack));
     }
     text.push_str(NAPA);
     if recorded {
@@ -74,7 +79,10 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
 }
 
 /// Returns the number of columns of a stack for a direction of shaking, and its rack as TOML.
-fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), HeightsError> {
+fn columns_and_rack(
+    request: &Request,
+    direction: Direction,
+) -> Result<(u32, String), HeightsError> {
     let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
         let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
         HeightsError::Rack(request.rack.clone(), known.join(", "))
@@ -85,20 +93,37 @@ fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), Heig
     }
     // Along the barrels one rack is one column. A rail that touches a bulged stave at its inner edge needs only a
     // closer node spacing.
-    Ok(match view {
-        View::Transverse => (rack.barrels, format!("\"{}\"", rack.base)),
-        View::Longitudinal => {
+    Ok(match direction {
+        Direction::Plane(View::Transverse) | Direction::Space => {
+            (rack.barrels, format!("\"{}\"", rack.base))
+        }
+        Direction::Plane(View::Longitudinal) => {
             (1, format!("{{ base = \"{}\", node_spacing = \"5 mm\" }}", rack.base))
         }
     })
 }
 
+/// Returns a stack of a number of levels on ground at rest.
+pub(super) fn at_rest(
+    request: &Request,
+    direction: Direction,
+    levels: u32,
+) -> Result<Scenario, HeightsError> {
+    let stack = stack(request, direction, levels)?;
+    let text = format!("schema = 1\nmotion.none = true\n{stack}");
+    Ok(Scenario::from_str(&text).map_err(StudyError::from)?)
+}
+
 /// Returns the `[stack]` table of a scenario for a number of levels.
-pub(super) fn stack(request: &Request, view: View, levels: u32) -> Result<String, HeightsError> {
-    let (columns, rack) = columns_and_rack(request, view)?;
+pub(super) fn stack(
+    request: &Request,
+    direction: Direction,
+    levels: u32,
+) -> Result<String, HeightsError> {
+    let (columns, rack) = columns_and_rack(request, direction)?;
     Ok(format!(
         "[stack]\nlevels = {levels}\ncolumns = {columns}\nview = \"{}\"\nbarrel = \"{}\"\nrack = {rack}\n",
-        view.name(),
+        direction.name(),
         request.barrel
     ))
 }

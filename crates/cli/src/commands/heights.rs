@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use barrelstack_campaign::heights::{
-    HIGHEST, Heights, HeightsError, LOWEST, Request, VELOCITIES, View, heights,
+    HIGHEST, Heights, HeightsError, LOWEST, Request, VELOCITIES, heights,
 };
 
 use super::page::{PageArgs, of_option};
@@ -21,6 +21,10 @@ pub(crate) struct HeightsArgs {
     /// Number of levels of the highest stack.
     #[arg(long, value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
     highest: u32,
+    /// Shake the stacks in space, in a horizontal direction that is drawn for every run, instead of in the planes across and
+    /// along the barrels.
+    #[arg(long)]
+    space: bool,
     /// File of an additional motion, such as a record from your own site; may be repeated.
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
@@ -37,7 +41,7 @@ pub(crate) struct HeightsArgs {
     page: PageArgs,
 }
 
-/// Runs every height in both directions, writes the page, and prints the table.
+/// Runs every height in every direction, writes the page, and prints the table.
 pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     let request = Request {
         rack: args.rack.clone(),
@@ -46,6 +50,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         synthetic: args.synthetic,
         seed: args.seed,
         highest: args.highest,
+        in_space: args.space,
     };
     let (options, progress) = args.page.begin(&args.out)?;
     let result =
@@ -65,14 +70,14 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
 /// Returns the table as text.
 fn lines(found: &Heights) -> Vec<String> {
     let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
-    for view in View::ALL {
-        lines.push(format!("  collapsed, shaken {}", view.words()));
+    for direction in found.request.directions() {
+        lines.push(format!("  collapsed, shaken {}", direction.words()));
         let heads =
             found.request.heights().map(|levels| format!("{:>18}", format!("{levels} levels")));
         lines.push(format!("  {:>10}{}", "shaking", heads.collect::<String>()));
         for velocity in VELOCITIES {
             let cells = found.request.heights().map(|levels| {
-                let at = found.of(levels, view).and_then(|height| height.at(velocity));
+                let at = found.of(levels, direction).and_then(|height| height.at(velocity));
                 let share = at.map_or_else(String::new, |at| {
                     let range = at
                         .range

@@ -139,9 +139,10 @@ def heights(
     synthetic: int = 22,
     seed: int = 1,
     highest: int = 6,
+    space: bool = False,
     progress: Progress = None,
 ) -> Heights:
-    """Computes safe heights: stacks of two levels and more in both directions under the same motions.
+    """Computes safe heights: stacks of two levels and more, in planes or in space, under the same motions.
 
     Parameters
     ----------
@@ -157,6 +158,9 @@ def heights(
         Seed of motions and friction.
     highest
         Number of levels of the highest stack, from 2 to 6.
+    space
+        Whether the stacks are shaken in space, in a horizontal direction that is drawn for every run, and not in the
+        planes across and along the barrels.
     progress
         As for :meth:`Scenario.run`.
 
@@ -185,7 +189,7 @@ def heights(
     """
     with reporting(progress, "heights") as report:
         files = [os.fspath(path) for path in records]
-        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, highest, report))
+        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, highest, space, report))
 
 
 class Protections(Page):

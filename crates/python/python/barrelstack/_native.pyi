@@ -402,6 +402,7 @@ def heights(
     synthetic: int,
     seed: int,
     highest: int,
+    in_space: bool,
     progress: _Report | None,
 ) -> Page: ...
 def protect(

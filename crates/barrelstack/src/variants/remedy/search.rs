@@ -65,20 +65,23 @@ pub(super) struct Counts {
     pub(super) ran: u32,
     /// Number of counted variants that failed, in the plane with the most failures.
     pub(super) failed: u32,
-    by_plane: Vec<u32>,
+    /// Verdicts of the counted variants.
+    pub(super) verdicts: Verdicts,
 }
 
 impl Counts {
     fn new(planes: usize) -> Self {
-        Self { ran: 0, failed: 0, by_plane: vec![0; planes] }
+        Self { ran: 0, failed: 0, verdicts: vec![Vec::new(); planes] }
     }
 
-    fn add(&mut self, block: &Range<u32>, failed: &[u32]) {
+    fn add(&mut self, block: &Range<u32>, verdicts: Verdicts) {
         self.ran = block.end;
-        for (sum, more) in self.by_plane.iter_mut().zip(failed) {
-            *sum += more;
+        for (all, more) in self.verdicts.iter_mut().zip(verdicts) {
+            all.extend(more);
         }
-        self.failed = self.by_plane.iter().copied().max().unwrap_or(0);
+        let failed = |all: &Vec<_>| all.iter().filter(|one| **one != Some(false)).count();
+        let most = self.verdicts.iter().map(failed).max().unwrap_or(0);
+        self.failed = u32::try_from(most).unwrap_or(u32::MAX);
     }
 
     /// `true` if the number of failures already exceeds the number that is admissible among all
@@ -112,11 +115,15 @@ pub(super) struct Found {
     pub(super) complete: bool,
 }
 
-/// Number of failures of a block in each plane, or `Break` if the block was canceled.
-pub type Failed = ControlFlow<(), Vec<u32>>;
+/// For each plane, whether each variant collapses, in the order of their numbers; `None` for a variant without a verdict,
+/// which counts against a change as well.
+pub type Verdicts = Vec<Vec<Option<bool>>>;
+
+/// Verdicts of a block of variants, or `Break` if the block was canceled.
+pub type Judged = ControlFlow<(), Verdicts>;
 
 /// Function that runs a block of variants, numbered from zero, of a change given by its index.
-type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Failed, E> + 'a;
+type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Judged, E> + 'a;
 
 /// Tries changes until the highest sufficient stack and the loosest sufficient straps are found.
 pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
@@ -140,7 +147,7 @@ impl<E> Search<'_, '_, E> {
         while counts.ran < until.min(self.plan.variants) && !counts.rejected(self.plan) {
             let block = self.plan.block(counts.ran);
             match (self.run)(change, block.clone())? {
-                ControlFlow::Continue(failed) => counts.add(&block, &failed),
+                ControlFlow::Continue(verdicts) => counts.add(&block, verdicts),
                 // A canceled block does not count.
                 ControlFlow::Break(()) => {
                     self.counts[change] = Some(counts);
@@ -230,11 +237,9 @@ mod tests {
             }
             let mut run = |change: usize, block: Range<u32>| {
                 let planes: [f64; 2] = chances[change];
-                let failed = planes.map(|chance| {
-                    let fails = block.clone().filter(|_| random.uniform() < chance).count();
-                    u32::try_from(fails).unwrap_or(u32::MAX)
-                });
-                Ok::<_, Infallible>(ControlFlow::Continue(failed.to_vec()))
+                let verdicts = planes
+                    .map(|chance| block.clone().map(|_| Some(random.uniform() < chance)).collect());
+                Ok::<_, Infallible>(ControlFlow::Continue(verdicts.to_vec()))
             };
             let Ok(all) = search(&plan, &mut run);
             assert!(all.complete);
@@ -296,8 +301,11 @@ mod tests {
         let plan = Plan { heights: 1, straps: 0, variants: 64, planes: 2 };
         let mut blocks = Vec::new();
         let mut run = |_, block: Range<u32>| {
+            // One collapses in a plane; in the other a second one has no verdict.
+            let mut verdicts = vec![vec![Some(false); block.len()]; 2];
+            (verdicts[0][0], verdicts[1][0], verdicts[1][1]) = (Some(true), Some(true), None);
             blocks.push(block);
-            Ok::<_, Infallible>(ControlFlow::Continue(vec![1, 2]))
+            Ok::<_, Infallible>(ControlFlow::Continue(verdicts))
         };
         let Ok(found) = search(&plan, &mut run);
         let counts = found.counts[0].clone().unwrap_or_else(|| panic!("it was tried"));
@@ -314,7 +322,7 @@ mod tests {
             Ok::<_, Infallible>(if over {
                 ControlFlow::Break(())
             } else {
-                ControlFlow::Continue(vec![0])
+                ControlFlow::Continue(vec![vec![Some(false); block.len()]])
             })
         };
         let Ok(found) = search(&plan, &mut run);

@@ -102,10 +102,12 @@ export async function ofRun(page, summary) {
   if (summary.remedy) {
     const [table] = tablesOf(shown, "Changes that were tried");
     demand(table.rows.length === summary.remedy.tried.length, "the page lists other changes than the JSON");
-    summary.remedy.tried.forEach(({ failed, variants, share, interval }, at) => {
-      const [name, counts, shares] = table.rows[at];
+    summary.remedy.tried.forEach(({ failed, variants, share, interval, range, better_than_as_it_is }, at) => {
+      const [name, counts, shares, , over, better] = table.rows[at];
       reading.are(name, counts, [failed, variants]);
       reading.are(name, shares, share === null ? [null] : percents([share, ...interval]));
+      reading.are(name, over, range === null ? [null] : percents(range));
+      reading.are(name, better, better_than_as_it_is === null ? [null] : percents([better_than_as_it_is]));
     });
   }
   const inSpace = summary.bodies.some((body) => "drop" in body);
