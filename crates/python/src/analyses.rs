@@ -81,8 +81,7 @@ pub(crate) fn heights(
     in_space: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Page> {
-    let request = 
-        HeightsRequest { rack, barrel, records, synthetic, seed, highest, in_space };
+    let request = HeightsRequest { rack, barrel, records, synthetic, seed, highest, in_space };
     let found = run_interruptible(py, progress, |state| {
         all_heights(&request, &folder, &RunOptions::default(), &|done, of| {
             state.report(done as f64, of as f64, "runs")

@@ -73,7 +73,9 @@ impl Remedy {
         let said = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) => match (range(height), range(straps)) {
                 (Some(one), Some(other)) if one == other => format!("{one} of either"),
-                (Some(one), Some(other)) => format!("{one} of the former and {other} of the latter"),
+                (Some(one), Some(other)) => {
+                    format!("{one} of the former and {other} of the latter")
+                }
                 _ => return String::new(),
             },
             (Some(one), None) | (None, Some(one)) => match range(one) {

@@ -12,8 +12,8 @@ use crate::decision::{
     text,
 };
 use crate::direction::Direction;
-use crate::scenario::title::{counted, number};
 use crate::scenario::catalog;
+use crate::scenario::title::{counted, number};
 
 /// Conditions for the rating "low": the maximum share of collapse, and the maximum upper bound of the
 /// probability of collapse.
@@ -445,7 +445,11 @@ fn static_margins(all: &Heights) -> Table {
             "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
              with the friction and the seats of the catalog{}. If the shaking has pulses that last as long as the stack \
              takes to tip over, a slightly larger acceleration makes it collapse.",
-            in_planes(all, "", "; the smaller of those of the models in planes, across and along the barrels")
+            in_planes(
+                all,
+                "",
+                "; the smaller of those of the models in planes, across and along the barrels"
+            )
         ),
         &all.heights,
         &[

@@ -165,7 +165,10 @@ fn in_space_there_is_one_direction_and_no_word_of_planes() {
          the probability is 0 to 12 % (95 % range)."
     );
     let text = markdown(&page, "figures").text.replace('\u{a0}', " ");
-    assert!(text.contains("| 6 | across or along the barrels | 0.10 g | 5.7 | 24 cm/s |"), "{text}");
+    assert!(
+        text.contains("| 6 | across or along the barrels | 0.10 g | 5.7 | 24 cm/s |"),
+        "{text}"
+    );
     for word in ["weaker direction", "in a plane model", "Both directions", "in one plane"] {
         assert!(!text.contains(word), "{word}\n{text}");
     }

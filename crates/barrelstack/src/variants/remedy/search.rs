@@ -237,9 +237,8 @@ mod tests {
             }
             let mut run = |change: usize, block: Range<u32>| {
                 let planes: [f64; 2] = chances[change];
-                let verdicts = planes.map(|chance| {
-                    block.clone().map(|_| Some(random.uniform() < chance)).collect()
-                });
+                let verdicts = planes
+                    .map(|chance| block.clone().map(|_| Some(random.uniform() < chance)).collect());
                 Ok::<_, Infallible>(ControlFlow::Continue(verdicts.to_vec()))
             };
             let Ok(all) = search(&plan, &mut run);
