@@ -305,10 +305,7 @@ fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreE
             studies.push((state.clone(), direction, study));
         }
     }
-    let mut protocol = protocol.clone();
-    if stack.is_spatial() {
-        protocol.name.push_str("-space");
-    }
+    let protocol = protocol.of(&stack);
     Ok(Prepared { stack, protocol, studies })
 }
 
@@ -408,6 +405,18 @@ mod tests {
             .collect();
         assert!(racks.len() > 5);
         assert_eq!(page::references(), racks);
+    }
+
+    #[test]
+    fn a_score_in_space_has_a_protocol_of_its_own_also_if_thinned() {
+        let stack =
+            |view: &str| Scenario::builtin("demo-napa", &[format!("stack.view={view}")]).unwrap();
+        let [whole, thinned] = [1, 4].map(|step| Protocol::rockscore().thinned(step));
+        let name = |protocol: &Protocol, view| protocol.of(&stack(view)).name;
+        assert_eq!(name(&whole, "both"), "rockscore/2");
+        assert_eq!(name(&whole, "spatial"), "rockscore/2-space");
+        assert_eq!(name(&thinned, "both"), "rockscore/2, one motion in 4");
+        assert_eq!(name(&thinned, "spatial"), "rockscore/2-space, one motion in 4");
     }
 
     #[test]

@@ -145,14 +145,14 @@ fn every_rack_and_device_of_the_catalog_is_in_the_league_or_is_reported() {
     let report = |_, _| ControlFlow::Continue(());
     let found = league(&scenario, &protocol, folder.path(), &options, &report).unwrap();
     let mut names: Vec<&str> = found.rows.iter().map(|(one, _)| one.name.as_str()).collect();
-    names.extend(found.not_scored.iter().map(|(name, _)| name.as_str()));
+    names.extend(found.not_scored.iter().map(|(one, _)| one.name.as_str()));
     let all = contenders(&scenario);
     assert_eq!(names.len(), all.len());
     assert!(all.iter().all(|one| names.contains(&one.name.as_str())), "{names:?}");
     assert!(found.rows.windows(2).all(|pair| pair[0].1.score() >= pair[1].1.score()));
     let csv = found.to_csv();
     assert!(csv.starts_with("name,kind,score (cm/s),sampling_low (cm/s)"), "{csv}");
-    assert_eq!(csv.lines().count(), 1 + found.rows.len());
+    assert_eq!(csv.lines().count(), 1 + all.len());
     // A row is the score of the scenario with its changes.
     let (one, sheet) = found.rows.iter().find(|(one, _)| one.kind == "rack").unwrap();
     let changes = [&one.changes[..], &["stack.view=transverse".to_owned()]].concat();
@@ -162,6 +162,43 @@ fn every_rack_and_device_of_the_catalog_is_in_the_league_or_is_reported() {
         sheet.rows.iter().map(|row| row.curve.stripes.clone()).collect()
     };
     assert_eq!(stripes(sheet), stripes(&again.unwrap()));
+}
+
+/// Returns the cells of a line of a CSV file, without quotes.
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            other => cells.last_mut().unwrap().push(other),
+        }
+    }
+    cells
+}
+
+/// The published tables, in planes and in space, have every rack and device of the catalog, with a score or with the reason
+/// why there is none.
+#[test]
+fn every_rack_and_device_is_in_the_published_tables() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/league");
+    for (view, page, table) in
+        [("both", "index.md", "league.csv"), ("spatial", "space.md", "space.csv")]
+    {
+        let read =
+            |name: &str| std::fs::read_to_string(folder.join(name)).unwrap().replace('\u{a0}', " ");
+        let (page, table) = (read(page), read(table));
+        let rows: Vec<Vec<String>> = table.lines().skip(1).map(cells).collect();
+        let all = contenders(&demo(&[&format!("stack.view={view}")]));
+        assert_eq!(rows.len(), all.len(), "{view}");
+        for one in all {
+            let row = rows.iter().find(|row| row[0] == one.name).unwrap();
+            let scored = page.contains(&format!("| {} | {} |", one.name, row[2]));
+            let reason = row.last().unwrap();
+            let refused = page.replace('"', "").contains(&format!("- {}: {reason}\n", one.name));
+            assert_eq!([scored, refused], [!row[2].is_empty(), row[2].is_empty()], "{row:?}");
+        }
+    }
 }
 
 /// Returns the field of a scenario that a column of a drawn constant states, and the same field of fallen bodies.

@@ -31,8 +31,8 @@ pub struct Contender {
 pub struct League {
     /// Scored racks and devices, the highest score first.
     pub rows: Vec<(Contender, Sheet)>,
-    /// Names of the racks and devices that could not be scored, each with the reason.
-    pub not_scored: Vec<(String, String)>,
+    /// Racks and devices that could not be scored, each with the reason.
+    pub not_scored: Vec<(Contender, String)>,
     /// Report page.
     pub document: Document,
 }
@@ -100,7 +100,7 @@ pub fn league(
         match made {
             Ok(prepared) => ready.push((contender, prepared)),
             Err(ScoreError::Study(error)) => return Err(error.into()),
-            Err(error) => not_scored.push((contender.name, reason(&error))),
+            Err(error) => not_scored.push((contender, reason(&error))),
         }
     }
     let all: u64 = ready.iter().map(|(_, prepared)| prepared.cases()).sum();
@@ -114,7 +114,7 @@ pub fn league(
         match prepared.run(&place, options, &|done, _| report(before + done, all)) {
             Ok(sheet) => rows.push((contender, sheet)),
             Err(error @ ScoreError::Curve { .. }) => {
-                not_scored.push((contender.name, reason(&error)));
+                not_scored.push((contender, reason(&error)));
             }
             Err(other) => return Err(other),
         }
@@ -142,47 +142,57 @@ impl League {
         (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))
     }
 
-    /// Returns the table as CSV, with units in the heading.
+    /// Returns the table as CSV, with units in the heading. Racks and devices that could not be scored follow all others,
+    /// each with the reason.
     pub fn to_csv(&self) -> String {
-        type Cell<'a> = &'a dyn Fn(usize, &Contender, &Sheet) -> Option<Value>;
+        type Cell<'a> = &'a dyn Fn(&Row<'_>) -> Option<Value>;
+        struct Row<'a> {
+            at: usize,
+            one: &'a Contender,
+            sheet: Option<&'a Sheet>,
+            reason: Option<&'a str>,
+        }
         let whole = |value: u32| Some(Value::Integer(i64::from(value)));
         let words = |value: &str| Some(Value::Text(value.to_owned()));
-        let weakest = |sheet: &Sheet, of: &dyn Fn(&super::Scored) -> Option<Value>| {
-            sheet.weakest().and_then(of)
-        };
         let runs = |sheet: &Sheet| sheet.rows.iter().map(|row| row.runs).sum::<usize>();
-        let interval = |sheet: &Sheet, high: bool| {
-            let of = sheet.weakest()?.capacity.interval()?;
+        let interval = |row: &Row<'_>, high: bool| {
+            let of = row.sheet?.weakest()?.capacity.interval()?;
             Some(Value::Number(100.0 * if high { of.high } else { of.low }))
         };
-        let columns: [(&str, &str, ValueKind, Cell<'_>); 13] = [
-            ("name", "", ValueKind::Text, &|_, one, _| words(&one.name)),
-            ("kind", "", ValueKind::Text, &|_, one, _| words(one.kind)),
-            ("score", "cm/s", ValueKind::Integer, &|_, _, sheet| whole(sheet.score())),
-            ("sampling_low", "cm/s", ValueKind::Number, &|_, _, sheet| interval(sheet, false)),
-            ("sampling_high", "cm/s", ValueKind::Number, &|_, _, sheet| interval(sheet, true)),
-            ("range_low", "cm/s", ValueKind::Integer, &|_, _, sheet| whole(sheet.range()?[0])),
-            ("range_high", "cm/s", ValueKind::Integer, &|_, _, sheet| whole(sheet.range()?[1])),
-            ("better_than_next", "", ValueKind::Number, &|row, _, _| {
-                self.better_than_next(row).map(Value::Number)
+        let columns: [(&str, &str, ValueKind, Cell<'_>); 14] = [
+            ("name", "", ValueKind::Text, &|row| words(&row.one.name)),
+            ("kind", "", ValueKind::Text, &|row| words(row.one.kind)),
+            ("score", "cm/s", ValueKind::Integer, &|row| whole(row.sheet?.score())),
+            ("sampling_low", "cm/s", ValueKind::Number, &|row| interval(row, false)),
+            ("sampling_high", "cm/s", ValueKind::Number, &|row| interval(row, true)),
+            ("range_low", "cm/s", ValueKind::Integer, &|row| whole(row.sheet?.range()?[0])),
+            ("range_high", "cm/s", ValueKind::Integer, &|row| whole(row.sheet?.range()?[1])),
+            ("better_than_next", "", ValueKind::Number, &|row| {
+                row.sheet.and_then(|_| self.better_than_next(row.at)).map(Value::Number)
             }),
-            ("decides", "", ValueKind::Text, &|_, _, sheet| words(sheet.decisive()?.name)),
-            ("state", "", ValueKind::Text, &|_, _, sheet| {
-                weakest(sheet, &|row| words(&row.state.name))
+            ("decides", "", ValueKind::Text, &|row| words(row.sheet?.decisive()?.name)),
+            ("state", "", ValueKind::Text, &|row| words(&row.sheet?.weakest()?.state.name)),
+            ("direction", "", ValueKind::Text, &|row| {
+                words(row.sheet?.weakest()?.direction.name())
             }),
-            ("direction", "", ValueKind::Text, &|_, _, sheet| {
-                weakest(sheet, &|row| words(row.direction.name()))
+            ("runs", "", ValueKind::Integer, &|row| {
+                i64::try_from(runs(row.sheet?)).ok().map(Value::Integer)
             }),
-            ("runs", "", ValueKind::Integer, &|_, _, sheet| {
-                i64::try_from(runs(sheet)).ok().map(Value::Integer)
-            }),
-            ("changes", "", ValueKind::Text, &|_, one, _| words(&one.changes.join("; "))),
+            ("changes", "", ValueKind::Text, &|row| words(&row.one.changes.join("; "))),
+            ("not_scored", "", ValueKind::Text, &|row| words(row.reason?)),
         ];
+        let scored = self.rows.iter().enumerate();
+        let scored =
+            scored.map(|(at, (one, sheet))| Row { at, one, sheet: Some(sheet), reason: None });
+        let refused = self.not_scored.iter();
+        let refused =
+            refused.map(|(one, reason)| Row { at: 0, one, sheet: None, reason: Some(reason) });
+        let rows: Vec<Row<'_>> = scored.chain(refused).collect();
         let columns = columns.map(|(name, unit, kind, cell)| {
             let mut column = Column::empty(ColumnSpec::new(name, unit, Role::Outcome, kind));
-            for (row, (contender, sheet)) in self.rows.iter().enumerate() {
+            for row in &rows {
                 // Every cell has the kind of its column.
-                let _ = column.values.push(cell(row, contender, sheet));
+                let _ = column.values.push(cell(row));
             }
             column
         });
@@ -203,7 +213,7 @@ fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Docume
     ];
     if !league.not_scored.is_empty() {
         blocks.push(heading("Not scored"));
-        let row = |(name, reason): &(String, String)| format!("{name}: {reason}");
+        let row = |(one, reason): &(Contender, String)| format!("{}: {reason}", one.name);
         blocks.push(Block::List(league.not_scored.iter().map(row).collect()));
     }
     if let Some((_, sheet)) = league.rows.first() {
@@ -215,7 +225,7 @@ fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Docume
         verdict: Verdict { headline: headline(league), ..Verdict::default() },
         blocks,
         provenance: vec![
-            ("protocol".into(), protocol.name.clone()),
+            ("protocol".into(), protocol.of(scenario).name),
             ("stack".into(), scenario.title.clone()),
             ("scenario fingerprint".into(), fingerprint(scenario)),
             ("runs".into(), runs.to_string()),
@@ -244,9 +254,15 @@ fn headline(league: &League) -> String {
             next.name
         )
     });
+    let not = match league.not_scored.len() {
+        0 => String::new(),
+        1 => " One more could not be scored; the reason follows the table.".to_owned(),
+        more => format!(" {more} more could not be scored; the reasons follow the table."),
+    };
     format!(
-        "The highest RockScore of {} racks and devices is {}{range}: {}.{next}",
+        "The highest RockScore of {} racks and devices{} is {}{range}: {}.{next}{not}",
         league.rows.len(),
+        if sheet.scenario.is_spatial() { ", in space," } else { "" },
         sheet.score(),
         first.name
     )

@@ -72,6 +72,18 @@ impl Protocol {
         Self { name, periods, synthetic: self.synthetic / step, ..self }
     }
 
+    /// Returns the protocol under the name that it has for a stack: scores in space have a name of their own.
+    pub(super) fn of(&self, stack: &Scenario) -> Self {
+        if !stack.is_spatial() {
+            return self.clone();
+        }
+        let name = match self.name.split_once(", ") {
+            Some((name, motions)) => format!("{name}-space, {motions}"),
+            None => format!("{}-space", self.name),
+        };
+        Self { name, ..self.clone() }
+    }
+
     /// Returns the overrides that turn the stack of a scenario into that of the protocol.
     pub(super) fn stacked(&self) -> Vec<String> {
         vec![format!("stack.levels={}", self.levels)]

@@ -83,8 +83,8 @@ fn table(found: &League) -> Vec<String> {
             sheet.range().map_or_else(String::new, |[low, high]| format!("{low} to {high}"));
         lines.push(format!("  {:60}{:>10}{range:>16}", contender.name, sheet.score()));
     }
-    for (name, reason) in &found.not_scored {
-        lines.push(format!("  {name}: not scored, {reason}"));
+    for (contender, reason) in &found.not_scored {
+        lines.push(format!("  {}: not scored, {reason}", contender.name));
     }
     lines.push(
         "95 % range: over the uncertain friction, stiffness and damping of the seats".to_owned(),
