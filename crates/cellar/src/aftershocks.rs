@@ -6,14 +6,14 @@ use std::path::Path;
 use barrelstack::report::WORDS;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{Advance, Range};
-use barrelstack_report::{Block, Cell, Document, Table, Verdict, described, listed};
+use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, described, listed};
 
 use crate::answer::shared;
 use crate::report::count;
 use crate::sample::{Case, CellarFailure, Prepared, each};
 use crate::scenario::Cellar;
-use crate::summary::{self, Count, ShockAnswer};
-use crate::words::{followed, longest_cut, mean_share, span, survival};
+use crate::summary::{self, Count, Mean, ShockAnswer};
+use crate::words::{failed, followed, longest_cut, mean_share, span, survival};
 
 described! {
     /// Survival of aftershocks of several strengths. The main shock of every variant is run once, and each aftershock
@@ -30,6 +30,8 @@ described! {
         pub cellar_hash: String,
         /// Number of stacks.
         pub stacks: usize,
+        /// Motion of which the strengths are factors: the main shock, or the record of the aftershock.
+        pub factor_of: &'static str ["main-shock", "record"],
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
         /// Numbers of the variants whose computation failed, which are not counted.
@@ -58,7 +60,7 @@ described! {
     /// An aftershock.
     #[derive(Clone, Debug)]
     pub struct Strength {
-        /// Strength, as a factor of the main shock or of the record of the aftershock.
+        /// Strength, as a factor of the motion that `factor_of` names.
         pub factor: f64 as "1",
         /// Survival of the stacks that stand after the main shock.
         pub shock: ShockAnswer,
@@ -87,8 +89,8 @@ type OfVariant = Vec<Case>;
 /// may stop the work; the results until then are returned.
 ///
 /// # Errors
-/// If the cellar states a sequence, its motion is not scaled in proportion, the plan is wrong, or a stack cannot be built
-/// or does not stand.
+/// If there is no strength, the cellar states a sequence, its motion is not scaled in proportion, the plan is wrong, or a
+/// stack cannot be built or does not stand.
 pub fn aftershocks(
     cellar: &Cellar,
     strengths: &[f64],
@@ -100,7 +102,8 @@ pub fn aftershocks(
     };
     let prepared: Vec<Prepared> = strengths.iter().map(followed).collect::<Result<_, _>>()?;
     let Some(main) = prepared.first() else {
-        return Err(crate::RoomFailure::Empty.into());
+        let message = "there is no aftershock: state at least one strength".to_owned();
+        return Err(cellar.host.error(&["motion"], message).into());
     };
     let numbers: Vec<u32> = (main.count().min(1)..=main.count()).collect();
     let of = numbers.len();
@@ -120,11 +123,12 @@ pub fn aftershocks(
     })?;
     let found: Vec<OfVariant> = found.into_iter().flatten().collect();
     let unfinished = (found.len() < of).then_some(Unfinished { done: found.len(), of });
-    Ok(summarized(strengths, &prepared, &found, unfinished))
+    let factor_of = if record.is_some() { "record" } else { "main-shock" };
+    Ok(summarized((strengths, factor_of), &prepared, &found, unfinished))
 }
 
 fn summarized(
-    strengths: &[f64],
+    (strengths, factor_of): (&[f64], &'static str),
     prepared: &[Prepared],
     found: &[OfVariant],
     unfinished: Option<Unfinished>,
@@ -156,6 +160,7 @@ fn summarized(
         headline: String::new(),
         cellar_hash: first.plan.summary.cellar_hash.clone(),
         stacks: first.plan.stacks.len(),
+        factor_of,
         counted: u32::try_from(counted.len()).unwrap_or(u32::MAX),
         broken: found.iter().filter(|of| !valid(of)).map(|of| of[0].variant).collect(),
         unfinished,
@@ -218,23 +223,31 @@ fn headline(summary: &AftershockSummary) -> String {
         return format!("No stack stands after the main shock{variants}.{cut}");
     };
     let clause = |(at, one): (usize, &Strength)| {
-        let survive = match one.shock.share_survive.filter(|_| of > 1) {
+        let some = match one.shock.share_survive.filter(|_| of > 1) {
             Some(share) => mean_share(&share),
             None => surviving(&one.shock).to_string(),
         };
-        let strength = if at == 0 { "an aftershock of" } else { "one of" };
-        format!("{survive} {strength} {}", one.factor)
+        match at {
+            0 => format!("{some} survive an aftershock of {}", strength(summary, one.factor)),
+            _ => format!("{some} one of {}", one.factor),
+        }
     };
     let clauses = listed(summary.aftershocks.iter().enumerate().map(clause));
     let stood = first.shock.stood;
     if of == 1 {
         return format!(
-            "Of {stacks} stacks {stood} stand after the main shock, in one run. Of these survive {clauses} times the strength.{cut}"
+            "Of {stacks} stacks {stood} stand after the main shock, in one run. Of these, {clauses}.{cut}"
         );
     }
     format!(
-        "Of {stacks} stacks {stood:.1} stand after the main shock on average. Of these survive {clauses} times the strength.{cut}"
+        "Of {stacks} stacks {stood:.1} stand after the main shock on average. Of these, {clauses}.{cut}"
     )
+}
+
+/// Returns a factor with the motion that it scales.
+fn strength(summary: &AftershockSummary, factor: f64) -> String {
+    let of = if summary.factor_of == "record" { "its record" } else { "the main shock" };
+    format!("{factor} times the strength of {of}")
 }
 
 /// Returns the mean number of stacks that survive a shock.
@@ -252,7 +265,8 @@ pub fn sentences(summary: &AftershockSummary) -> Vec<String> {
     }
     let of = summary.counted;
     let sentence = |one: &Strength| {
-        format!("{} times the strength: {}.", one.factor, survival(&one.shock, of))
+        let strength = strength(summary, one.factor);
+        format!("An aftershock of {strength}: {}.", survival(&one.shock, of))
     };
     let mut all: Vec<String> = summary.aftershocks.iter().map(sentence).collect();
     let first: Vec<&String> =
@@ -260,6 +274,7 @@ pub fn sentences(summary: &AftershockSummary) -> Vec<String> {
     if !first.is_empty() {
         all.push(format!("Inspect first, where they still stand: {}.", listed(first)));
     }
+    all.extend(failed(summary.broken.len()));
     all
 }
 
@@ -309,6 +324,51 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     [strengths, stacks]
 }
 
+/// Returns the tables of the strengths and of the stacks, in each strength, with one number in each cell, for programs.
+fn numbers(summary: &AftershockSummary) -> [Table; 2] {
+    let number = |value: f64| Cell::Number(value, 6);
+    let share = |one: &Strength, of: fn(&Mean) -> f64| {
+        Cell::number(one.shock.share_survive.as_ref().map(of), 6)
+    };
+    let strengths = Table::of(
+        "",
+        &summary.aftershocks,
+        &[
+            ("strength", "1", &|one| number(one.factor)),
+            ("stacks standing before", "1", &|one| number(one.shock.stood)),
+            ("fall by themselves", "1", &|one| number(one.shock.by_themselves)),
+            ("knocked over", "1", &|one| number(one.shock.knocked_over)),
+            ("share that survives", "1", &|one| share(one, |share| share.mean)),
+            ("interval low", "1", &|one| share(one, |share| share.interval[0])),
+            ("interval high", "1", &|one| share(one, |share| share.interval[1])),
+            ("all survive", "variants", &|one| number(one.shock.all_survive.of_variants.into())),
+            ("some stand before", "variants", &|one| number(one.shock.stood_in.into())),
+            ("median of barrels fallen", "1", &|one| number(one.shock.barrels_fallen.p50)),
+        ],
+    );
+    let factors: Vec<f64> = summary.aftershocks.iter().map(|one| one.factor).collect();
+    let rows = summary.inspection.iter().flat_map(|margin| {
+        factors.iter().zip(&margin.falls).map(move |(factor, falls)| (margin, *factor, *falls))
+    });
+    let rows: Vec<(&Margin, f64, Count)> = rows.collect();
+    let stacks = Table::of(
+        "",
+        rows,
+        &[
+            ("stack", "", &|(one, ..)| Cell::text(&one.name)),
+            ("strength", "1", &|(_, factor, _)| number(*factor)),
+            ("stands after the main shock", "variants", &|(one, ..)| {
+                number(one.stands.of_variants.into())
+            }),
+            ("falls", "variants", &|(.., falls)| number(falls.of_variants.into())),
+            ("median movement in the main shock", "m", &|(one, ..)| {
+                Cell::number(one.moved.map(|moved| moved.p50), 6)
+            }),
+        ],
+    );
+    [strengths, stacks]
+}
+
 /// A column of a table: its name, its unit, and its cells.
 type Column<'a> = (&'a str, &'a str, Box<dyn Fn(&Margin) -> Cell + 'a>);
 
@@ -331,6 +391,11 @@ pub fn document(summary: &AftershockSummary) -> Document {
         verdict: Verdict {
             headline: summary.headline.clone(),
             sentences: sentences(summary),
+            tone: if summary.unfinished.is_some() || summary.main.is_none() {
+                Tone::Invalid
+            } else {
+                Tone::Neutral
+            },
             ..Verdict::default()
         },
         blocks,
@@ -347,7 +412,7 @@ pub fn document(summary: &AftershockSummary) -> Document {
 pub fn files(summary: &AftershockSummary) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
     let page = barrelstack_report::html(&document(summary));
     let json = described::to_json(summary)? + "\n";
-    let [strengths, stacks] = tables(summary).map(|table| table.to_csv().into_bytes());
+    let [strengths, stacks] = numbers(summary).map(|table| table.to_csv().into_bytes());
     Ok(vec![
         ("report.html".to_owned(), page.into_bytes()),
         ("aftershocks.json".to_owned(), json.into_bytes()),

@@ -93,8 +93,9 @@ pub fn answer_with(
     Ok(Answer { prepared, cases, case, shown, summary })
 }
 
-/// Runs one part of the variants of a cellar, keeps their results in a folder, and returns the number of variants of the part
-/// that are there at the end, and of all its variants.
+/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns the number of results of the part
+/// that are in the folder at the end, the number of variants whose computation failed, which are not kept, and the number
+/// of all variants of the part.
 ///
 /// # Errors
 /// As for [`answer_with`].
@@ -103,7 +104,7 @@ pub fn run_part(
     part: Part,
     folder: &Path,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
-) -> Result<[usize; 2], CellarFailure> {
+) -> Result<[usize; 3], CellarFailure> {
     let prepared = Prepared::new(cellar)?;
     let kept = Kept::open(folder, &prepared)?;
     let numbers: Vec<u32> = (0..=prepared.count()).filter(|number| part.has(*number)).collect();
@@ -111,7 +112,8 @@ pub fn run_part(
     let report = shared(observer);
     let variants = |done| report(Advance::Variants { done, of });
     let found = prepared.cases(&numbers, Some(&kept), &variants)?;
-    Ok([found.iter().flatten().count(), of])
+    let valid = |valid| found.iter().flatten().filter(|case| case.valid == valid).count();
+    Ok([valid(true), valid(false), of])
 }
 
 /// Returns an observer that several threads may call.

@@ -69,7 +69,7 @@ described! {
         /// Names of the layouts by the share of their barrels that falls, the smallest first; layouts without a valid
         /// variant are left out.
         pub order: Vec<String>,
-        /// Changes that were asked for and not run.
+        /// Requested changes that were not run, because they do not fit or cannot be stated.
         pub left_out: Vec<LeftOut>,
         /// Names of the layouts that were stopped early or never started; they are not compared.
         pub unfinished: Vec<String>,

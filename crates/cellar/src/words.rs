@@ -243,7 +243,7 @@ pub(crate) fn survival(shock: &ShockAnswer, of: u32) -> String {
     let survive = shock.share_survive.unwrap_or(Mean { mean: 0.0, interval: [0.0, 1.0] });
     format!(
         "where any stack stands before it, all of them survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
-         are knocked over; of them survive {}; {fallen}",
+         are knocked over; {} survive; {fallen}",
         survived(shock),
         shock.stood,
         shock.by_themselves,
@@ -435,13 +435,17 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         let first: Vec<&String> = summary.inspection.iter().take(5).collect();
         all.push(format!("Inspect first, where they still stand: {}.", listed(first)));
     }
-    if !summary.broken.is_empty() {
-        all.push(format!(
-            "The computation of {} failed; they are not counted.",
-            plural(u32::try_from(summary.broken.len()).unwrap_or(u32::MAX), "variant")
-        ));
-    }
+    all.extend(failed(summary.broken.len()));
     all
+}
+
+/// Returns the sentence on variants whose computation failed; `None` if there are none.
+pub(crate) fn failed(count: usize) -> Option<String> {
+    match u32::try_from(count).unwrap_or(u32::MAX) {
+        0 => None,
+        1 => Some("The computation of 1 variant failed; it is not counted.".to_owned()),
+        many => Some(format!("The computation of {many} variants failed; they are not counted.")),
+    }
 }
 
 /// Returns the sentence on the stacks that fall over all variants.

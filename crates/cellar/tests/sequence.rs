@@ -258,7 +258,15 @@ fn aftershocks_of_several_strengths_follow_one_main_shock() {
     let said = &found.headline;
     assert!(said.starts_with("Of 2 stacks ") && said.contains("is followed only until"), "{said}");
     let files = aftershocks::files(&found).unwrap();
-    let json = String::from_utf8_lossy(&files[1].1).into_owned();
+    // A row for each stack that stands after the main shock, in each strength; one number in each cell.
+    let csv = |at: usize| String::from_utf8_lossy(&files[at].1).into_owned();
+    assert_eq!(csv(2).lines().count(), 1 + 2);
+    assert_eq!(csv(3).lines().count(), 1 + 2 * found.inspection.len());
+    let row = csv(2).lines().nth(1).unwrap().to_owned();
+    assert!(row.split(',').all(|cell| cell.is_empty() || cell.parse::<f64>().is_ok()), "{row}");
+    let none = aftershocks::aftershocks(&stated, &[], None, &mut |_| ControlFlow::Continue(()));
+    assert!(none.unwrap_err().to_string().contains("at least one strength"));
+    let json = csv(1);
     assert!(json.contains("\"schema\": \"aftershocks/1\""), "{json}");
     let stopped =
         aftershocks::aftershocks(&stated, &[0.5, 1.0], None, &mut |_| ControlFlow::Break(()));
@@ -276,7 +284,7 @@ fn variants_that_are_kept_are_gathered_and_not_run_again() {
     let on = &mut |_| ControlFlow::Continue(());
     let whole = answered(&stated, RunChoice::Typical).unwrap();
     let parts = [1, 2].map(|part| run_part(&stated, Part { part, of: 2 }, &keep, on).unwrap());
-    assert_eq!(parts, [[2, 2], [1, 1]]);
+    assert_eq!(parts, [[2, 0, 2], [1, 0, 1]]);
     // A file that is there is read: a time that was changed in it is in the answer.
     let gathered = answer_with(&stated, RunChoice::Typical, Some(&keep), on).unwrap();
     assert_eq!(gathered.cases, whole.cases);
@@ -292,6 +300,10 @@ fn variants_that_are_kept_are_gathered_and_not_run_again() {
     let refused = answer_with(&other, RunChoice::Typical, Some(&keep), on).unwrap_err().to_string();
     assert!(refused.contains("variant-0000.json: it is of the cellar "), "{refused}");
     assert!(refused.contains("another folder"), "{refused}");
+    // The draws of the constants depend on the number of variants.
+    let more = stated.clone().with_variants(3);
+    let refused = answer_with(&more, RunChoice::Typical, Some(&keep), on).unwrap_err().to_string();
+    assert!(refused.contains("another number of variants"), "{refused}");
     std::fs::write(&one, "{}").unwrap();
     let broken = answer_with(&stated, RunChoice::Typical, Some(&keep), on).unwrap_err().to_string();
     assert!(broken.contains("is not the result of a variant"), "{broken}");

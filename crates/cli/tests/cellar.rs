@@ -255,7 +255,11 @@ fn the_residual_margin_is_a_list_of_strengths_and_an_order_of_inspection() {
         .collect();
     assert_eq!(factors, [0.25, 0.5]);
     assert!(said.contains(summary["headline"].as_str().unwrap()), "{said}");
-    assert!(said.contains("an aftershock of 0.25 and ") && said.contains("one of 0.5"), "{said}");
+    assert!(
+        said.contains("an aftershock of 0.25 times the strength of the main shock")
+            && said.contains("one of 0.5"),
+        "{said}"
+    );
     for name in ["report.html", "aftershocks.csv", "inspection.csv"] {
         assert!(out.join(name).is_file(), "{name}");
     }

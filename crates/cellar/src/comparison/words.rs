@@ -78,7 +78,7 @@ fn unresolved(first: &LayoutAnswer, second: &LayoutAnswer) -> String {
     }
 }
 
-/// Returns two names as a change, such as "Spacing 1 m instead of 0.3 m": words with which both begin are said once.
+/// Returns two names as a change, such as "Spacing 1 m instead of 0.3 m": words with which both begin are stated once.
 fn instead(second: &str, first: &str) -> String {
     let words = |name: &str| name.split(' ').map(str::to_owned).collect::<Vec<_>>();
     let [own, its] = [second, first].map(words);

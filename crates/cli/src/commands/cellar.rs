@@ -160,13 +160,18 @@ fn run_part(args: &RunArgs, cellar: &Cellar, part: Part, keep: &Path) -> anyhow:
     let found =
         barrelstack_cellar::run_part(cellar, part, keep, &mut |reached| progress.advance(reached));
     drop(progress);
-    let [done, of] = found.map_err(|error| placed(error, cellar, &args.scenario))?;
+    let [done, failed, of] = found.map_err(|error| placed(error, cellar, &args.scenario))?;
     crate::interrupt::finished();
     let Part { part, of: parts } = part;
     printer::lines([format!(
         "part {part} of {parts}: {done} of {of} variants are in {}; with the same --keep and without --part, all parts are gathered",
         keep.display()
     )])?;
+    if failed > 0 {
+        printer::warning(&format!(
+            "{failed} of the {of} variants failed and are not kept: the run that gathers the parts computes them again, and does not count them"
+        ));
+    }
     Ok(ExitCode::SUCCESS)
 }
 
