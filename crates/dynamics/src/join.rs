@@ -286,14 +286,14 @@ pub fn carry(
     let (elements, slip_rates) = ContactElements::of_moved(model, &moved, &state);
     (state.contact_elements, scratch.slip_rates) = (elements, slip_rates);
     scratch.keeps_contacts = false;
-    // At the start, bodies of two sources may be pressed together already.
-    let starts = state.time <= 0.0;
-    if starts || !whole {
-        // The energy of the contacts that were carried over, or that no source has, is not known by itself.
-        let (mut state, mut anew) = (state.clone(), scratch.clone());
-        if starts {
-            state.contact_elements.make_exhaustive(model, &state.poses);
-        }
+    if state.time <= 0.0 {
+        // Bodies of two sources may be pressed together from the start; no source has the forces between them.
+        let stepper = Stepper::start(model, drive, &mut state, &mut scratch, simulation);
+        return Running { state, scratch, stepper };
+    }
+    if !whole {
+        // The energy of the contacts that were carried over is not known by itself.
+        let mut anew = scratch.clone();
         evaluate(model, &state, &mut anew);
         scratch.totals = anew.totals;
     }

@@ -78,13 +78,18 @@ fn unresolved(first: &LayoutAnswer, second: &LayoutAnswer) -> String {
     }
 }
 
-/// Returns two names as a change, such as "Spacing 1 m instead of 0.3 m": words with which both begin are stated once.
+/// Returns two names as a change, such as "Spacing 1 m instead of 0.3 m" if they begin with the same words.
 fn instead(second: &str, first: &str) -> String {
-    let words = |name: &str| name.split(' ').map(str::to_owned).collect::<Vec<_>>();
-    let [own, its] = [second, first].map(words);
+    let [own, its] = [second, first].map(|name| name.split(' ').collect::<Vec<_>>());
     let alike = own.iter().zip(&its).take_while(|(one, two)| one == two).count();
-    let alike = if alike < own.len().min(its.len()) { alike } else { 0 };
+    if alike == 0 || alike == own.len().min(its.len()) {
+        return compared(second, first);
+    }
     format!("{} instead of {}", capital(second), its[alike..].join(" "))
+}
+
+fn compared(second: &str, first: &str) -> String {
+    format!("{}, compared with \"{first}\"", capital(second))
 }
 
 /// Returns the clause on the barrels that fall in a layout in place of those in the first.
@@ -191,12 +196,9 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
         if found.paired.len() > 1 {
             all.extend(pairs().map(|(one, pair)| match unpaired(first, one, pair) {
                 Some(reason) => format!("{reason}."),
-                None => format!(
-                    "{}, compared with \"{}\": {}.",
-                    capital(&one.name),
-                    first.name,
-                    clause(first, one, pair)
-                ),
+                None => {
+                    format!("{}: {}.", compared(&one.name, &first.name), clause(first, one, pair))
+                }
             }));
             if pairs().any(|(_, pair)| pair.barrels_fallen.interval.is_some()) {
                 all.push("The intervals of all these differences hold together.".to_owned());
