@@ -1,10 +1,10 @@
 //! Joint calibration of stiffness, damping and friction from observed collapses.
 
-mod ensemble;
+pub(crate) mod ensemble;
 mod likelihood;
-mod observed;
-mod picture;
-mod sampler;
+pub(crate) mod observed;
+pub(crate) mod picture;
+pub(crate) mod sampler;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -279,12 +279,11 @@ fn prepared<'a>(
     Ok(tests)
 }
 
-/// Checks that the scenario of a test can be simulated, by a run of one millisecond, and that it contains the
-/// observed barrels.
-fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
+/// Returns the names of the barrels of a scenario that can be simulated; the check is a run of one millisecond.
+pub(crate) fn barrels(scenario: &Scenario) -> Result<Vec<String>, CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);
-    let barrels: Vec<String> = if short.is_spatial() {
+    Ok(if short.is_spatial() {
         let run = barrelstack_space::run::run(&short)?;
         let barrels = run.stack.of_kind(PartKind::Barrel);
         barrels.map(|body| run.stack.parts[body].name.clone()).collect()
@@ -292,7 +291,12 @@ fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), Cali
         let run = short.run()?;
         let barrels = run.assembly.of_kind(PartKind::Barrel);
         barrels.map(|body| run.assembly.parts[body].name.clone()).collect()
-    };
+    })
+}
+
+/// Checks that the scenario of a test can be simulated, and that it contains the observed barrels.
+fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
+    let barrels = barrels(scenario)?;
     let named = observed.falls.iter().map(|(barrel, _)| barrel).chain(&observed.first_barrel);
     for barrel in named {
         if !barrels.contains(barrel) {
@@ -313,7 +317,7 @@ fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), Cali
     Ok(())
 }
 
-fn estimates(tunable: &Tunable, posterior: &Posterior, reach: f64) -> Vec<Estimate> {
+pub(crate) fn estimates(tunable: &Tunable, posterior: &Posterior, reach: f64) -> Vec<Estimate> {
     let estimate = |(at, parameter): (usize, &Parameter)| {
         let value = |share: f64| {
             tunable.start(*parameter) * math::exp(reach * posterior.quantile(at, share))
@@ -330,7 +334,7 @@ fn estimates(tunable: &Tunable, posterior: &Posterior, reach: f64) -> Vec<Estima
 }
 
 /// Returns one sentence for each quantity that the tests do not determine.
-fn identifiability(
+pub(crate) fn identifiability(
     estimates: &[Estimate],
     correlation: &[Vec<f64>],
     posterior: &Posterior,

@@ -9,6 +9,7 @@
 //! | [`friction`] | pull forces, or tilt angles | static and kinetic μ |
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
 //! | [`mod@collapse`] | mode and fall times of collapses | `k`, `c`, μ together |
+//! | [`mod@shares`] | shares of stacks that fell in an earthquake | `k`, `c`, μ together |
 //!
 //! In tests with simulated records, the 95 % intervals of [`response`] covered the true value in only about
 //! 90 % of cases.
@@ -32,6 +33,7 @@ mod parameters;
 pub mod response;
 mod result;
 pub mod sag;
+pub mod shares;
 pub mod statistics;
 pub mod stiffness;
 pub mod sway;

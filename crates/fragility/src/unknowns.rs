@@ -413,6 +413,15 @@ impl Conditional {
         draws.map(|(sample, point)| share(sample, point)).collect()
     }
 
+    /// Returns the share for given constants, as standard normal deviates, with the coefficients of one sample of the
+    /// posterior distribution. The number of the sample may be any number.
+    ///
+    /// # Panics
+    /// If there are fewer deviates than constants.
+    pub fn in_sample(&self, number: usize, deviates: &[f64]) -> f64 {
+        share(&self.samples[number % self.samples.len()], deviates)
+    }
+
     /// Returns the range in which the share lies with the probability `level`, given that the constants are
     /// unknown. The constants are drawn from their own distributions, and the share from its posterior
     /// distribution. The ends are rounded outward to hundredths.

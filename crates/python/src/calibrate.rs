@@ -1,8 +1,12 @@
 //! Contact parameters from tests.
 
+use std::collections::BTreeSet;
+use std::path::Path;
+
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_calibration::collapse::{Errors, Observations, Settings};
 use barrelstack_calibration::drop::{GRAVITY, Striker};
+use barrelstack_calibration::shares::{Height, Statements, shares};
 use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
@@ -124,6 +128,7 @@ pub(crate) fn calibrate_collapse(
     py: Python<'_>,
     scenario: &Scenario,
     others: Vec<(String, PyRef<'_, Scenario>)>,
+    statements: Vec<String>,
     name: &str,
     text: &str,
     fit: Vec<String>,
@@ -149,6 +154,23 @@ pub(crate) fn calibrate_collapse(
         seed,
         lanes: None,
     };
+    if Path::new(name).extension().is_some_and(|extension| extension == "toml") {
+        let read = Statements::read(name, text).map_err(errors::general)?;
+        let (earthquake, chosen) = read.chosen(&statements).map_err(errors::general)?;
+        let levels: BTreeSet<usize> =
+            chosen.iter().flat_map(|one| one.levels.iter().copied()).collect();
+        let mut heights = Vec::new();
+        for levels in levels {
+            let changed = scenario.changed(vec![format!("stack.levels={levels}")])?;
+            heights.push(Height { levels, scenario: (*changed.inner).clone() });
+        }
+        let found = run_interruptible(py, progress, |state| {
+            shares(earthquake, &chosen, &heights, &parameters, &settings, &|done, of| {
+                state.report(done as f64, of as f64, "runs")
+            })
+        })?;
+        return page(found, Some(scenario));
+    }
     let observations =
         Observations::read(&table(name, text)?, &settings.errors).map_err(errors::general)?;
     let mut scenarios = Vec::new();

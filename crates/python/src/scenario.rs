@@ -59,7 +59,7 @@ impl Scenario {
         Self::of(barrelstack::Scenario::from_tree(name, value::table(tree)?))
     }
 
-    fn changed(&self, changes: Vec<String>) -> PyResult<Self> {
+    pub(crate) fn changed(&self, changes: Vec<String>) -> PyResult<Self> {
         Self::of(self.inner.with(&changes))
     }
 

@@ -50,6 +50,13 @@ impl Ground {
         Ok(())
     }
 
+    /// Returns the motion scaled by a factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let motion = self.motion.as_ref().map(|motion| motion.scaled(factor));
+        Self { motion, warnings: self.warnings.clone() }
+    }
+
     /// Returns the time (s) from which no acceleration exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.calm_from(limit))

@@ -87,11 +87,8 @@ impl Ground {
     /// Returns the motion with all components scaled by a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let of = |ground: &barrelstack::Ground| barrelstack::Ground {
-            motion: ground.motion.as_ref().map(|motion| motion.scaled(factor)),
-            warnings: ground.warnings.clone(),
-        };
-        Self { first: of(&self.first), second: self.second.as_ref().map(of), ..self.clone() }
+        let second = self.second.as_ref().map(|ground| ground.scaled(factor));
+        Self { first: self.first.scaled(factor), second, ..self.clone() }
     }
 
     /// Returns the time (s) at which the motion ends; `None` without motion.

@@ -12,14 +12,13 @@
 mod cases;
 mod chance;
 mod figure;
-mod observations;
 mod page;
 mod results;
 mod weigh;
 
+pub use barrelstack_calibration::shares::{Earthquake, Kind, Likelihood, Statement, Statements};
 pub use cases::{COLUMNS, FieldCase, FieldCases, UNKNOWNS};
 pub use chance::{Chance, MEDIANS, Point};
-pub use observations::{Earthquake, Kind, Likelihood, Observation, Observations};
 pub use results::{Bin, Posterior, Results, Share};
 pub use weigh::Range;
 
@@ -38,7 +37,8 @@ pub fn evaluate(
     observations: &str,
     cases: &[(String, String)],
 ) -> Result<Vec<(String, String)>, FieldError> {
-    let observations = Observations::read(observations)?;
+    let observations = Statements::read("observations.toml", observations)
+        .map_err(|error| FieldError(error.to_string()))?;
     let cases = cases
         .iter()
         .map(|(name, text)| FieldCases::read(name, text))

@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use barrelstack_validation::field::{FieldCases, Kind, Likelihood, Observations, evaluate};
+use barrelstack_validation::field::{FieldCases, Kind, Likelihood, Statements, evaluate};
 
 fn field() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/field")
@@ -38,7 +38,7 @@ fn the_page_its_tables_and_its_figure_come_from_the_observations_and_the_cases()
 
 #[test]
 fn at_least_three_earthquakes_are_hindcast_and_every_statement_has_its_source() {
-    let read = Observations::read(&observations()).unwrap();
+    let read = Statements::read("observations.toml", &observations()).unwrap();
     assert!(read.earthquake.iter().filter(|one| !one.studies.is_empty()).count() >= 3);
     for statement in read.statements() {
         assert!(!statement.source.is_empty() && !statement.statement.is_empty());
@@ -75,9 +75,9 @@ fn every_study_has_its_cases_and_nearly_all_have_a_verdict() {
 fn a_statement_without_a_source_or_a_number_is_refused() {
     let text = observations();
     let silent = text.replacen("source = \"the same two articles\"", "source = \"\"", 1);
-    let error = Observations::read(&silent).unwrap_err().to_string();
+    let error = Statements::read("observations.toml", &silent).unwrap_err().to_string();
     assert!(error.contains("`room`: a statement needs a source"), "{error}");
     let vague = text.replacen("error = 0.05\n", "", 1);
-    let error = Observations::read(&vague).unwrap_err().to_string();
+    let error = Statements::read("observations.toml", &vague).unwrap_err().to_string();
     assert!(error.contains("`room`: a likelihood needs levels and its numbers"), "{error}");
 }

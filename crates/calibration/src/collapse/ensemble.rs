@@ -16,13 +16,13 @@ use super::observed::{Mode, Time};
 /// Course of a simulated case, as an observer of a test could record it: the mode of collapse and the times
 /// of the events.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Course {
+pub(crate) struct Course {
     /// Mode of collapse, or that the stack stands.
-    pub(super) mode: Mode,
+    pub(crate) mode: Mode,
     /// Time at which the first body left its seat.
-    pub(super) loss: Time,
+    pub(crate) loss: Time,
     /// Name of each barrel and the time at which it had fallen; the barrels are in the order of the bodies.
-    pub(super) falls: Vec<(String, Time)>,
+    pub(crate) falls: Vec<(String, Time)>,
 }
 
 impl Course {
@@ -60,7 +60,7 @@ impl Course {
 
 /// Ground motion of a test.
 #[derive(Clone)]
-pub(super) enum Shaking {
+pub(crate) enum Shaking {
     /// Motion in a plane.
     Planar(Arc<Ground>),
     /// Motion in space.
@@ -69,26 +69,34 @@ pub(super) enum Shaking {
 
 impl Shaking {
     /// Returns the motion of a scenario.
-    pub(super) fn of(scenario: &Scenario) -> Result<Self, GroundError> {
+    pub(crate) fn of(scenario: &Scenario) -> Result<Self, GroundError> {
         Ok(if scenario.is_spatial() {
             Self::Spatial(Arc::new(barrelstack_space::Ground::of(scenario)?))
         } else {
             Self::Planar(Arc::new(scenario.ground()?))
         })
     }
+
+    /// Returns the motion scaled by a factor.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        match self {
+            Self::Planar(ground) => Self::Planar(Arc::new(ground.scaled(factor))),
+            Self::Spatial(ground) => Self::Spatial(Arc::new(ground.scaled(factor))),
+        }
+    }
 }
 
 /// A stack that is ready to be shaken.
-pub(super) struct Built {
-    pub(super) scenario: Arc<Scenario>,
-    pub(super) ground: Shaking,
+pub(crate) struct Built {
+    pub(crate) scenario: Arc<Scenario>,
+    pub(crate) ground: Shaking,
 }
 
 /// Simulates all cases on all cores and returns their courses in order; `None` for a case that cannot be simulated.
 ///
 /// `done` is called repeatedly with the number of completed cases and may cancel the remaining ones; the
 /// function then returns `None`.
-pub(super) fn simulate(
+pub(crate) fn simulate(
     cases: Vec<Built>,
     lanes: Option<Width>,
     done: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
@@ -124,7 +132,7 @@ pub(super) fn simulate(
 /// alike.
 ///
 /// The offsets are normally distributed with the standard deviation `scatter` (m).
-pub(super) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> Scenario {
+pub(crate) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> Scenario {
     let mut changed = scenario.clone();
     let Scene::Stack { stack, .. } = &mut changed.scene else { return changed };
     let (levels, columns, racks) = (stack.levels, stack.columns, stack.racks_per_level());

@@ -18,7 +18,7 @@ const COLUMNS: [&str; 6] =
 
 /// Time of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Time {
+pub(crate) enum Time {
     /// The event happened at this time (s).
     At(f64),
     /// The event did not happen before the end of the observation.
@@ -27,7 +27,7 @@ pub(super) enum Time {
 
 /// Whether a stack stood, or the mode in which it collapsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Mode {
+pub(crate) enum Mode {
     /// The stack stood.
     Stands,
     /// The stack collapsed in this mode.

@@ -90,7 +90,7 @@ fn times(
 }
 
 /// Returns the quantiles [`MIDDLE`] of weighted values; NaN if all weights are zero.
-fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
+pub(crate) fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
     weighed.sort_by(|one, other| one.0.total_cmp(&other.0));
     let all: f64 = weighed.iter().map(|(_, weight)| weight).sum();
     MIDDLE.map(|share| {
@@ -105,19 +105,19 @@ fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
 
 /// Rows of a figure, each with a name and a bar.
 #[derive(Default)]
-struct Rows {
+pub(crate) struct Rows {
     names: Vec<String>,
     bars: Vec<[f64; 2]>,
 }
 
 impl Rows {
-    fn bar(&mut self, name: String, bar: [f64; 2]) {
+    pub(crate) fn bar(&mut self, name: String, bar: [f64; 2]) {
         self.bars.push(bar);
         self.names.push(name);
     }
 
     /// Draws the rows, each beside its observed value.
-    fn figure(
+    pub(crate) fn figure(
         self,
         id: &str,
         caption: &str,

@@ -27,19 +27,19 @@ const FEWEST: f64 = 40.0;
 
 /// One sample: a point of the box `[−1, 1]ⁿ`, and the seed of the random numbers of its simulation.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Draw {
-    pub(super) point: Vec<f64>,
-    pub(super) seed: u64,
+pub(crate) struct Draw {
+    pub(crate) point: Vec<f64>,
+    pub(crate) seed: u64,
 }
 
 /// Samples with their weights, which sum to one.
 #[derive(Clone, Debug)]
-pub(super) struct Posterior {
-    pub(super) draws: Vec<Draw>,
-    pub(super) weights: Vec<f64>,
+pub(crate) struct Posterior {
+    pub(crate) draws: Vec<Draw>,
+    pub(crate) weights: Vec<f64>,
     /// Power to which the likelihood was raised to reach the minimum effective number of samples; usually
     /// one. If the power is below one, intervals are wider than they would be with enough samples.
-    pub(super) power: f64,
+    pub(crate) power: f64,
 }
 
 /// Proposal distribution of a round: normal kernels around centers, each coordinate reflected at the walls of
@@ -103,7 +103,7 @@ fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
 
 /// Returns a Latin hypercube: every coordinate axis is divided into `count` equal parts, and each part
 /// contains one point.
-fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f64>> {
+pub(crate) fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f64>> {
     let mut points = vec![vec![0.0; dimensions]; count];
     for at in 0..dimensions {
         let mut parts: Vec<usize> = (0..count).collect();
@@ -244,20 +244,20 @@ fn mirrored_normal(x: f64, center: f64, width: f64) -> f64 {
 }
 
 impl Posterior {
-    /// Creates the posterior of samples that were drawn uniformly from the box.
-    #[cfg(test)]
-    pub(super) fn of(draws: Vec<Draw>, logs: &[f64]) -> Option<Self> {
+    /// Creates the posterior of samples that were drawn from the prior. Returns `None` if every sample has a likelihood
+    /// of zero.
+    pub(crate) fn of(draws: Vec<Draw>, logs: &[f64]) -> Option<Self> {
         let (weights, power) = flattened(logs, &vec![1.0; draws.len()])?;
         Some(Self { draws, weights, power })
     }
 
     /// Returns the effective number of samples.
-    pub(super) fn effective(&self) -> f64 {
+    pub(crate) fn effective(&self) -> f64 {
         effective(&self.weights)
     }
 
     /// Returns a quantile of a coordinate.
-    pub(super) fn quantile(&self, at: usize, share: f64) -> f64 {
+    pub(crate) fn quantile(&self, at: usize, share: f64) -> f64 {
         let mut values: Vec<(f64, f64)> =
             self.draws.iter().zip(&self.weights).map(|(d, w)| (d.point[at], *w)).collect();
         values.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -272,7 +272,7 @@ impl Posterior {
     }
 
     /// Returns the covariance matrix of the coordinates.
-    pub(super) fn covariance(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn covariance(&self) -> Vec<Vec<f64>> {
         let count = self.draws.first().map_or(0, |draw| draw.point.len());
         let mean = |of: &dyn Fn(&Draw) -> f64| -> f64 {
             self.draws.iter().zip(&self.weights).map(|(draw, weight)| weight * of(draw)).sum()

@@ -1,5 +1,6 @@
 //! `barrelstack calibrate`: contact parameters with their uncertainty, from the user's tests.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -9,6 +10,7 @@ use barrelstack::export::Folder;
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_calibration::collapse::{Errors, Observations, Settings};
 use barrelstack_calibration::drop::{GRAVITY, Striker};
+use barrelstack_calibration::shares::{Height, Statements, shares};
 use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, sag,
     stiffness, sway,
@@ -74,6 +76,11 @@ enum Test {
     /// Many stacks are simulated, each with slightly different geometry, and with parameters drawn
     /// around those of the scenario. Each simulation is weighted by its agreement with the
     /// observations.
+    ///
+    /// A TOML file states shares instead: how many of the stacks or barrels fell in an earthquake,
+    /// with source and uncertainty. The scenario is that of such a stack, with the motion of the
+    /// nearest station; it is simulated at every height that a statement names. The guide on
+    /// scenarios describes the format.
     Collapse(CollapseArgs),
 }
 
@@ -201,8 +208,11 @@ struct ResponseArgs {
 struct CollapseArgs {
     /// Scenario of the tests: a file (TOML), or the name of a built-in scenario.
     scenario: String,
-    /// Observations (CSV).
+    /// Observations: a table of tests (CSV), or statements on the share that fell in an earthquake (TOML).
     file: PathBuf,
+    /// Use this statement of the TOML file; may be repeated. Without it, all statements that state a share are used.
+    #[arg(long, value_name = "ID")]
+    statement: Vec<String>,
     /// Parameters to find: k and c of barrel-rack (those of rack-ground change in proportion),
     /// mu-br (friction barrel-rack), mu-rg (friction rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
@@ -383,6 +393,14 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         seed: args.seed,
         lanes: args.lanes.lanes,
     };
+    if args.file.extension().is_some_and(|extension| extension == "toml") {
+        return fallen(args, &parameters, &settings);
+    }
+    anyhow::ensure!(
+        args.statement.is_empty(),
+        "--statement chooses among the statements of a TOML file, and {} is a table of tests: leave it out",
+        args.file.display()
+    );
     let observations = Observations::read(&Table::load(&args.file)?, &settings.errors)?;
     let scenarios: Vec<Scenario> = observations
         .scenarios()
@@ -395,4 +413,30 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         });
     drop(progress);
     found.map_err(|error| placed(error, &scenarios[0], &args.changes.of(&args.scenario)))
+}
+
+/// Fits parameters to statements on the share of stacks that fell in an earthquake.
+fn fallen(
+    args: &CollapseArgs,
+    parameters: &[Parameter],
+    settings: &Settings,
+) -> anyhow::Result<Calibration> {
+    let statements = Statements::load(&args.file)?;
+    let (earthquake, chosen) = statements.chosen(&args.statement)?;
+    let levels: BTreeSet<usize> =
+        chosen.iter().flat_map(|one| one.levels.iter().copied()).collect();
+    let heights = levels
+        .into_iter()
+        .map(|levels| {
+            let mut changed = args.changes.of(&args.scenario);
+            changed.set.push(format!("stack.levels={levels}"));
+            Ok(Height { levels, scenario: super::load(&changed)? })
+        })
+        .collect::<anyhow::Result<Vec<Height>>>()?;
+    let progress = Progress::new(true);
+    let found = shares(earthquake, &chosen, &heights, parameters, settings, &|done, of| {
+        progress.counted(done as u64, of as u64, "runs")
+    });
+    drop(progress);
+    found.map_err(|error| placed(error, &heights[0].scenario, &args.changes.of(&args.scenario)))
 }

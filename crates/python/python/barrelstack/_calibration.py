@@ -221,6 +221,7 @@ class Calibration(Page):
         measured: Any,
         *,
         others: Mapping[str, Scenario] | None = None,
+        statements: Sequence[str] = (),
         fit: Sequence[str] = _ALL,
         within: float = 2.0,
         timing: Any = "0.05 s",
@@ -229,7 +230,8 @@ class Calibration(Page):
         seed: int = 1,
         progress: Progress = None,
     ) -> Calibration:
-        """Fits stiffness, damping and friction jointly to collapses observed on video or by eye.
+        """Fits stiffness, damping and friction jointly to collapses observed on video or by eye, or to the share of
+        the stacks that fell in an earthquake.
 
         Parameters
         ----------
@@ -237,9 +239,12 @@ class Calibration(Page):
             The scenario of tests that do not name one.
         measured
             One row per test: ``mode``, ``first fall (s)``, ``first barrel``, ``B4.1 fell (s)``, ``loss of seat (s)``,
-            ``until (s)``, ``scenario``.
+            ``until (s)``, ``scenario``. A path that ends in ``.toml`` is a file of statements: how many stacks or
+            barrels fell in an earthquake, with source and uncertainty.
         others
             Scenarios named by the tests.
+        statements
+            Names of the statements of a TOML file to use; by default, all that state a share.
         fit
             As for :meth:`response`.
         within
@@ -270,6 +275,7 @@ class Calibration(Page):
                 _native.calibrate_collapse(
                     scenario._shaken,
                     named,
+                    list(statements),
                     *_text(measured),
                     list(fit),
                     within,

@@ -459,6 +459,7 @@ def calibrate_response(
 def calibrate_collapse(
     scenario: Scenario,
     others: list[tuple[str, Scenario]],
+    statements: list[str],
     name: str,
     text: str,
     fit: list[str],

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use barrelstack_fragility::wilson;
 
 use super::cases::FieldCases;
-use super::observations::{Earthquake, Kind, Observation, Observations};
-use super::results::{Bin, FRICTION, GROUND, MODEL, Posterior, Results, STIFFNESS, Share};
+use super::results::{Bin, FRICTION, GROUND, Posterior, Results, STIFFNESS, Share};
 use super::weigh::{DRAWS, Range};
+use barrelstack_calibration::shares::{Earthquake, Kind, MODEL_ERROR, Statement, Statements};
 
 const HEAD: &str = "\
 # Hindcasts: real earthquakes beside the model
@@ -66,7 +66,7 @@ some:     L(u) = E [1 − (1 − S)^stacks]
 ";
 
 /// Writes the page.
-pub(super) fn page(observations: &Observations, cases: &[FieldCases], results: &Results) -> String {
+pub(super) fn page(observations: &Statements, cases: &[FieldCases], results: &Results) -> String {
     let mut text = HEAD.to_owned();
     in_short(&mut text, cases, results);
     text.push_str("\n## What was observed\n");
@@ -77,7 +77,7 @@ pub(super) fn page(observations: &Observations, cases: &[FieldCases], results: &
     text.push_str(METHOD);
     let _ = writeln!(
         text,
-        "σ of “half” is 0.077 (35 to 65 % are 95 %); to every σ an error of the model itself of {MODEL:.2} is added in \
+        "σ of “half” is 0.077 (35 to 65 % are 95 %); to every σ an error of the model itself of {MODEL_ERROR:.2} is added in \
          quadrature, for neighbors, walls and empty barrels that are not simulated, and the posterior without it stands \
          beside.\n{DRAWS} draws; the two statements on Napa Barrel Care share the factor on the motion."
     );
@@ -217,7 +217,7 @@ fn posterior(text: &mut String, results: &Results) {
     }
 }
 
-fn predictions(text: &mut String, observations: &Observations, results: &Results) {
+fn predictions(text: &mut String, observations: &Statements, results: &Results) {
     text.push_str("## Each statement beside what the model says of it\n\n| statement | observed | model, prior | model, given half | mean likelihood |\n| :--- | :--- | :--- | :--- | ---: |\n");
     for (id, prior, posterior) in &results.predictions {
         let Some((_, one)) = observations.find(id) else { continue };
@@ -233,7 +233,7 @@ fn predictions(text: &mut String, observations: &Observations, results: &Results
     }
 }
 
-fn subject(one: &Observation) -> &'static str {
+fn subject(one: &Statement) -> &'static str {
     if one.kind == Kind::Barrels {
         "share of barrels on the floor"
     } else {
@@ -241,7 +241,7 @@ fn subject(one: &Observation) -> &'static str {
     }
 }
 
-fn bound(one: &Observation) -> String {
+fn bound(one: &Statement) -> String {
     let value = percent(one.value.unwrap_or(f64::NAN));
     match one.kind {
         Kind::Barrels => value,

@@ -7,11 +7,8 @@ use barrelstack_fragility::{Interval, wilson};
 use super::FieldError;
 use super::cases::{FieldCases, UNKNOWNS};
 use super::chance::{MEDIANS, Point};
-use super::observations::{Earthquake, Observations};
 use super::weigh::{self, Fitted, Range};
-
-/// Standard deviation of the error that the model itself may have in a share: neighbors, walls, empty barrels.
-pub(super) const MODEL: f64 = 0.10;
+use barrelstack_calibration::shares::{Earthquake, MODEL_ERROR, Statements};
 
 /// Bins of friction barrel–rack in which likelihoods are stated.
 pub(super) const FRICTION: [f64; 7] = [0.12, 0.18, 0.25, 0.35, 0.45, 0.55, 0.75];
@@ -98,10 +95,7 @@ pub struct Results {
 
 impl Results {
     /// Computes all numbers.
-    pub(super) fn of(
-        observations: &Observations,
-        cases: &[FieldCases],
-    ) -> Result<Self, FieldError> {
+    pub(super) fn of(observations: &Statements, cases: &[FieldCases]) -> Result<Self, FieldError> {
         let fitted: Vec<Fitted<'_>> = cases.iter().map(Fitted::new).collect();
         let (napa, _) = observations
             .find("half")
@@ -130,7 +124,7 @@ impl Results {
     /// Weighs the draws by every statement that has a likelihood.
     fn weigh(
         &mut self,
-        observations: &Observations,
+        observations: &Statements,
         napa: &Earthquake,
         fitted: &[Fitted<'_>],
         draws: &[[f64; UNKNOWNS]],
@@ -157,7 +151,7 @@ impl Results {
                 joined.map(|(draw, factor)| [draw[0], draw[1], draw[2], factor[3]]).collect()
             };
             let shares = weigh::predicted(statement, &studies, &own, seed);
-            let weights = weigh::weights(&shares, likelihood.wider(MODEL));
+            let weights = weigh::weights(&shares, likelihood.wider(MODEL_ERROR));
             if statement.id == "half" {
                 let sharp = weigh::weights(&shares, likelihood);
                 self.posteriors.push(posterior(

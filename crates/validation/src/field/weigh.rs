@@ -4,7 +4,7 @@ use barrelstack_motion::Random;
 
 use super::cases::{FieldCases, UNKNOWNS};
 use super::chance::{Chance, FITS, MEDIANS, Point};
-use super::observations::{Kind, Likelihood, Observation};
+use barrelstack_calibration::shares::{Kind, Likelihood, Statement};
 
 /// Standard deviations of the natural logarithm in the prior: those of `[unknowns]`; the factor on the motion is
 /// that of the earthquake.
@@ -85,7 +85,7 @@ pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
 /// Shares that a statement is about, one for each draw of the unknowns: with its own draws of azimuth, of the mixture
 /// of heights (every mixture as likely), and of what the simulated cases leave open.
 pub(super) fn predicted(
-    statement: &Observation,
+    statement: &Statement,
     studies: &[&Fitted<'_>],
     draws: &[[f64; UNKNOWNS]],
     seed: u64,

@@ -1,0 +1,369 @@
+//! Joint calibration of stiffness, damping and friction from shares of stacks that fell in an earthquake.
+
+mod statements;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use barrelstack::run::RunFailure;
+use barrelstack::scenario::Scenario;
+use barrelstack_dynamics::math;
+use barrelstack_fragility::{Conditional, DrawnRun, FEWEST_RUNS, conditional, normal_quantile};
+use barrelstack_input::measured::TableError;
+use barrelstack_motion::Random;
+use barrelstack_report::{Axis, Figure};
+
+use super::collapse::ensemble::{Built, Course, Shaking, placed, simulate};
+use super::collapse::observed::Time;
+use super::collapse::picture::{Rows, middle};
+use super::collapse::sampler::{Draw, Posterior, hypercube};
+use super::collapse::{Settings, barrels, estimates, identifiability};
+use super::least_squares::normalized;
+use super::parameters::Tunable;
+use super::result::short;
+use super::{CalibrateError, Calibration, Parameter};
+
+pub use statements::{
+    Earthquake, Kind, Likelihood, MODEL_ERROR, Statement, Statements, StatementsError,
+};
+
+/// Number of parameter sets at which the statements are weighed.
+const DRAWS: usize = 20_000;
+
+/// Mean likelihood of a statement below which a warning is given; 1 is the highest possible likelihood.
+const UNLIKELY: f64 = 0.05;
+
+/// Scenario of the stacks at one height, with the motion of the earthquake.
+#[derive(Clone, Debug)]
+pub struct Height {
+    /// Number of levels.
+    pub levels: usize,
+    /// The scenario.
+    pub scenario: Scenario,
+}
+
+/// Result of one simulated stack.
+struct Shaken {
+    /// Parameters, each within −1 and 1; the ends are the ends of the range.
+    point: Vec<f64>,
+    /// Logarithm of the factor on the motion, as a standard normal deviate.
+    motion: f64,
+    /// Index of the height.
+    height: usize,
+    /// Share of the barrels that fell; `None` if the stack stands.
+    fallen: Option<f64>,
+}
+
+/// Fitted share of stacks that fall, as a function of the parameters, the motion and the height.
+struct Fit {
+    share: Conditional,
+    /// Mean share of the barrels that fall in a stack that falls, by height.
+    fallen: Vec<f64>,
+    /// Heights as standard deviates; empty for one height, which needs none.
+    heights: Vec<f64>,
+}
+
+/// Estimates parameters of a stack from statements on how many stacks fell in an earthquake.
+///
+/// `heights` holds the scenario at every height that a statement names. Each of `settings.simulations` parameter sets is
+/// drawn from the range and used to simulate one stack at one of the heights, with random offsets of racks and barrels,
+/// and with a motion that differs from that of the scenario by a factor, as a cellar differs from the station
+/// ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that fall as a function of
+/// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the statements:
+/// each with a factor that is common to all statements, with unknown proportions of the heights, all mixtures
+/// being equally probable, with one sample of the regression, and with an error of the model itself ([`MODEL_ERROR`]).
+/// The intervals hold the central 95 % of the weight.
+///
+/// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
+/// `report` is called from several threads with the number of completed simulations and the total, and may
+/// cancel the calibration.
+///
+/// # Errors
+/// If a scenario is not a stack of linear laws or cannot be simulated, if a height is missing, or if too few simulations
+/// run to their end; [`CalibrateError::Stopped`] if `report` canceled it.
+pub fn shares(
+    earthquake: &Earthquake,
+    statements: &[&Statement],
+    heights: &[Height],
+    parameters: &[Parameter],
+    settings: &Settings,
+    report: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+) -> Result<Calibration, CalibrateError> {
+    let at = |levels: &usize| heights.iter().position(|height| height.levels == *levels);
+    for levels in statements.iter().flat_map(|one| &one.levels) {
+        if at(levels).is_none() {
+            return Err(CalibrateError::Scenario(format!(
+                "a statement is about stacks of {levels} levels, of which there is no scenario"
+            )));
+        }
+    }
+    let Some(first) = heights.first() else { return Ok(Calibration::default()) };
+    let tunable = Tunable::new(&first.scenario, parameters)?;
+    let shaken = shake(earthquake, statements, heights, &tunable, settings, report)?;
+    let unsuited = |reason: String| TableError::Unsuited {
+        file: format!("statements on {}", earthquake.name),
+        reason,
+    };
+    let fit = Fit::new(&shaken, heights, settings.seed).ok_or_else(|| {
+        unsuited(format!(
+            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}: in the other ones the stack falls at \
+             rest or the run fails: start from other values",
+            shaken.len(),
+            settings.simulations
+        ))
+    })?;
+    let weighed = Weighed::new(statements, heights, parameters.len(), &fit, settings.seed)
+        .ok_or_else(|| {
+            unsuited(
+                "no parameter set within the range agrees with the statements: widen the range"
+                    .to_owned(),
+            )
+        })?;
+    let reach = math::log(settings.within);
+    let posterior = &weighed.posterior;
+    let estimates = estimates(&tunable, posterior, reach);
+    let mut correlation = normalized(&posterior.covariance());
+    correlation.truncate(parameters.len());
+    for row in &mut correlation {
+        row.truncate(parameters.len());
+    }
+    let medians: Vec<f64> =
+        (0..parameters.len()).map(|at| reach * posterior.quantile(at, 0.5)).collect();
+    let mut warnings = identifiability(&estimates, &correlation, posterior, settings.within);
+    warnings.extend(weighed.unlikely(statements));
+    let left_out = settings.simulations - shaken.len();
+    if left_out > 0 {
+        warnings.push(format!(
+            "simulations without a result, because the stack falls at rest or the run fails: {left_out} of {}",
+            settings.simulations
+        ));
+    }
+    let motion = [0.5, 0.025, 0.975]
+        .map(|q| math::exp(earthquake.motion * posterior.quantile(parameters.len(), q)));
+    let mut facts = vec![
+        ("statements".to_owned(), statements.len().to_string()),
+        ("simulations".to_owned(), shaken.len().to_string()),
+        ("draws in effect".to_owned(), short(posterior.effective())),
+        ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        (
+            "motion in the cellar, relative to that of the scenario".to_owned(),
+            format!("{:.2} ({:.2} to {:.2})", motion[0], motion[1], motion[2]),
+        ),
+        ("seed".to_owned(), settings.seed.to_string()),
+    ];
+    for (at, one) in statements.iter().enumerate() {
+        let [before, after] = weighed.predicted(at);
+        let text = |[low, high]: [f64; 2]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high);
+        let value = format!("{} before, {} given the statements", text(before), text(after));
+        facts.push((format!("share of {} by the model, {}", subject(one), one.id), value));
+    }
+    Ok(Calibration {
+        title: format!("collapse {}: shares that fell, from simulated stacks", earthquake.name),
+        scenario: tunable.scenario_lines(&medians),
+        estimates,
+        correlation,
+        condition: None,
+        figures: weighed.figure(statements).into_iter().collect(),
+        facts,
+        warnings,
+    })
+}
+
+/// Returns what a statement counts.
+fn subject(one: &Statement) -> &'static str {
+    if one.kind == Kind::Barrels { "barrels on the floor" } else { "stacks that fall" }
+}
+
+/// Simulates one stack for each parameter set; stacks that fall at rest and runs that fail are left out.
+fn shake(
+    earthquake: &Earthquake,
+    statements: &[&Statement],
+    heights: &[Height],
+    tunable: &Tunable,
+    settings: &Settings,
+    report: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+) -> Result<Vec<Shaken>, CalibrateError> {
+    let count = tunable.parameters().len();
+    let mut grounds = Vec::new();
+    for height in heights {
+        barrels(&height.scenario)?;
+        grounds.push(Shaking::of(&height.scenario).map_err(RunFailure::from)?);
+    }
+    let mut random = Random::new(settings.seed);
+    let points = hypercube(settings.simulations, count + 1, &mut random);
+    let reach = math::log(settings.within);
+    let counts_barrels = statements.iter().any(|one| one.kind == Kind::Barrels);
+    let mut drawn = Vec::new();
+    let mut built = Vec::new();
+    for (number, mut point) in points.into_iter().enumerate() {
+        let height = number % heights.len();
+        let motion = normal_quantile(0.5 * (point[count] + 1.0));
+        point.truncate(count);
+        let at: Vec<f64> = point.iter().map(|x| reach * x).collect();
+        let base = &heights[height].scenario;
+        let mut scenario = tunable.at(base, &at);
+        if !counts_barrels {
+            scenario.run.stop_after_collapse = Some(0.1);
+        }
+        let scatter = settings.placement / scenario.run.similitude;
+        let scenario = Arc::new(placed(&scenario, scatter, &mut random));
+        let ground = grounds[height].scaled(math::exp(earthquake.motion * motion));
+        built.push(Built { scenario, ground });
+        drawn.push((point, motion, height));
+    }
+    let total = settings.simulations;
+    let courses = simulate(built, settings.lanes, &|done| report(done, total))
+        .ok_or(CalibrateError::Stopped)?;
+    let ran = drawn.into_iter().zip(courses).filter_map(|((point, motion, height), course)| {
+        Some(Shaken { point, motion, height, fallen: fallen(&course?) })
+    });
+    Ok(ran.collect())
+}
+
+/// Returns the share of the barrels that fell; `None` if the stack stands.
+fn fallen(course: &Course) -> Option<f64> {
+    matches!(course.loss, Time::At(_)).then(|| {
+        let down = course.falls.iter().filter(|(_, time)| matches!(time, Time::At(_))).count();
+        down as f64 / course.falls.len().max(1) as f64
+    })
+}
+
+impl Fit {
+    /// Fits the results; `None` if there are too few.
+    fn new(shaken: &[Shaken], heights: &[Height], seed: u64) -> Option<Self> {
+        let levels: Vec<f64> = heights.iter().map(|height| height.levels as f64).collect();
+        let middle = levels.iter().sum::<f64>() / levels.len() as f64;
+        let spread = (levels.iter().map(|l| (l - middle) * (l - middle)).sum::<f64>()
+            / levels.len() as f64)
+            .sqrt();
+        let standard = if spread > 0.0 {
+            levels.iter().map(|l| (l - middle) / spread).collect()
+        } else {
+            vec![]
+        };
+        let runs: Vec<DrawnRun> = shaken
+            .iter()
+            .map(|one| DrawnRun {
+                deviates: deviates(&one.point, one.motion, standard.get(one.height)),
+                second_half: false,
+                failed: one.fallen.is_some(),
+            })
+            .collect();
+        let mut random = Random::new(seed ^ 0x7368_6172_6573);
+        let share = conditional(&runs, || random.uniform())?;
+        let fallen = (0..heights.len())
+            .map(|height| {
+                let down: Vec<f64> = shaken
+                    .iter()
+                    .filter(|one| one.height == height)
+                    .filter_map(|one| one.fallen)
+                    .collect();
+                if down.is_empty() { 1.0 } else { down.iter().sum::<f64>() / down.len() as f64 }
+            })
+            .collect();
+        Some(Self { share, fallen, heights: standard })
+    }
+}
+
+/// Returns a parameter set as deviates of unit variance: a uniform number within ±1 has the variance 1/3.
+fn deviates(point: &[f64], motion: f64, height: Option<&f64>) -> Vec<f64> {
+    let parameters = point.iter().map(|x| 3.0_f64.sqrt() * x);
+    parameters.chain([motion]).chain(height.copied()).collect()
+}
+
+/// Parameter sets, weighted by the likelihood of the statements.
+struct Weighed {
+    /// Sets with their weights; the last coordinate is the deviate of the motion.
+    posterior: Posterior,
+    /// Share of each statement in every set.
+    shares: Vec<Vec<f64>>,
+    /// Mean likelihood of each statement over all sets, 1 at most.
+    likelihoods: Vec<f64>,
+}
+
+impl Weighed {
+    fn new(
+        statements: &[&Statement],
+        heights: &[Height],
+        parameters: usize,
+        fit: &Fit,
+        seed: u64,
+    ) -> Option<Self> {
+        let mut random = Random::new(seed.rotate_left(17) ^ 0x7765_6967);
+        let likelihoods: Vec<Likelihood> = statements
+            .iter()
+            .filter_map(|one| Some(one.likelihood()?.wider(MODEL_ERROR)))
+            .collect();
+        let (mut draws, mut logs) = (Vec::new(), Vec::new());
+        let mut shares = vec![Vec::new(); statements.len()];
+        let mut sums = vec![0.0; statements.len()];
+        for _ in 0..DRAWS {
+            let mut point: Vec<f64> =
+                (0..parameters).map(|_| 2.0 * random.uniform() - 1.0).collect();
+            let motion = random.normal();
+            let sample = random.bits() >> 33;
+            let mut log = 0.0;
+            for (at, (one, likelihood)) in statements.iter().zip(&likelihoods).enumerate() {
+                // Exponential deviates, divided by their sum, give every mixture the same probability.
+                let parts: Vec<f64> =
+                    one.levels.iter().map(|_| -math::log(1.0 - random.uniform())).collect();
+                let all: f64 = parts.iter().sum();
+                let of = |(levels, part): (&usize, &f64)| {
+                    let height = heights.iter().position(|height| height.levels == *levels)?;
+                    let z = deviates(&point, motion, fit.heights.get(height));
+                    let barrels = if one.kind == Kind::Barrels { fit.fallen[height] } else { 1.0 };
+                    Some(part / all * fit.share.in_sample(sample as usize, &z) * barrels)
+                };
+                let share: f64 = one.levels.iter().zip(&parts).filter_map(of).sum();
+                let chance = likelihood.of(share);
+                shares[at].push(share);
+                sums[at] += chance / DRAWS as f64;
+                log += math::log(chance);
+            }
+            point.push(motion);
+            draws.push(Draw { point, seed: 0 });
+            logs.push(log);
+        }
+        Some(Self { posterior: Posterior::of(draws, &logs)?, shares, likelihoods: sums })
+    }
+
+    /// Returns the central 90 % of the share of a statement, before and given the statements.
+    fn predicted(&self, at: usize) -> [[f64; 2]; 2] {
+        let even = vec![1.0; DRAWS];
+        [&even, &self.posterior.weights].map(|weights| {
+            middle(self.shares[at].iter().copied().zip(weights.iter().copied()).collect())
+        })
+    }
+
+    /// Returns a warning for each statement that the model contradicts within the range.
+    fn unlikely<'a>(&'a self, statements: &'a [&Statement]) -> impl Iterator<Item = String> + 'a {
+        let pairs = statements.iter().zip(&self.likelihoods);
+        pairs.filter(|(_, likelihood)| **likelihood < UNLIKELY).map(|(one, likelihood)| {
+            format!(
+                "the model hardly agrees with the statement {} within the range (mean likelihood {}): check that motion, \
+                 heights and racks of the scenario are those of the statement, or widen the range",
+                one.id,
+                short(*likelihood)
+            )
+        })
+    }
+
+    /// Draws the shares by the model, before and given the statements, beside the stated ones.
+    fn figure(&self, statements: &[&Statement]) -> Option<Figure> {
+        let mut rows = Rows::default();
+        let mut stated = Vec::new();
+        for (at, one) in statements.iter().enumerate() {
+            let [before, after] = self.predicted(at);
+            rows.bar(format!("{}: before", one.id), before);
+            rows.bar(format!("{}: given the statements", one.id), after);
+            stated.extend([one.value.unwrap_or(f64::NAN); 2]);
+        }
+        let caption = "Shares by the model, before and given the statements. Bars show the central 90 % over the \
+                       parameters, the motion and the mixture of heights; marks show the stated shares.";
+        let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share", "") };
+        rows.figure("collapse-shares", caption, x, Some(stated))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,306 @@
+//! Statements on how many stacks fell in an earthquake, with source and uncertainty.
+
+use std::path::Path;
+
+use barrelstack_input::system;
+use serde::Deserialize;
+
+/// Maximum size of a file of statements (bytes).
+const SIZE_LIMIT: usize = 1 << 20;
+
+/// Standard deviation of the error of the model itself in a share: neighbors, walls, empty barrels.
+pub const MODEL_ERROR: f64 = 0.10;
+
+/// Error of a file of statements.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StatementsError(String);
+
+/// All earthquakes of a file of statements.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statements {
+    /// The earthquakes, in the order of the page.
+    pub earthquake: Vec<Earthquake>,
+}
+
+/// One earthquake at one place.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Earthquake {
+    /// Name and year.
+    pub name: String,
+    /// Date, magnitude, records and their peaks.
+    #[serde(default)]
+    pub about: String,
+    /// Distance between record and cellars.
+    #[serde(default)]
+    pub place: String,
+    /// Standard deviation of ln of the motion in a cellar over that at the station.
+    pub motion: f64,
+    /// Names of the studies of `validation/field.md` that simulate it; none without a record.
+    #[serde(default)]
+    pub studies: Vec<String>,
+    /// The statements.
+    pub observation: Vec<Statement>,
+}
+
+/// One statement.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statement {
+    /// Short name.
+    pub id: String,
+    /// What was observed, in a sentence.
+    pub statement: String,
+    /// Where that is stated.
+    pub source: String,
+    /// How the statement is read as a number.
+    pub uncertainty: Option<String>,
+    /// What the statement is about.
+    pub kind: Kind,
+    /// Why it is left out.
+    pub reason: Option<String>,
+    /// Studies of `validation/field.md` of the stacks observed; several are planes of one stack, which falls if it
+    /// falls in one of them.
+    #[serde(default)]
+    pub studies: Vec<String>,
+    /// Heights of the stacks observed, in unknown proportions.
+    #[serde(default)]
+    pub levels: Vec<usize>,
+    /// The observed share.
+    pub value: Option<f64>,
+    /// Lower end of its interval of 95 %.
+    pub low: Option<f64>,
+    /// Upper end of its interval of 95 %.
+    pub high: Option<f64>,
+    /// Standard error of a bound.
+    pub error: Option<f64>,
+    /// Number of stacks of which at least one fell.
+    pub stacks: Option<f64>,
+}
+
+/// What a statement is about.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// Share of the barrels on the floor.
+    Barrels,
+    /// Share of the stacks that fell, at least about a value.
+    Most,
+    /// Share of the stacks that fell, at most about a value.
+    Few,
+    /// At least one of a number of stacks fell.
+    Some,
+    /// Direction of the falls.
+    Along,
+    /// No likelihood.
+    Unusable,
+}
+
+/// Likelihood of a statement as a function of a share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Likelihood {
+    /// Normal about a share of barrels.
+    Near {
+        /// The observed share.
+        value: f64,
+        /// Standard deviation.
+        error: f64,
+    },
+    /// Share of stacks at least about a value.
+    AtLeast {
+        /// The value.
+        value: f64,
+        /// Standard error.
+        error: f64,
+    },
+    /// Share of stacks at most about a value.
+    AtMost {
+        /// The value.
+        value: f64,
+        /// Standard error.
+        error: f64,
+    },
+    /// At least one of a number of stacks.
+    One {
+        /// The number.
+        stacks: f64,
+    },
+}
+
+impl Likelihood {
+    /// Returns the likelihood of a share, 1 at most.
+    pub fn of(&self, share: f64) -> f64 {
+        match *self {
+            Self::Near { value, error } => {
+                let off = (share - value) / error;
+                libm::exp(-0.5 * off * off)
+            }
+            Self::AtLeast { value, error } => {
+                barrelstack_fragility::normal((share - value) / error)
+            }
+            Self::AtMost { value, error } => barrelstack_fragility::normal((value - share) / error),
+            Self::One { stacks } => 1.0 - libm::pow(1.0 - share, stacks),
+        }
+    }
+
+    /// `true` if its error or number is finite and above zero.
+    fn is_proper(self) -> bool {
+        let (Self::Near { error, .. }
+        | Self::AtLeast { error, .. }
+        | Self::AtMost { error, .. }
+        | Self::One { stacks: error }) = self;
+        error.is_finite() && error > 0.0
+    }
+
+    /// Returns the same with a further, independent error of the model in quadrature.
+    #[must_use]
+    pub fn wider(self, model: f64) -> Self {
+        let wider = |error: f64| libm::hypot(error, model);
+        match self {
+            Self::Near { value, error } => Self::Near { value, error: wider(error) },
+            Self::AtLeast { value, error } => Self::AtLeast { value, error: wider(error) },
+            Self::AtMost { value, error } => Self::AtMost { value, error: wider(error) },
+            Self::One { .. } => self,
+        }
+    }
+}
+
+impl Statements {
+    /// Reads a file of statements (TOML).
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as [`Statements::read`].
+    pub fn load(path: &Path) -> Result<Self, StatementsError> {
+        let file = path.display().to_string();
+        let unreadable =
+            |reason: String| StatementsError(format!("{file} cannot be read: {reason}"));
+        let bytes = system::read(path, SIZE_LIMIT).map_err(unreadable)?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| unreadable("it is not text in UTF-8".to_owned()))?;
+        Self::read(&file, &text)
+    }
+
+    /// Reads the text of a file of statements (TOML); `file` is its name in errors.
+    ///
+    /// # Errors
+    /// If it is not one, if a statement has no source, or if one that is used lacks a number.
+    pub fn read(file: &str, text: &str) -> Result<Self, StatementsError> {
+        let read: Self =
+            toml::from_str(text).map_err(|error| StatementsError(format!("{file}: {error}")))?;
+        for statement in read.statements() {
+            if let Some(fault) = statement.fault() {
+                return Err(StatementsError(format!(
+                    "{file}: statement `{}`: {fault}",
+                    statement.id
+                )));
+            }
+        }
+        Ok(read)
+    }
+
+    /// Returns the named statements and their earthquake; without names, all statements that have a likelihood.
+    ///
+    /// # Errors
+    /// If a statement is unknown or has no likelihood, or if the statements are about different earthquakes, since a
+    /// scenario has one motion.
+    pub fn chosen(
+        &self,
+        names: &[String],
+    ) -> Result<(&Earthquake, Vec<&Statement>), StatementsError> {
+        let usable = || self.statements().filter(|one| one.likelihood().is_some());
+        let known = || usable().map(|one| one.id.as_str()).collect::<Vec<_>>().join(", ");
+        for name in names {
+            let fault = match self.find(name) {
+                None => "there is no such statement".to_owned(),
+                Some((_, one)) if one.likelihood().is_none() => {
+                    let reason = one.reason.as_deref().unwrap_or("it states no share");
+                    format!("it has no likelihood: {}", reason.trim_end_matches('.'))
+                }
+                Some(_) => continue,
+            };
+            return Err(StatementsError(format!(
+                "statement `{name}`: {fault}; those with a likelihood are: {}",
+                known()
+            )));
+        }
+        let mut found: Vec<(&Earthquake, &Statement)> = Vec::new();
+        for one in usable().filter(|one| names.is_empty() || names.contains(&one.id)) {
+            found.extend(self.find(&one.id));
+        }
+        let Some((quake, _)) = found.first().copied() else {
+            return Err(StatementsError(
+                "no statement has a likelihood, so nothing can be fitted".to_owned(),
+            ));
+        };
+        if let Some((other, _)) = found.iter().find(|(other, _)| other.name != quake.name) {
+            return Err(StatementsError(format!(
+                "the statements are about two earthquakes, {} and {}, and the scenario has one motion: choose the \
+                 statements of one of them, of {}",
+                quake.name,
+                other.name,
+                known()
+            )));
+        }
+        Ok((quake, found.into_iter().map(|(_, one)| one).collect()))
+    }
+
+    /// Returns all statements.
+    pub fn statements(&self) -> impl Iterator<Item = &Statement> {
+        self.earthquake.iter().flat_map(|one| &one.observation)
+    }
+
+    /// Returns a statement and its earthquake by the name of the statement.
+    pub fn find(&self, id: &str) -> Option<(&Earthquake, &Statement)> {
+        let all = self.earthquake.iter();
+        let mut pairs = all.flat_map(|quake| quake.observation.iter().map(move |one| (quake, one)));
+        pairs.find(|(_, one)| one.id == id)
+    }
+}
+
+impl Statement {
+    /// Returns what is missing or wrong in the statement.
+    fn fault(&self) -> Option<&'static str> {
+        let ordered = |value: f64| {
+            let low = self.low.unwrap_or(value);
+            let high = self.high.unwrap_or(value);
+            0.0 <= low && low <= value && value <= high && high <= 1.0
+        };
+        Some(if self.source.is_empty() {
+            "a statement needs a source"
+        } else if self.kind == Kind::Unusable {
+            return self.reason.is_none().then_some("a statement that is left out needs a reason");
+        } else if self.uncertainty.is_none() {
+            "a statement that is used needs its uncertainty"
+        } else if self.kind != Kind::Along
+            && (self.likelihood().is_none() || self.levels.is_empty())
+        {
+            "a likelihood needs levels and its numbers: `low`, `value` and `high` of `barrels`, `value` and `error` of \
+             `most` and `few`, `stacks` of `some`"
+        } else if self.levels.contains(&0) {
+            "a stack has at least one level"
+        } else if self.value.is_some_and(|value| !ordered(value)) {
+            "shares lie between 0 and 1, `low` is at most `value`, and `value` at most `high`"
+        } else if self.likelihood().is_some_and(|one| !one.is_proper()) {
+            "its error or number of stacks must be above zero"
+        } else {
+            return None;
+        })
+    }
+
+    /// Returns the likelihood; `None` of a statement without one.
+    pub fn likelihood(&self) -> Option<Likelihood> {
+        Some(match self.kind {
+            Kind::Barrels => Likelihood::Near {
+                value: self.value?,
+                error: (self.high? - self.low?)
+                    / (2.0 * barrelstack_fragility::normal_quantile(0.975)),
+            },
+            Kind::Most => Likelihood::AtLeast { value: self.value?, error: self.error? },
+            Kind::Few => Likelihood::AtMost { value: self.value?, error: self.error? },
+            Kind::Some => Likelihood::One { stacks: self.stacks? },
+            Kind::Along | Kind::Unusable => return None,
+        })
+    }
+}
