@@ -21,7 +21,7 @@ fn cells(csv: &str, separator: char) -> Vec<Vec<String>> {
         while let Some(letter) = letters.next() {
             match letter {
                 '"' if quoted && letters.next_if_eq(&'"').is_some() => {
-                    row.last_mut().unwrap().push('"')
+                    row.last_mut().unwrap().push('"');
                 }
                 '"' => quoted = !quoted,
                 _ if letter == separator && !quoted => row.push(String::new()),
@@ -40,7 +40,8 @@ fn compared(folder: &Path) -> String {
     let mut numbers = 0;
     for (name, sheet) in book.worksheets() {
         if name == "provenance" {
-            about = sheet.rows().map(|row| format!("{}: {}\n", row[0], row[1])).collect();
+            let rows: Vec<_> = sheet.rows().map(|row| format!("{}: {}", row[0], row[1])).collect();
+            about = rows.join("\n");
             continue;
         }
         let csv = read_to_string(folder.join(format!("{name}.csv"))).unwrap();
@@ -48,16 +49,15 @@ fn compared(folder: &Path) -> String {
         for (row, cells) in sheet.rows().zip(cells(&csv, ',')) {
             assert_eq!(row.len(), cells.len(), "{name}");
             for (found, expected) in row.iter().zip(&cells) {
-                match found {
-                    Data::Float(value) => {
-                        numbers += 1;
-                        assert_eq!(
-                            value.to_bits(),
-                            expected.parse::<f64>().unwrap().to_bits(),
-                            "{name}: {expected}"
-                        );
-                    }
-                    other => assert_eq!(other.to_string(), *expected, "{name}"),
+                if let Data::Float(value) = found {
+                    numbers += 1;
+                    assert_eq!(
+                        value.to_bits(),
+                        expected.parse::<f64>().unwrap().to_bits(),
+                        "{name}: {expected}"
+                    );
+                } else {
+                    assert_eq!(found.to_string(), *expected, "{name}");
                 }
             }
         }
