@@ -39,6 +39,8 @@ tasks:
              `history` (counts of work compared with the last release; `history keep` saves them)
   tests      only the tests of the workspace, on any system
   miri       runs the tests of unsafe code under Miri, with the nightly toolchain
+  semver     compares the interfaces of the crates with those of the last release, or of a given revision,
+             with cargo-semver-checks
   dist       makes or checks one part of a release under target/dist: all, binary [TARGET], chroot,
              wheel [TARGET], try PYTHON..., sdist, crates, deb, image, programs, checksums, lint, msrv; see RELEASING.md
   lines      counts lines of code and comments by crate, and lists the longest files
@@ -56,6 +58,8 @@ fn main() -> ExitCode {
         ["web"] => status(steps::web().map(done)),
         ["tests"] => status(steps::tests().map(done)),
         ["miri"] => status(steps::miri().map(done)),
+        ["semver"] => status(steps::semver(None).map(done)),
+        ["semver", revision] => status(steps::semver(Some(*revision)).map(done)),
         ["dist", rest @ ..] => status(dist::run(&steps::root(), rest).map(done)),
         ["lines"] => status(lines::list(&steps::root()).map(done)),
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {

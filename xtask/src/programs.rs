@@ -10,14 +10,20 @@ use crate::dist::folder;
 use crate::python::checked;
 use crate::steps::cargo;
 
-/// Folders of the crates whose READMEs contain a program, with the largest CPU time (s) of its build.
+/// Folders of the crates whose READMEs contain a program, whether it is built with the default features, and the largest
+/// CPU time (s) of its build.
 ///
 /// docs/install.md states what was measured.
-const PROGRAMS: [(&str, f64); 3] = [("dynamics", 60.0), ("motion", 60.0), ("stack", 60.0)];
+const PROGRAMS: [(&str, bool, f64); 4] = [
+    ("dynamics", true, 60.0),
+    ("motion", true, 60.0),
+    ("stack", false, 60.0),
+    ("stack", true, 90.0),
+];
 
 /// Builds the program of each README from nothing in the dev profile, as a new user does, prints the CPU time and runs it.
 pub(crate) fn measure(root: &Path) -> anyhow::Result<()> {
-    for (name, most) in PROGRAMS {
+    for (name, default, most) in PROGRAMS {
         let readme = fs::read_to_string(root.join("crates").join(name).join("README.md"))?;
         let program = readme.split("```rust\n").nth(1).and_then(|rest| rest.split("```").next());
         let program = program.with_context(|| format!("no program in the README of {name}"))?;
@@ -29,8 +35,8 @@ pub(crate) fn measure(root: &Path) -> anyhow::Result<()> {
         fs::write(here.join("src/main.rs"), program)?;
         let path = root.join("crates").join(name);
         let manifest = format!(
-            "[package]\nname = \"program\"\nedition = \"2024\"\n[dependencies]\nbarrelstack-{name} = {{ path = {:?} }}\n\
-             [workspace]\n",
+            "[package]\nname = \"program\"\nedition = \"2024\"\n[dependencies]\nbarrelstack-{name} = {{ path = {:?}, \
+             default-features = {default} }}\n[workspace]\n",
             path.display().to_string()
         );
         fs::write(here.join("Cargo.toml"), manifest)?;
@@ -42,7 +48,8 @@ pub(crate) fn measure(root: &Path) -> anyhow::Result<()> {
         checked(&mut build, "the build")?;
         let seconds = children()? - before;
         let lines = program.lines().count();
-        println!("barrelstack-{name}: {lines} lines, {seconds:.1} CPU seconds");
+        let features = if default { "" } else { " without its default features" };
+        println!("barrelstack-{name}{features}: {lines} lines, {seconds:.1} CPU seconds");
         ensure!(seconds <= most, "more than {most} CPU seconds");
         let binary = here.join("target/debug/program");
         checked(&mut Command::new(binary), "the program")?;

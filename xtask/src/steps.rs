@@ -120,18 +120,53 @@ pub(crate) fn tests() -> anyhow::Result<()> {
     if passed { Ok(()) } else { bail!("tests failed: {}", STEPS[3].remedy) }
 }
 
-/// Runs tests of unsafe code under Miri: the choice of a vector unit, in `crates/dynamics/src/lanes/mod.rs`.
+/// Compares the interfaces of the published crates with those of a git revision, by default the last release, and fails
+/// if the version number does not allow a difference.
+///
+/// The step is skipped, with a line that states why, without cargo-semver-checks or without a release.
+pub(crate) fn semver(revision: Option<&str>) -> anyhow::Result<()> {
+    const TOOL: &str = "semver-checks";
+    let there = Command::new(cargo()).args([TOOL, "--version"]).output();
+    if !there.is_ok_and(|output| output.status.success()) {
+        println!("skipped: no cargo-{TOOL}; run `cargo install --locked cargo-{TOOL}`");
+        return Ok(());
+    }
+    let last = ["describe", "--tags", "--abbrev=0", "--match", "v*"];
+    let last = Command::new("git").args(last).current_dir(root()).output()?;
+    let last = String::from_utf8_lossy(&last.stdout).trim().to_owned();
+    let baseline = revision.unwrap_or(&last);
+    if baseline.is_empty() {
+        println!(
+            "skipped: there is no release yet; name a revision, such as `cargo xtask semver HEAD~1`"
+        );
+        return Ok(());
+    }
+    let mut command = Command::new(cargo());
+    command.args([TOOL, "--workspace", "--baseline-rev", baseline]).current_dir(root());
+    if command.status().context("cannot start cargo")?.success() {
+        return Ok(());
+    }
+    bail!("the interfaces differ from those of {baseline}: raise the version, or undo the change")
+}
+
+/// Runs tests of unsafe code under Miri, on any machine for x86-64: the choice of a vector unit, in
+/// `crates/dynamics/src/lanes/mod.rs`, and the operations of AVX2.
 ///
 /// The other unsafe code calls the loader, Python and the browser, which Miri does not have.
 pub(crate) fn miri() -> anyhow::Result<()> {
     for arguments in MIRI {
         let mut command = Command::new("cargo");
-        command.args(["+nightly", "miri", "test"]).args(arguments).current_dir(root());
+        command
+            .args(["+nightly", "miri", "test", "--target", "x86_64-unknown-linux-gnu"])
+            .args(arguments)
+            .current_dir(root());
         // The toolchain of this program must not reach the other one.
         for name in ["CARGO", "RUSTC", "RUSTUP_TOOLCHAIN"] {
             command.env_remove(name);
         }
         command.env("MIRIFLAGS", "-Zmiri-disable-isolation");
+        // With AVX2, without which Miri would see none of the code of vector units.
+        command.env("RUSTFLAGS", "-C target-cpu=x86-64-v3");
         if !command.status().context("cannot start cargo")?.success() {
             bail!("Miri failed, or is missing: `rustup +nightly component add miri rust-src`");
         }

@@ -46,6 +46,7 @@ pub mod export;
 pub mod period;
 pub mod render;
 pub mod report;
+pub mod spreadsheet;
 pub mod stability;
 pub mod summary;
 pub mod variants;

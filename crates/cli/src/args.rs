@@ -116,6 +116,8 @@ pub(crate) struct RunArgs {
     /// Allow a folder that is not empty, and replace the files of an earlier run.
     #[arg(long, requires = "out")]
     pub(crate) overwrite: bool,
+    #[command(flatten)]
+    pub(crate) tables: crate::tables::TableArgs,
     /// Repeat the run with half the step, with finer nodes and with disturbances of a nanometer,
     /// and report until when the run is predictable and whether its outcome is robust.
     #[arg(long)]

@@ -14,6 +14,7 @@ mod progress;
 mod remedy;
 mod rows;
 mod store;
+mod tables;
 mod typed;
 
 use std::process::ExitCode;

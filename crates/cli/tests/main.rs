@@ -27,4 +27,5 @@ mod pictures;
 mod schemas;
 mod space;
 mod study;
+mod tables;
 mod words;

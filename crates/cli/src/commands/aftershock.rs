@@ -37,6 +37,8 @@ pub(crate) struct AftershockArgs {
     /// Allow a folder that is not empty, and replace the files of an earlier run.
     #[arg(long, requires = "out")]
     overwrite: bool,
+    #[command(flatten)]
+    tables: crate::tables::TableArgs,
     /// Print one JSON document, that of `run`, in place of text.
     #[arg(long)]
     json: bool,
@@ -87,6 +89,7 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
         variants: args.variants,
         out: args.out.clone(),
         overwrite: args.overwrite,
+        tables: args.tables,
         verify: false,
         no_remedy: true,
         pdf: false,
@@ -116,6 +119,7 @@ fn residual(
         );
     }
     let (cellar, _) = super::cellar::selected(cellar, args.variants)?;
+    args.tables.need(args.out.is_some())?;
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     let start = Instant::now();
     let progress = Progress::new(!args.quiet);
@@ -130,7 +134,7 @@ fn residual(
     let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
         let files = aftershocks::files(&summary).context("cannot write the summary")?;
-        Ok(folder.write_files(&files)?)
+        Ok(folder.write_files(&args.tables.of(files)?)?)
     });
     if args.json {
         printer::document(&summary)?;

@@ -101,6 +101,7 @@ pub(super) fn run(
     if let (Some(PartName(part)), Some(keep)) = (args.part, &args.keep) {
         return run_part(args, &cellar, part, keep);
     }
+    args.tables.need(args.out.is_some())?;
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if let Some(path) = &args.state {
         is_new(path, "--state")?;
@@ -118,7 +119,8 @@ pub(super) fn run(
     // The verdict is printed even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        folder.write_files(&answer.files().context("cannot write the summary")?)?;
+        let files = answer.files().context("cannot write the summary")?;
+        folder.write_files(&args.tables.of(files)?)?;
         if args.pdf {
             folder.write_pdf(&report::document(&answer), args.paper.into())?;
         }

@@ -62,6 +62,8 @@ pub(crate) struct CompareArgs {
     /// Allow a folder that is not empty, and replace the files of an earlier comparison.
     #[arg(long)]
     pub(super) overwrite: bool,
+    #[command(flatten)]
+    pub(super) tables: crate::tables::TableArgs,
     /// Print one JSON document in place of the sentences.
     #[arg(long)]
     pub(super) json: bool,
@@ -92,6 +94,11 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         (None, _) => super::layouts::compare(args, &requested, cellars),
         (Some(_), None) if args.usual => {
             bail!("--usual: these are changes of a room; leave it out, or give a cellar")
+        }
+        (Some(_), None) if args.tables.need(false).is_err() => {
+            bail!(
+                "--xlsx and --decimal-comma: only a comparison of cellars has tables; leave them out"
+            )
         }
         (Some(_), None) => stacks(args, &requested, scenarios),
     }

@@ -55,7 +55,8 @@ pub(super) fn compare(
     // The verdict is printed even if the files cannot be written.
     let written =
         folder.write_page(&comparison::document(&done, &found)).map_err(anyhow::Error::from);
-    let written = written.and_then(|()| Ok(folder.write_files(&comparison::files(&found)?)?));
+    let written = written
+        .and_then(|()| Ok(folder.write_files(&args.tables.of(comparison::files(&found)?)?)?));
     printed(args, &found, &folder)?;
     written?;
     Ok(super::status(found.layouts.iter().any(|one| one.counted == 0)))

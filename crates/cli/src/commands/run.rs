@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{anyhow, bail};
 use barrelstack::compare::Comparable as _;
-use barrelstack::export::{ExportError, Folder};
+use barrelstack::export::Folder;
 use barrelstack::scenario::Scene;
 use barrelstack::variants::RunChoice;
 use barrelstack::{RunFailure, Scenario};
@@ -36,6 +36,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         bail!("--state: only the run of a cellar is continued; leave it out for one stack");
     }
     let selection = selected(&mut scenario, args.variants)?;
+    args.tables.need(args.out.is_some())?;
     // The folder is checked before the computation starts.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() && args.with_engine.is_some() {
@@ -57,9 +58,9 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     crate::interrupt::finished();
     // The verdict is printed even if the files cannot be written.
-    let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
+    let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        folder.write_files(&answer.files()?)?;
+        folder.write_files(&args.tables.of(answer.files()?)?)?;
         if let Some(engine) = &engine {
             folder.write_with_engine(&answer.document(), answer.scenario(), engine)?;
         }

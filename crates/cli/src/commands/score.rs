@@ -25,6 +25,8 @@ pub(crate) struct ScoreArgs {
     #[arg(long, value_name = "DIR", default_value = "barrelstack-score")]
     out: PathBuf,
     #[command(flatten)]
+    tables: crate::tables::TableArgs,
+    #[command(flatten)]
     page: PageArgs,
 }
 
@@ -53,7 +55,10 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
         let found = league(&scenario, &protocol, &args.out, &options, &report).map_err(place)?;
         drop(progress);
         let csv = found.to_csv();
-        write(&args.out, &found.document, &[("league.csv", csv.as_bytes())])?;
+        let files = args.tables.of(vec![("league.csv".to_owned(), csv.into_bytes())])?;
+        let files: Vec<(&str, &[u8])> =
+            files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())).collect();
+        write(&args.out, &found.document, &files)?;
         let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
         lines.extend(table(&found));
         lines.extend(page::place(&args.out));

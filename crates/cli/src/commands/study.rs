@@ -24,6 +24,7 @@ pub(crate) use answer::StudyResult;
 use crate::interrupt::{Interrupt, Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
+use crate::tables::TableArgs;
 
 /// End of the help.
 const AFTER_HELP: &str = "\
@@ -38,6 +39,9 @@ one Parquet file per chunk in shards.";
 
 /// Exit status of `study collect` if chunks are missing.
 const UNFINISHED: u8 = 4;
+
+/// Files of which the tables for spreadsheet programs are made.
+const TABLES: [&str; 3] = ["table.csv", "columns.csv", "provenance.json"];
 
 /// Arguments of `study`.
 #[derive(Debug, clap::Args)]
@@ -76,6 +80,8 @@ struct RunArgs {
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
     lanes: LanesArgs,
+    #[command(flatten)]
+    tables: TableArgs,
     /// Print one JSON document in place of the summary.
     #[arg(long)]
     json: bool,
@@ -127,7 +133,12 @@ enum Action {
     Status(FolderArgs),
     /// Write table.csv, table.parquet and provenance.json from the finished shards; exit with
     /// status 4 if chunks are missing.
-    Collect(FolderArgs),
+    Collect {
+        #[command(flatten)]
+        of: FolderArgs,
+        #[command(flatten)]
+        tables: TableArgs,
+    },
     /// Write the page: fragility, losses, sensitivities and, with a hazard curve, annual rates.
     Report(report::ReportArgs),
     /// Export fragility and loss for OpenQuake and Pelicun.
@@ -156,7 +167,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Plan { which, json }) => plan(which, *json)?,
         Some(Action::RunChunk(args)) => return run_chunk(args),
         Some(Action::Status(args)) => status(args)?,
-        Some(Action::Collect(args)) => return collect(args),
+        Some(Action::Collect { of, tables }) => return collect(of, *tables),
         Some(Action::Report(args)) => report::report(args)?,
         Some(Action::Export(args)) => export::export(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
@@ -203,6 +214,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         ));
     }
     let (answer, made) = collected(out)?;
+    args.tables.write(out, &TABLES)?;
     let page = report::write_page(out)?;
     if args.json {
         printer::document(&StudyResult::of(&(&answer, &made)))?;
@@ -350,8 +362,9 @@ fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), Study
 
 /// Writes the table of the finished chunks, and fails if any are missing, so that later commands of
 /// a script do not take an incomplete table for a complete one.
-fn collect(args: &FolderArgs) -> anyhow::Result<ExitCode> {
+fn collect(args: &FolderArgs, tables: TableArgs) -> anyhow::Result<ExitCode> {
     let (answer, made) = collected(&args.folder)?;
+    tables.write(&args.folder, &TABLES)?;
     if args.json {
         printer::document(&StudyResult::of(&(&answer, &made)))?;
     } else {

@@ -213,7 +213,7 @@ impl<U: Unit> Not for BundleMask<U> {
 #[cfg(test)]
 mod tests {
     use crate::lanes::{Task, Width};
-    use crate::real::Real;
+    use crate::real::{Mask as _, Real};
 
     /// Bits of the minimum and the maximum of two numbers.
     struct Extremes(f64, f64);
@@ -234,6 +234,67 @@ mod tests {
             for (a, b) in numbers.into_iter().flat_map(|a| numbers.map(|b| (a, b))) {
                 let alone = Extremes(a, b).run::<f64>();
                 assert_eq!(width.run(Extremes(a, b)), Some(alone), "{a} and {b}, {}", width.name());
+            }
+        }
+    }
+
+    /// Bits of the results of all operations on pairs of numbers, one pair for each lane.
+    struct Operations([[f64; 2]; 8]);
+
+    impl Task for Operations {
+        type Output = Vec<[u64; 14]>;
+
+        fn run<R: Real>(self) -> Vec<[u64; 14]> {
+            R::scope(|| {
+                let [a, b] = [0, 1].map(|side| R::from_lanes(|lane| self.0[lane][side]));
+                let (less, at_most) = (a.lt(b), a.le(b));
+                let mut sum = a;
+                sum += b;
+                sum -= R::splat(0.5);
+                let numbers = [
+                    a + b,
+                    a - b,
+                    a * b,
+                    a / b,
+                    -a,
+                    a.abs(),
+                    a.abs().sqrt(),
+                    sum,
+                    R::select(less, a, b),
+                    a.with_lane(0, 3.0),
+                ];
+                let masks = [less, less | !at_most, less & at_most, at_most];
+                let of = |lane| {
+                    let mut bits = [0; 14];
+                    // The sign and the payload of NaN are not specified.
+                    let bits_of = |x: f64| if x.is_nan() { f64::NAN } else { x }.to_bits();
+                    let numbers = numbers.iter().map(|number| bits_of(number.lane(lane)));
+                    let masks = masks.iter().map(|mask| u64::from(mask.lane(lane)));
+                    bits.iter_mut().zip(numbers.chain(masks)).for_each(|(bit, found)| *bit = found);
+                    bits
+                };
+                (0..R::LANES).map(of).collect()
+            })
+        }
+    }
+
+    #[test]
+    fn every_operation_has_in_each_lane_the_bits_of_a_single_number() {
+        // Under Miri, which runs with the instructions of this unit, the test must not pass without it.
+        assert!(!cfg!(target_feature = "avx2") || Width::Avx2.is_here());
+        let numbers = [0.0, -0.0, 1.0, -2.5, 1e-310, 0.1, f64::INFINITY, f64::MAX];
+        for shift in 0..numbers.len() {
+            let pairs: [[f64; 2]; 8] = std::array::from_fn(|lane| {
+                [numbers[lane], numbers[(lane + shift) % numbers.len()]]
+            });
+            let mut alone: Vec<_> =
+                pairs.iter().map(|pair| Operations([*pair; 8]).run::<f64>()[0]).collect();
+            // The tenth result replaces the number of the first lane only.
+            for (result, pair) in alone.iter_mut().zip(&pairs).skip(1) {
+                result[9] = pair[0].to_bits();
+            }
+            for width in Width::ALL.into_iter().skip(1).filter(|width| width.is_here()) {
+                assert_eq!(width.run(Operations(pairs)), Some(alone.clone()), "{}", width.name());
             }
         }
     }

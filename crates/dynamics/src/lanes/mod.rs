@@ -2,7 +2,7 @@
 //!
 //! The results of a lane are bit-identical to those of a single run, and the source code is the same: laws, shapes,
 //! methods and the energy balance are generic over [`Real`], which the bundles of this module implement. The vector
-//! unit is detected at run time.
+//! unit is detected at run time, if the feature `vector-units` of this crate is on, as it is by default.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
 //! - [`Topology`]: properties that must be equal for cases that run in one bundle.
@@ -10,7 +10,7 @@
 //! - [`run_batch`]: the run loop of all lanes. When a case has ended, its lane gets the next case.
 
 mod batch;
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", feature = "vector-units"))]
 mod bundle;
 mod lanewise;
 mod topology;
@@ -95,7 +95,7 @@ impl Width {
 /// A token proves that the machine has a vector unit. Bundles need the token in every operation, so the token is a
 /// constant. Code that uses the token is accessible only through the functions of this module, which first check that
 /// the machine has the unit.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", feature = "vector-units"))]
 #[expect(unsafe_code, reason = "tokens as constants; every path to them checks the machine first")]
 pub(crate) mod units {
     use std::sync::LazyLock;
@@ -143,8 +143,8 @@ pub(crate) mod units {
     }
 }
 
-/// Fallback for other architectures: single numbers.
-#[cfg(not(target_arch = "x86_64"))]
+/// Fallback for other architectures, and without the feature `vector-units`: single numbers.
+#[cfg(not(all(target_arch = "x86_64", feature = "vector-units")))]
 pub(crate) mod units {
     use super::{Task, Width};
 

@@ -61,6 +61,7 @@ pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
         };
         return folder::run(&batch, &work)?.print_summary();
     }
+    args.folder.tables.need(false)?;
     let target = args.output.prepare()?;
     let read = args.input.read()?;
     let chosen = args.choice.take(&read, Chain::None)?;

@@ -46,7 +46,7 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
                 "the measures of a folder, or of an archive of several records, are written as a table: give a folder for the table with --out DIR"
             )
         }
-        None => {}
+        None => args.folder.tables.need(false)?,
     }
     let records = args.input.read_each()?;
     let records =

@@ -81,6 +81,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     if args.input.has_folder() {
         return folders(args);
     }
+    args.folder.tables.need(false)?;
     let files = files(args)?;
     for (_, path) in &files {
         let in_folder =

@@ -238,6 +238,7 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     if args.input.has_folder() {
         return folders(args);
     }
+    args.folder.tables.need(false)?;
     let target = args.output.prepare()?;
     page::vacant_figure(args.figure.as_deref(), args.output.overwrite)?;
     let read = args.input.read()?;

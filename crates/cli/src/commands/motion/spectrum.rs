@@ -18,7 +18,7 @@ use super::output::vacant;
 use super::process::share;
 use super::table::{Table, number, percent};
 use crate::printer;
-use crate::store::store;
+use crate::tables::write_one;
 
 /// Arguments of `spectrum`.
 #[derive(Debug, clap::Args)]
@@ -40,8 +40,8 @@ pub(super) struct SpectrumArgs {
         help = "Also compute RotD50 and RotD100, the median and the largest over all horizontal directions"
     )]
     rotd: bool,
-    /// Write the spectrum as .csv, in SI units.
-    #[arg(long, short, value_name = "FILE.csv")]
+    /// Write the spectrum as .csv or .xlsx, in SI units.
+    #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the file if it exists.
     #[arg(long, requires = "output")]
@@ -169,8 +169,10 @@ impl Spectra {
 /// Computes the spectra, prints them, and writes them if requested.
 pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
     if let Some(output) = &args.output {
-        if output.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("csv")) {
-            bail!("{}: spectra are written as .csv", output.display());
+        let is =
+            |of: &str| output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(of));
+        if !is("csv") && !is("xlsx") {
+            bail!("{}: spectra are written as .csv or .xlsx", output.display());
         }
         vacant(output, args.overwrite)?;
     }
@@ -194,7 +196,7 @@ pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
         }
     }
     if let Some(output) = &args.output {
-        store(output, text.as_bytes())?;
+        write_one(output, &text)?;
         lines.extend([String::new(), format!("written: {}", output.display())]);
     }
     printer::lines(lines)?;

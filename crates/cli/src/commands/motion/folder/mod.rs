@@ -23,6 +23,7 @@ use crate::interrupt::Interrupt;
 use crate::printer;
 use crate::progress::{Bar, Lines, Of, style};
 use crate::store::store;
+use crate::tables::TableArgs;
 use columns::{RecordData, cells};
 use journal::{Journal, JournalEntry};
 pub(super) use tree::Source;
@@ -34,6 +35,8 @@ const PERIODS: [f64; 20] = [
 ];
 /// Maximum number of refused files listed on the terminal; refused.csv lists all of them.
 const NAMED: usize = 5;
+/// Tables of a folder of records.
+const TABLES: [&str; 2] = ["records.csv", "refused.csv"];
 
 /// Options for folders.
 #[derive(Debug, clap::Args)]
@@ -46,6 +49,8 @@ pub(super) struct FolderArgs {
     /// unit.
     #[arg(long = "table-periods", value_name = "LIST", value_delimiter = ',')]
     periods: Vec<String>,
+    #[command(flatten)]
+    pub(super) tables: TableArgs,
     /// Show no progress.
     #[arg(long, short)]
     quiet: bool,
@@ -83,6 +88,8 @@ pub(super) struct Batch<'a> {
     /// Extension of the output file of each record; a record whose output file is missing is
     /// processed again.
     pub(super) ending: Option<String>,
+    /// Further forms of the tables.
+    pub(super) tables: TableArgs,
 }
 
 impl<'a> Batch<'a> {
@@ -93,7 +100,7 @@ impl<'a> Batch<'a> {
         folder: &'a FolderArgs,
         settings: String,
     ) -> Self {
-        Self { input, out, folder, settings, periods: None, ending: None }
+        Self { input, out, folder, settings, periods: None, ending: None, tables: folder.tables }
     }
 }
 
@@ -127,6 +134,7 @@ pub(super) struct Measurements {
     /// `true` if the batch was stopped before its end.
     stopped: bool,
     out: PathBuf,
+    tables: TableArgs,
 }
 
 /// Result of one record.
@@ -220,8 +228,8 @@ pub(super) fn run(
         }
     }
     let before = before.into_inner();
-    let out = batch.out.to_owned();
-    let found = Measurements { table, refused, before, stopped, out };
+    let (out, tables) = (batch.out.to_owned(), batch.tables);
+    let found = Measurements { table, refused, before, stopped, out, tables };
     found.write()?;
     Ok(found)
 }
@@ -235,7 +243,8 @@ impl Measurements {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{},{}", csv_field(file), csv_field(reason));
         }
-        store(&self.out.join("refused.csv"), text.as_bytes())
+        store(&self.out.join("refused.csv"), text.as_bytes())?;
+        self.tables.write(&self.out, &TABLES)
     }
 
     /// Prints a summary and returns the exit status, which is 130 if the batch was stopped.

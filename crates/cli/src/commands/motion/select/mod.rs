@@ -16,6 +16,7 @@ use clap::ValueEnum;
 use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
 use crate::printer;
+use crate::tables::TableArgs;
 use limits::{Limits, Range};
 
 /// End of the help.
@@ -115,7 +116,7 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let target = target::target(args)?;
     let periods = target.periods().to_vec();
     let batch = Batch::new(&args.input, &args.out, &args.folder, "select".to_owned());
-    let batch = Batch { periods: Some(periods.clone()), ..batch };
+    let batch = Batch { periods: Some(periods.clone()), tables: TableArgs::default(), ..batch };
     let found = folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?;
     let status = found.print_summary()?;
     if status != ExitCode::SUCCESS {

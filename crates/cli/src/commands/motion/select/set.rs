@@ -38,7 +38,9 @@ impl Set<'_> {
     /// Writes `selection.csv` and `study.toml`.
     pub(super) fn write(&self) -> anyhow::Result<()> {
         store(&self.args.out.join("selection.csv"), self.csv().as_bytes())?;
-        store(&self.args.out.join("study.toml"), self.study()?.as_bytes())
+        store(&self.args.out.join("study.toml"), self.study()?.as_bytes())?;
+        let tables = ["selection.csv", "records.csv", "refused.csv"];
+        self.args.folder.tables.write(&self.args.out, &tables)
     }
 
     fn csv(&self) -> String {

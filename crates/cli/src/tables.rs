@@ -1,0 +1,114 @@
+//! Tables for spreadsheet programs, beside the CSV files of a folder.
+
+use std::path::Path;
+
+use anyhow::{Context as _, bail};
+use barrelstack::spreadsheet;
+use barrelstack_input::system;
+
+use crate::store::{plain, store, store_all};
+
+/// Name of the workbook of a folder.
+const WORKBOOK: &str = "tables.xlsx";
+/// Maximum size (bytes) of a file of which a workbook is made.
+const LIMIT: usize = 4 << 30;
+
+/// Options of the commands that write tables into a folder.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub(crate) struct TableArgs {
+    /// Also write the tables as a workbook, tables.xlsx, into the folder of the results: a sheet for every CSV file, and one
+    /// for the provenance.
+    #[arg(long)]
+    pub(crate) xlsx: bool,
+    /// Write CSV files with decimal commas, and with semicolons between the columns, as spreadsheet programs of many
+    /// languages read them. This program reads only tables with decimal points.
+    #[arg(long)]
+    pub(crate) decimal_comma: bool,
+}
+
+impl TableArgs {
+    /// Returns an error if an option is given without a folder of results.
+    pub(crate) fn need(self, folder: bool) -> anyhow::Result<()> {
+        let given = [(self.xlsx, "--xlsx"), (self.decimal_comma, "--decimal-comma")];
+        match given.into_iter().find(|(given, _)| *given && !folder) {
+            Some((_, option)) => {
+                bail!("{option}: no tables are written; give a folder for them, or leave it out")
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the files of a folder, with the workbook and with CSV files in the requested notation.
+    pub(crate) fn of(
+        self,
+        mut files: Vec<(String, Vec<u8>)>,
+    ) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
+        let book = self.xlsx.then(|| workbook(&files)).transpose()?;
+        if self.decimal_comma {
+            for (_, bytes) in files.iter_mut().filter(|(name, _)| has_ending(name, "csv")) {
+                *bytes = spreadsheet::with_decimal_commas(&text(bytes)).into_bytes();
+            }
+        }
+        files.extend(book.map(|book| (WORKBOOK.to_owned(), book)));
+        Ok(files)
+    }
+
+    /// Writes the workbook of files that are in a folder, and rewrites its CSV files in the requested notation.
+    pub(crate) fn write(self, folder: &Path, names: &[&str]) -> anyhow::Result<()> {
+        if !self.xlsx && !self.decimal_comma {
+            return Ok(());
+        }
+        let read = |name: &&str| {
+            let path = folder.join(name);
+            let bytes = system::read_result(&path, LIMIT).map_err(anyhow::Error::msg);
+            Ok((
+                (*name).to_owned(),
+                bytes.with_context(|| format!("cannot read {}", path.display()))?,
+            ))
+        };
+        let files = self.of(names.iter().map(read).collect::<anyhow::Result<_>>()?)?;
+        store_all(folder, &files.iter().map(|(name, bytes)| (folder.join(name), bytes.as_slice())))
+    }
+}
+
+/// Writes one table, as a workbook if the path ends in `.xlsx`, and otherwise as CSV.
+pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
+    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xlsx")) {
+        return store(path, csv.as_bytes());
+    }
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let about = spreadsheet::provenance(&facts(), &[]);
+    let book = spreadsheet::workbook(&[(&name, csv), ("provenance", &about)]);
+    store(path, &book.map_err(plain).with_context(|| format!("cannot write {}", path.display()))?)
+}
+
+/// Returns the workbook of the CSV files among the files of a folder; their JSON documents state the provenance.
+fn workbook(files: &[(String, Vec<u8>)]) -> anyhow::Result<Vec<u8>> {
+    let of = |ending| files.iter().filter(move |(name, _)| has_ending(name, ending));
+    let documents: Vec<String> = of("json").map(|(_, bytes)| text(bytes)).collect();
+    let documents: Vec<&str> = documents.iter().map(String::as_str).collect();
+    let mut tables: Vec<(String, String)> = of("csv")
+        .map(|(name, bytes)| (name.trim_end_matches(".csv").to_owned(), text(bytes)))
+        .collect();
+    tables.push(("provenance".to_owned(), spreadsheet::provenance(&facts(), &documents)));
+    let tables: Vec<(&str, &str)> =
+        tables.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+    spreadsheet::workbook(&tables).map_err(plain).with_context(|| {
+        format!("cannot write {WORKBOOK}; leave out --xlsx, and use the other files")
+    })
+}
+
+/// Returns the program, its version and its commit.
+fn facts() -> Vec<(String, String)> {
+    let commit = env!("BARRELSTACK_COMMIT");
+    let of = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };
+    vec![("written by".to_owned(), format!("barrelstack {}{of}", env!("CARGO_PKG_VERSION")))]
+}
+
+fn has_ending(name: &str, ending: &str) -> bool {
+    Path::new(name).extension().is_some_and(|of| of == ending)
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
