@@ -124,6 +124,8 @@ fn binary(root: &Path, triple: &str) -> anyhow::Result<()> {
         "barrelstack",
         "--bin",
         "barrelstack",
+        "--features",
+        "xlsx",
     ]);
     build.args(["--target", triple, "--", "-C", "strip=symbols"]).current_dir(root);
     checked(&mut build, "the build of the command")?;

@@ -43,6 +43,10 @@ fn main() -> ExitCode {
             };
         }
     };
+    if let Some(wrong) = tables::refusal(std::env::args_os()) {
+        printer::error(&anyhow::Error::msg(wrong), json);
+        return ExitCode::from(2);
+    }
     barrelstack_input::system::guard_inputs();
     if let Err(wrong) = barrelstack::report::stamp_pages(env!("BARRELSTACK_COMMIT")) {
         printer::error(&anyhow::Error::msg(wrong), json);

@@ -6,10 +6,13 @@ use anyhow::{Context as _, bail};
 use barrelstack::spreadsheet;
 use barrelstack_input::system;
 
-use crate::store::{plain, store, store_all};
+use crate::store::{store, store_all};
 
 /// Name of the workbook of a folder.
 const WORKBOOK: &str = "tables.xlsx";
+/// Refusal of a build without workbooks.
+const WITHOUT: &str = "this build of the command writes no workbooks; install it with `cargo install barrelstack --features xlsx`, \
+                       or open the CSV files";
 /// Maximum size (bytes) of a file of which a workbook is made.
 const LIMIT: usize = 4 << 30;
 
@@ -71,6 +74,12 @@ impl TableArgs {
     }
 }
 
+/// Returns the refusal of `--xlsx` by a build that writes no workbooks, before any work is done.
+pub(crate) fn refusal(mut arguments: impl Iterator<Item = std::ffi::OsString>) -> Option<String> {
+    let refused = !cfg!(feature = "xlsx") && arguments.any(|argument| argument == "--xlsx");
+    refused.then(|| format!("--xlsx: {WITHOUT}"))
+}
+
 /// Writes one table, as a workbook if the path ends in `.xlsx`, and otherwise as CSV.
 pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xlsx")) {
@@ -78,8 +87,8 @@ pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let about = spreadsheet::provenance(&facts(), &[]);
-    let book = spreadsheet::workbook(&[(&name, csv), ("provenance", &about)]);
-    store(path, &book.map_err(plain).with_context(|| format!("cannot write {}", path.display()))?)
+    let book = book(&[(&name, csv), ("provenance", &about)]);
+    store(path, &book.with_context(|| format!("cannot write {}", path.display()))?)
 }
 
 /// Returns the workbook of the CSV files among the files of a folder; their JSON documents state the provenance.
@@ -93,9 +102,21 @@ fn workbook(files: &[(String, Vec<u8>)]) -> anyhow::Result<Vec<u8>> {
     tables.push(("provenance".to_owned(), spreadsheet::provenance(&facts(), &documents)));
     let tables: Vec<(&str, &str)> =
         tables.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
-    spreadsheet::workbook(&tables).map_err(plain).with_context(|| {
+    book(&tables).with_context(|| {
         format!("cannot write {WORKBOOK}; leave out --xlsx, and use the other files")
     })
+}
+
+/// Returns the bytes of a workbook.
+#[cfg(feature = "xlsx")]
+fn book(tables: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
+    Ok(spreadsheet::workbook(tables)?)
+}
+
+/// Refuses, since this build writes no workbooks.
+#[cfg(not(feature = "xlsx"))]
+fn book(_: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
+    bail!("{WITHOUT}")
 }
 
 /// Returns the program, its version and its commit.

@@ -29,3 +29,5 @@ mod space;
 mod study;
 mod tables;
 mod words;
+#[cfg(feature = "xlsx")]
+mod workbooks;

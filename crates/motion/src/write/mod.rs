@@ -1,5 +1,4 @@
-//! Writers of ground-motion files: PEER AT2, CSV, NumPy archives and this crate's own text format;
-//! and of zip archives.
+//! Writers of ground-motion files: PEER AT2, CSV, NumPy archives and this crate's own text format.
 //!
 //! Every writer takes a [`Record`]. The notes of the record are the provenance and are written into
 //! the header. Channels are written side by side, cut to the shortest. AT2 has no field for the
@@ -11,7 +10,6 @@ mod at2;
 mod csv;
 mod npz;
 mod text;
-mod zip;
 
 pub use at2::at2;
 pub(crate) use at2::{NO_EVENT, NO_STATION};
@@ -21,7 +19,6 @@ pub(crate) use npz::array_name;
 pub use npz::{archive, npz};
 pub(crate) use text::TITLE;
 pub use text::text;
-pub use zip::{Deflated, Entry, zip};
 
 use crate::error::MotionError;
 use crate::join::require_step;

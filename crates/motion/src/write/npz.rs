@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::io;
 
-use super::zip::{Entry, zip};
 use crate::error::MotionError;
 use crate::record::Record;
 use crate::sampled::integrate;
@@ -69,9 +68,67 @@ pub fn archive(arrays: &[(String, &[f64])]) -> io::Result<Vec<u8>> {
 }
 
 fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
-    let entry =
-        |(name, bytes): &(String, Vec<u8>)| Entry::stored(format!("{name}.npy"), bytes.clone());
-    zip(&arrays.iter().map(entry).collect::<Vec<_>>())
+    let refuse = |reason: String| Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    let (mut archive, mut directory) = (Vec::new(), Vec::new());
+    for (at, (name, bytes)) in arrays.iter().enumerate() {
+        if arrays[..at].iter().any(|(earlier, _)| earlier == name) {
+            return refuse(format!("two arrays are named {name}"));
+        }
+        let file = format!("{name}.npy");
+        let (Ok(start), Ok(size), Ok(length)) =
+            (u32::try_from(archive.len()), u32::try_from(bytes.len()), u16::try_from(file.len()))
+        else {
+            return refuse(format!(
+                "array {name} ends beyond 4 GB, or its name is longer than 64 kB"
+            ));
+        };
+        let entry = entry(crc32fast::hash(bytes), size, length);
+        archive.extend(b"PK\x03\x04");
+        archive.extend(entry);
+        archive.extend(file.as_bytes());
+        archive.extend(bytes);
+        directory.extend(b"PK\x01\x02");
+        directory.extend(VERSION.to_le_bytes());
+        directory.extend(entry);
+        // No comment, first disk, no attributes.
+        directory.extend([0; 10]);
+        directory.extend(start.to_le_bytes());
+        directory.extend(file.as_bytes());
+    }
+    let (Ok(count), Ok(start), Ok(size)) =
+        (u16::try_from(arrays.len()), u32::try_from(archive.len()), u32::try_from(directory.len()))
+    else {
+        return refuse(format!("{} arrays are too many or too large", arrays.len()));
+    };
+    archive.extend(directory);
+    archive.extend(b"PK\x05\x06");
+    // The archive has a single disk.
+    archive.extend([0; 4]);
+    archive.extend([count; 2].map(u16::to_le_bytes).concat());
+    archive.extend(size.to_le_bytes());
+    archive.extend(start.to_le_bytes());
+    archive.extend([0; 2]);
+    Ok(archive)
+}
+
+/// Version of the zip format required to read stored files (1.0; PKWARE, APPNOTE 4.4.3).
+const VERSION: u16 = 10;
+
+/// Returns the fields common to the header of a stored file and its directory entry (PKWARE,
+/// APPNOTE 4.3.7 and 4.3.12).
+fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
+    /// Fixed date, the first day of the format's calendar (1 January 1980), so that equal runs give
+    /// equal bytes.
+    const DATE: u16 = 0x21;
+    let mut entry = [0; 26];
+    entry[..2].copy_from_slice(&VERSION.to_le_bytes());
+    // No flags, no compression, time midnight.
+    entry[8..10].copy_from_slice(&DATE.to_le_bytes());
+    entry[10..14].copy_from_slice(&sum.to_le_bytes());
+    entry[14..18].copy_from_slice(&size.to_le_bytes());
+    entry[18..22].copy_from_slice(&size.to_le_bytes());
+    entry[22..24].copy_from_slice(&name_length.to_le_bytes());
+    entry
 }
 
 /// Encodes an array of numbers in NumPy's array format.
