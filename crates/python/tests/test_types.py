@@ -6,6 +6,7 @@ import importlib.util
 import inspect
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -100,6 +101,11 @@ def test_another_checker_knows_every_public_type(tmp_path: Path) -> None:
         words = [sys.executable, "-m", "pyright", str(path)]
         done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == status, done.stdout + done.stderr
+    examples = tmp_path / "examples"
+    shutil.copytree(PACKAGE / "examples", examples, ignore=shutil.ignore_patterns("__pycache__"))
+    words = [sys.executable, "-m", "pyright", str(examples)]
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_everything_public_is_documented() -> None:
