@@ -26,7 +26,8 @@ pub fn player(run: &Run, scene: Scene) -> Player {
     Player {
         id: "player".into(),
         caption: format!(
-            "The computed motion of the run, to scale, in a view that can be turned.{}",
+            "The computed motion of the run, to scale, in a view that can be turned. Arrows show contact forces, each on the \
+             body that it pushes up.{}",
             legend(&scene)
         ),
         scene: Arc::new(Scene { ground: ground_histories(run), ..scene }),
@@ -55,7 +56,8 @@ pub fn document(answer: &Answer) -> Document {
         id: "players".into(),
         caption: format!(
             "One run, in a view that can be turned, or in three flat views at the same time and scale. In the flat views, \
-             bodies are drawn in the order of their depth at rest.{}",
+             bodies are drawn in the order of their depth at rest. Arrows show contact forces, each on the body that it \
+             pushes up.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),

@@ -418,17 +418,12 @@ impl Study {
         let fields = || self.factors.iter().flat_map(|factor| &factor.fields);
         let varied = |path: &str| fields().any(|field| field == path);
         let stack = base.stack()?;
-        let mut said = "stacks".to_owned();
-        if !varied("stack.levels") {
-            said += &format!(" of {} levels", stack.levels);
-        }
-        if !varied("stack.rack.base") {
-            said += &format!(" on {} racks", stack.rack.base);
-        }
-        if !varied("stack.view") {
-            said += &format!(", shaken {}", Direction::of(base)?.words());
-        }
-        Some(said)
+        let levels = (!varied("stack.levels")).then(|| format!(" of {} levels", stack.levels));
+        let rack = (!varied("stack.rack.base")).then(|| format!(" on {} racks", stack.rack.base));
+        let direction = Direction::of(base).filter(|_| !varied("stack.view"));
+        let shaken = direction.map(|direction| format!(", shaken {}", direction.words()));
+        let said = [levels, rack, shaken].into_iter().flatten();
+        Some("stacks".to_owned() + &said.collect::<String>())
     }
 
     /// Returns the fingerprint of the study file, as text.
