@@ -17,7 +17,7 @@ import { PHONE, launch, missing, open } from "./lib/browser.mjs";
 import { addressed, fingers, inDepth, pace, presets, shows, switches, turns, without } from "./lib/deep.mjs";
 import { overlay, variants } from "./lib/ghosts.mjs";
 import { Goldens, looks } from "./lib/golden.mjs";
-import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
+import { cards, darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
 import { ofComparison, ofHeights, ofReproduction, ofRun, ofStudy } from "./lib/numbers.mjs";
 import { PAGES, make, reportOf } from "./lib/pages.mjs";
 import { links, loops, still } from "./lib/opening.mjs";
@@ -65,7 +65,7 @@ const twoAtATime = async (queue, use) => {
 const used = async ([name, { several, plain }]) => {
   const long = ["minute", "heap"].includes(name);
   const moved = name !== "disc";
-  const checks = plain ? [["has no finding of axe", accessible]] : [
+  const checks = plain ? [["has no finding of axe", accessible], ["is cut nowhere on a phone", cards], ["prints all its sections", paper]] : [
     ...(several ? [["all panes keep one time and one scale", together]] : [["shows the recording at ten random times", scrubbing]]),
     ["draws what it shows", drawing],
     ["heeds the keyboard, and every control has a name", keyboard],
@@ -80,6 +80,7 @@ const used = async ([name, { several, plain }]) => {
     ["has no finding of axe", accessible],
     ["is dark where that is asked for", darkness],
     ["has no sideways scroll on a phone", phone],
+    ["is cut nowhere on a phone", cards],
     ["prints all its sections", paper],
   ];
   let faults = [];
