@@ -81,7 +81,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   const scene = new three.Scene(), camera = new three.PerspectiveCamera();
   const moving = depth.bodies.map((_, body) => body).filter((body) => depth.bodies[body].role !== "ground");
   const ground = depth.bodies.findIndex(({ role }) => role === "ground");
-  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, placeOf };
+  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, placeOf, pushesAt };
   const place = {}, now = depth.bodies.map(() => new three.Matrix4());
   const unseen = new three.Matrix4().makeScale(0, 0, 0);
   const [matrix, quaternion, vector, one] = [new three.Matrix4(), new three.Quaternion(), new three.Vector3(), new three.Vector3(1, 1, 1)];
