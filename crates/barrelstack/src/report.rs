@@ -26,8 +26,9 @@ use crate::summary::Summary;
 use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 
 pub use glossary::WORDS;
+pub use inputs::{inputs, not_modeled};
 pub(crate) use inputs::{settings_table, shown};
-pub use sections::{player, standing_range, stress_figure};
+pub use sections::{balanced, player, standing_range, stress_figure};
 pub(crate) use sections::{standing_until, traces};
 pub use stamp::stamp_pages;
 pub use tables::{demand_table, device_table, interface_table};

@@ -16,6 +16,11 @@ fn the_fragility_of_known_capacities_is_found_and_the_curve_is_not_doubted() {
     assert!(curve.median.unwrap().holds(0.5));
     assert!(curve.returned.is_empty() && curve.monotony.p == 1.0);
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    // The number comes first, then the stack and the direction.
+    let headline = &found.document.verdict.headline;
+    let stacks =
+        ") half of the stacks of 4 levels on two-barrel racks, shaken along the barrels, collapse.";
+    assert!(headline.starts_with("At a PGV of ") && headline.ends_with(stacks), "{headline}");
     // The raw counts must be those of the table.
     let failures: u32 = curve.stripes.iter().map(|stripe| stripe.failures).sum();
     assert_eq!(failures as usize, found.cases.all.iter().filter(|case| case.collapsed).count());
@@ -55,6 +60,11 @@ fn a_stack_that_never_falls_gets_its_bound_and_no_curve() {
     let interval = found.curves[0].intervals[7];
     assert!(interval.low == 0.0 && (interval.high - 0.2425).abs() < 1e-3, "{interval:?}");
     assert!(html(&found.document).contains("No fragility curve is fitted"));
+    assert!(
+        found.document.verdict.headline.starts_with("0 of 96 cases of stacks of 4 levels on "),
+        "{}",
+        found.document.verdict.headline
+    );
 }
 
 #[test]

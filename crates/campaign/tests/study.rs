@@ -497,3 +497,20 @@ fn built_in_studies_are_read_and_their_chunks_hold_all_cases() {
         assert_eq!(cases as u64, study.cases(), "{name}");
     }
 }
+
+#[test]
+fn a_study_says_its_stacks_and_the_direction_without_what_a_factor_varies() {
+    let said = |name: &str| Study::built_in(name).unwrap().provenance().unwrap().stacks;
+    for (name, stacks) in [
+        ("napa-four-levels", "stacks of 4 levels on candia-2008 racks, shaken across the barrels"),
+        ("demo-racks", "stacks of 5 levels, shaken along the barrels"),
+        ("demo-space", "stacks of 5 levels on two-barrel racks, shaken in all directions"),
+    ] {
+        assert_eq!(said(name).as_deref(), Some(stacks), "{name}");
+    }
+    let turned = study(&format!(
+        "[[factor]]\nname = \"height\"\nfield = \"stack.levels\"\nvalues = [1, 2]\n{PULSE}[design]\nkind = \"full-factorial\"\n"
+    ));
+    let stacks = turned.provenance().unwrap().stacks;
+    assert_eq!(stacks.as_deref(), Some("stacks on two-barrel racks, shaken across the barrels"));
+}

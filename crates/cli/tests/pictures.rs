@@ -82,3 +82,34 @@ fn a_run_writes_its_report_on_paper_on_request() {
     let pdf = fs::read(out.join("report.pdf")).unwrap();
     assert!(pdf.windows(13).any(|text| text == b"[0 0 612 792]"), "letter paper");
 }
+
+/// Returns the number of pages of a PDF.
+fn sheets(pdf: &[u8]) -> usize {
+    let leaf =
+        |text: &&[u8]| text.starts_with(b"/Type /Page\n") || text.starts_with(b"/Type /Page/");
+    pdf.windows(12).filter(leaf).count()
+}
+
+#[test]
+fn a_report_on_paper_has_at_most_twelve_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, changes) in [
+        ("candia-8-barrels", &["--variants=8"][..]),
+        ("candia-8-barrels-longitudinal", &["--variants=8"]),
+        // Both planes, with the changes that were tried.
+        ("demo-napa", &["--variants=8"]),
+        ("demo-napa", &["--variants=0", "--set=stack.view=spatial", "--set=run.duration=10 s"]),
+        ("tumbling-block", &[]),
+    ] {
+        let out = folder.path().join(format!("{name}-{}", changes.len()));
+        let place = ["--quiet", "--pdf", "--out", out.to_str().unwrap()];
+        let output =
+            barrelstack(["run", name].into_iter().chain(changes.iter().copied()).chain(place));
+        assert_eq!(stderr(&output), "");
+        let pages = sheets(&fs::read(out.join("report.pdf")).unwrap());
+        assert!((2..=12).contains(&pages), "{name} {changes:?}: {pages} pages");
+        // What paper leaves out is on the page.
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        assert!(page.contains(" inputs, including defaults: on the HTML page of this report."));
+    }
+}

@@ -15,18 +15,25 @@ function unpack(packed) {
   const bytes = bytesOf(packed.d);
   const channels = [];
   let at = 0;
+  const integer = () => {
+    let bits = 0, weight = 1, byte;
+    do {
+      byte = bytes[at++];
+      bits += (byte & 0x7f) * weight;
+      weight *= 128;
+    } while (byte & 0x80);
+    return bits;
+  };
   for (let c = 0; c < packed.c; c++) {
     const values = new Float64Array(packed.n);
     let last = 0, step = 0;
     for (let k = 0; k < packed.n; k++) {
-      let bits = 0, weight = 1, byte;
-      do {
-        byte = bytes[at++];
-        bits += (byte & 0x7f) * weight;
-        weight *= 128;
-      } while (byte & 0x80);
+      let bits = integer();
       if (bits === 0) {
-        values[k] = NaN;
+        // A run of missing values.
+        const end = k + integer();
+        values.fill(NaN, k, end + 1);
+        k = end;
         continue;
       }
       bits -= 1;

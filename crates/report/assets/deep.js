@@ -81,7 +81,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   const scene = new three.Scene(), camera = new three.PerspectiveCamera();
   const moving = depth.bodies.map((_, body) => body).filter((body) => depth.bodies[body].role !== "ground");
   const ground = depth.bodies.findIndex(({ role }) => role === "ground");
-  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, placeOf };
+  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, placeOf, pushesAt };
   const place = {}, now = depth.bodies.map(() => new three.Matrix4());
   const unseen = new three.Matrix4().makeScale(0, 0, 0);
   const [matrix, quaternion, vector, one] = [new three.Matrix4(), new three.Quaternion(), new three.Vector3(), new three.Vector3(1, 1, 1)];
@@ -421,7 +421,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   function drawOver(pen) {
     const { context } = pen;
     if (flat.traces) drawPaths(pen);
-    const arrows = flat.forces && depth.plane ? drawPushes(pen) : [];
+    const arrows = flat.forces ? drawPushes(pen) : [];
     for (const { body } of currentEvents(depth, pen.time)) {
       if (body !== null && depth.bodies[body].role !== "ground") ring(pen, circle(body, pen.frame));
     }
@@ -481,15 +481,23 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     });
   }
 
+  // Returns the contact forces of a frame, each with its point (m) and its components (N).
+  function pushesAt(frame) {
+    if (depth.plane) return forcesAt(data, frame).map(({ x, z, fx, fz }) => ({ at: inPlane(x, z), force: inPlane(fx, fz) }));
+    const { at, force } = depth.forces ?? { at: [[]], force: [] };
+    const list = at[0].map((_, slot) => ({ at: at.map((axis) => axis[slot][frame]), force: force.map((axis) => axis[slot][frame]) }));
+    return list.filter((one) => isFinite([...one.at, ...one.force].reduce((sum, value) => sum + value)));
+  }
+
   function drawPushes({ context, frame }) {
     const perNewton = flat.strong > 0 ? (FORCE_SHARE * height * stage.perPixel()) / flat.strong : 0;
     context.strokeStyle = context.fillStyle = paint.s1;
     context.lineWidth = 2;
     context.lineCap = "butt";
-    const arrows = forcesAt(data, frame).map((force) => {
-      const [x, y] = project(inPlane(force.x, force.z));
-      const [tipX, tipY] = project(inPlane(force.x + force.fx * perNewton, force.z + force.fz * perNewton));
-      return { x, y, tipX, tipY, size: Math.hypot(force.fx, force.fz) };
+    const arrows = pushesAt(frame).map(({ at, force }) => {
+      const [x, y] = project(at);
+      const [tipX, tipY] = project(plus(at, force, perNewton));
+      return { x, y, tipX, tipY, size: Math.hypot(...force) };
     });
     for (const one of arrows) arrow(context, one.x, one.y, one.tipX, one.tipY);
     return arrows;

@@ -7,6 +7,7 @@ function readPane(raw, dashes) {
   const tint = raw.tint && { ...raw.tint, values: unpack(raw.tint.v) };
   const ghosts = raw.ghosts && { ...raw.ghosts, paths: unpack(raw.ghosts.paths), ends: unpack(raw.ghosts.ends) };
   const depth = raw.depth && { ...raw.depth, poses: raw.depth.poses && unpack(raw.depth.poses) };
+  if (depth?.forces) depth.forces = { at: depth.forces.at.map(unpack), force: depth.forces.force.map(unpack) };
   return { ...raw, dashes, depth, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
@@ -18,6 +19,12 @@ function makePlayer(raw, figure, dashes, earlier) {
   const ground = raw.ground.map((h) => ({ ...h, t: columnOf(h.t), v: columnOf(h.v) }));
   const boxes = [...figure.querySelectorAll(".screen .stage")];
   const panes = raw.panes.map((one, at) => makePane(readPane(one, dashes), boxes[at]));
+  // The flat panes of a run in space show its forces in their own axes.
+  const space = panes.find(({ data }) => data.depth?.forces)?.data.depth;
+  for (const [at, [right, up]] of (space?.axes ?? []).entries()) {
+    const { at: points, force } = space.forces;
+    if (panes[at]) panes[at].data.forces = { x: points[right], z: points[up], fx: force[right], fz: force[up] };
+  }
   // Arrows and colors have one scale each for all panes, computed when they are first shown.
   for (const [scale, most] of [["strong", strongForce], ["full", fullTint]]) {
     let common = null;

@@ -8,6 +8,12 @@ use crate::{
     player_data::events,
 };
 
+/// Quantum of the points of forces (m): two millimeters, which is too little to be visible.
+const POINT_QUANTUM: f64 = 1.0 / 512.0;
+
+/// Quantum of forces as a multiple of 2⁻¹⁶ of the largest component.
+const FORCE_STEPS: f64 = 64.0;
+
 /// A point or vector `[x, y, z]` (m): x across the barrels, y along them, z up; right-handed.
 pub type Point3 = [f64; 3];
 
@@ -132,6 +138,12 @@ pub struct Depth {
     /// With poses of its own: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
     /// center it follows.
     pub paths: Vec<usize>,
+    /// With poses of its own: for each frame, contact forces, each as its point (m) and its components (N). A force of
+    /// zero is not drawn. Forces pack best if a contact keeps its place in the list.
+    pub forces: Vec<Vec<[Point3; 2]>>,
+    /// For each pane of the player, the indices of the axes that point right and up in it; the panes show the forces in
+    /// these axes.
+    pub panes: Vec<[usize; 2]>,
 }
 
 impl Depth {
@@ -178,7 +190,34 @@ impl Depth {
             "plane": plane,
             "poses": poses,
             "paths": self.paths,
+            "forces": self.packed_forces(count),
+            "axes": self.panes,
         })
+    }
+
+    /// Packs forces as six lists of channels, one channel for each place in the longest list; missing forces are gaps.
+    fn packed_forces(&self, count: usize) -> Value {
+        let frames = &self.forces[..self.forces.len().min(count)];
+        let slots = frames.iter().map(Vec::len).max().unwrap_or(0);
+        if slots == 0 {
+            return Value::Null;
+        }
+        let pick = |kind: usize, axis: usize| -> Vec<Vec<f64>> {
+            let at = |frame: usize, slot: usize| {
+                let force = frames.get(frame).and_then(|list| list.get(slot));
+                force
+                    .filter(|[_, force]| *force != [0.0; 3])
+                    .map_or(f64::NAN, |force| force[kind][axis])
+            };
+            (0..slots).map(|slot| (0..count).map(|frame| at(frame, slot)).collect()).collect()
+        };
+        let all = frames.iter().flatten().flat_map(|[_, force]| force);
+        let peak = all.map(|value| value.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
+        let quantum = pack::quantum_for(&[0.0, peak]) * FORCE_STEPS;
+        let packed = |kind: usize, quantum: f64| {
+            [0, 1, 2].map(|axis| pack::channels(&pick(kind, axis), count, quantum))
+        };
+        json!({ "at": packed(0, POINT_QUANTUM), "force": packed(1, quantum) })
     }
 
     /// Packs poses as seven channels per body; the signs of the quaternions are chosen so that the

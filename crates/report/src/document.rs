@@ -137,6 +137,11 @@ impl Block {
         Self::Heading { level, text: text.into() }
     }
 
+    /// Creates content that is left out on paper.
+    pub fn on_screen(what: impl Into<String>, blocks: Vec<Self>) -> Self {
+        Self::OnScreen { what: what.into(), blocks }
+    }
+
     /// Creates a block that is collapsed under a summary line.
     pub fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::Details { summary: summary.into(), blocks }
@@ -145,6 +150,11 @@ impl Block {
 
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
+
+/// Returns the sentence that stands on paper in place of content of the page on screen.
+pub(crate) fn elsewhere(what: &str) -> String {
+    format!("{what}: on the HTML page of this report.")
+}
 
 /// One piece of content. All text is plain text, which is escaped and never interpreted as markup.
 #[expect(
@@ -178,6 +188,13 @@ pub enum Block {
         /// The line that stays visible.
         summary: String,
         /// The collapsed content.
+        blocks: Vec<Block>,
+    },
+    /// Content of the page on screen and of Markdown; paper states that it is there.
+    OnScreen {
+        /// What the content is, such as "Displacements".
+        what: String,
+        /// The content.
         blocks: Vec<Block>,
     },
 }

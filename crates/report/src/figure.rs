@@ -175,7 +175,8 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
         | Block::Paragraph(_)
         | Block::List(_)
         | Block::Table(_)
-        | Block::Details { .. } => {}
+        | Block::Details { .. }
+        | Block::OnScreen { .. } => {}
     });
     found
 }
@@ -204,7 +205,7 @@ pub fn attachments(document: &Document) -> Vec<Attachment> {
 pub(crate) fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
     for block in blocks {
         visit(block);
-        if let Block::Details { blocks, .. } = block {
+        if let Block::Details { blocks, .. } | Block::OnScreen { blocks, .. } = block {
             walk(blocks, visit);
         }
     }
@@ -244,7 +245,8 @@ impl Counter {
             Block::Heading { .. }
             | Block::Paragraph(_)
             | Block::List(_)
-            | Block::Details { .. } => {}
+            | Block::Details { .. }
+            | Block::OnScreen { .. } => {}
         });
     }
 }

@@ -103,8 +103,9 @@ impl Scene {
             ..tint.clone()
         });
         let mut depth = self.depth.clone();
-        if let Some(Depth { poses: DepthPoses::Free(poses), .. }) = &mut depth {
+        if let Some(Depth { poses: DepthPoses::Free(poses), forces, .. }) = &mut depth {
             *poses = kept.iter().filter_map(|at| poses.get(*at).cloned()).collect();
+            *forces = kept.iter().filter_map(|at| forces.get(*at).cloned()).collect();
         }
         Self { frames, tint, depth, ..self.clone() }
     }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
     Block, Document, Figure, FigureKind, Player, Strip, Table, Tone, Verdict,
-    document::FINE,
+    document::{FINE, elsewhere},
     drawing::Room,
     escape,
     figure::{Counter, Names},
@@ -101,6 +101,9 @@ fn anchor(names: &mut Names, text: &str) -> String {
 
 /// Length (bytes) above which a table cell gets a minimum width.
 const LONG: usize = 60;
+
+/// Largest number of columns of a table that stays a table on a narrow screen.
+const CARDS: usize = 2;
 
 pub(crate) struct Writer<'a> {
     pub(crate) document: &'a Document,
@@ -284,6 +287,12 @@ impl<'a> Writer<'a> {
                     self.folded -= 1;
                     self.put("</div>\n</details>\n");
                 }
+                Block::OnScreen { what, blocks } => {
+                    self.put("<div class=\"on-screen\">\n");
+                    self.blocks(blocks);
+                    self.put("</div>\n");
+                    self.element("<p class=\"on-paper\">", &elsewhere(what), "</p>");
+                }
             }
         }
     }
@@ -292,7 +301,9 @@ impl<'a> Writer<'a> {
         let count = self.counter.table();
         self.put("<div class=\"table\" tabindex=\"0\" role=\"region\"");
         let label = escape::html(&table.caption);
-        self.put(&format!(" aria-label=\"Table {count}. {label}\">\n<table>\n"));
+        let wide = table.columns.len() > CARDS;
+        let cards = if wide { " class=\"cards\"" } else { "" };
+        self.put(&format!(" aria-label=\"Table {count}. {label}\">\n<table{cards}>\n"));
         let number = format!("<caption><span><b>Table {count}.</b> ");
         self.explained(&number, &table.caption, "</span></caption>");
         let numeric = table.numeric();
@@ -321,8 +332,19 @@ impl<'a> Writer<'a> {
                     Some(crate::Cell::Text(text)) if text.len() > LONG => " class=\"long\"".into(),
                     _ => class(at).to_owned(),
                 };
-                let text = self.glossary.marked(&number::tied(&text));
-                self.put(&format!("<td{class}>{text}</td>"));
+                let mut text = self.glossary.marked(&number::tied(&text));
+                // Beside its name, a value is one element.
+                if wide && text.contains('<') {
+                    text = format!("<span>{text}</span>");
+                }
+                // A row becomes a card on a narrow screen, which names its values.
+                let column = table.columns[at].heading();
+                let name = if wide && !column.is_empty() {
+                    format!(" data-name=\"{}\"", escape::html(&column))
+                } else {
+                    String::new()
+                };
+                self.put(&format!("<td{class}{name}>{text}</td>"));
             }
             self.put("</tr>\n");
         }

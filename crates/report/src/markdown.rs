@@ -124,6 +124,7 @@ impl Writer {
                     self.line(&format!("**{}**\n", escape::markdown(summary)));
                     self.blocks(blocks, deeper + 1);
                 }
+                Block::OnScreen { blocks, .. } => self.blocks(blocks, deeper),
             }
         }
     }

@@ -3,8 +3,8 @@
 //!
 //! A value is rounded to a whole multiple of a quantum. The quantum is a power of two, so the
 //! product that the decoder computes is exact, and page and program agree to the bit.
-//! The stream contains one LEB128 integer per value: 0 for a missing value, otherwise 1 plus the
-//! zigzag code of the first or second difference from the previous values.
+//! The stream contains one LEB128 integer per value: 1 plus the zigzag code of the first or second difference from
+//! the previous values. A run of missing values is 0, followed by the number of values after the first one.
 
 use std::io::Write as _;
 
@@ -36,24 +36,31 @@ fn quantize(value: f64, quantum: f64) -> Option<i64> {
 /// Appends the packed form of a channel to `out`.
 fn pack_channel(values: impl Iterator<Item = Option<i64>>, order: u8, out: &mut Vec<u8>) {
     let (mut last, mut step) = (0_i64, 0_i64);
-    for value in values {
+    let mut values = values.peekable();
+    while let Some(value) = values.next() {
         let Some(value) = value else {
-            out.push(0);
+            let more = std::iter::from_fn(|| values.next_if(Option::is_none)).count();
+            pack_integer(0, out);
+            pack_integer(more as u64, out);
             continue;
         };
         let delta = value - last;
         let code = if order == 2 { delta - step } else { delta };
         (last, step) = (value, delta);
-        let mut bits = (code.wrapping_shl(1) ^ (code >> 63)).cast_unsigned() + 1;
-        loop {
-            let byte = u8::try_from(bits & 0x7f).unwrap_or(0);
-            bits >>= 7;
-            if bits == 0 {
-                out.push(byte);
-                break;
-            }
-            out.push(byte | 0x80);
+        pack_integer((code.wrapping_shl(1) ^ (code >> 63)).cast_unsigned() + 1, out);
+    }
+}
+
+/// Appends an integer as LEB128 to `out`.
+fn pack_integer(mut bits: u64, out: &mut Vec<u8>) {
+    loop {
+        let byte = u8::try_from(bits & 0x7f).unwrap_or(0);
+        bits >>= 7;
+        if bits == 0 {
+            out.push(byte);
+            break;
         }
+        out.push(byte | 0x80);
     }
 }
 
@@ -151,21 +158,26 @@ mod tests {
         let (count, channels) = (value["n"].as_u64().unwrap(), value["c"].as_u64().unwrap());
         let (quantum, order) = (value["q"].as_f64().unwrap(), value["o"].as_u64().unwrap());
         let mut at = 0;
+        let mut integer = || {
+            let (mut bits, mut shift) = (0_u64, 0);
+            loop {
+                let byte = bytes[at];
+                at += 1;
+                bits |= u64::from(byte & 0x7f) << shift;
+                shift += 7;
+                if byte & 0x80 == 0 {
+                    break bits;
+                }
+            }
+        };
         let mut out = Vec::new();
         for _ in 0..channels {
             let (mut last, mut step) = (0_i64, 0_i64);
+            let mut missing = 0;
             for _ in 0..count {
-                let (mut bits, mut shift) = (0_u64, 0);
-                loop {
-                    let byte = bytes[at];
-                    at += 1;
-                    bits |= u64::from(byte & 0x7f) << shift;
-                    shift += 7;
-                    if byte & 0x80 == 0 {
-                        break;
-                    }
-                }
+                let bits = if missing > 0 { 0 } else { integer() };
                 if bits == 0 {
+                    missing = if missing > 0 { missing - 1 } else { integer() };
                     out.push(f64::NAN);
                     continue;
                 }
@@ -245,5 +257,17 @@ mod tests {
         let times: Vec<f64> = (0..3600).map(|k| f64::from(k) / 60.0).collect();
         let packed = channels(std::slice::from_ref(&times), times.len(), TIME_QUANTUM);
         assert!(packed["d"].as_str().unwrap().len() < 3600 * 4 / 3 + 16);
+    }
+
+    #[test]
+    fn what_is_missing_for_long_costs_a_few_bytes() {
+        // A body that is drawn in three of a thousand frames.
+        let mut values = vec![f64::NAN; 1000];
+        values[500..503].fill(1.0);
+        let packed = channels(&[values.clone(), vec![f64::NAN; 1000]], 1000, POSE_QUANTUM);
+        assert!(packed["d"].as_str().unwrap().len() < 24, "{packed}");
+        let back = unpack(&packed);
+        assert!(back[..1000].iter().zip(&values).all(|(a, b)| a.total_cmp(b).is_eq()));
+        assert!(back[1000..].iter().all(|value| value.is_nan()));
     }
 }

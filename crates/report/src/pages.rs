@@ -5,8 +5,8 @@ use pdf_writer::types::StructRole;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Dots, EventKind, Figure, Panel, Player, Strip, Table, Tone,
-    document::FINE,
+    Block, Document, Dots, EventKind, Figure, FigureKind, Panel, Player, Strip, Table, Tone,
+    document::{FINE, elsewhere},
     drawing::{Anchor, Drawing, Item},
     escape,
     figure::{Counter, Names, pane_letter},
@@ -44,7 +44,8 @@ impl Paper {
 /// Figures are vector graphics and text is selectable. The PDF has an outline of sections, the
 /// title and page number in every footer, and tags for screen readers. A player at the start of the
 /// document is represented on the first page by a picture taken during the falls. Content that is
-/// collapsed on the HTML page is in an appendix.
+/// collapsed on the HTML page is in an appendix; a sentence takes the place of
+/// [`Block::OnScreen`].
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
     flow.verdict();
@@ -73,6 +74,8 @@ const POINTS_PER_PX: f64 = 0.75;
 const MARGIN: [f64; 3] = [54.0, 52.0, 60.0];
 /// Distance between baselines, as a multiple of the font size.
 const LEADING: f64 = 1.4;
+/// Largest height of a plot (points).
+const PLOT: f64 = 187.0;
 /// Distance between blocks (points).
 const GAP: f64 = 8.0;
 
@@ -331,6 +334,10 @@ impl<'a> Flow<'a> {
                     self.folded.push((summary, blocks, self.counter));
                     self.counter.skip(blocks);
                 }
+                Block::OnScreen { what, blocks } => {
+                    self.paragraph("page-small", &elsewhere(what));
+                    self.counter.skip(blocks);
+                }
             }
         }
     }
@@ -346,7 +353,7 @@ impl<'a> Flow<'a> {
             Block::Players(players) => players.paper_figures().first().map_or(0.0, figure),
             Block::Table(_) => 66.0,
             Block::Heading { .. } => 24.0 + self.least(rest),
-            Block::Details { .. } => 24.0,
+            Block::Details { .. } | Block::OnScreen { .. } => 24.0,
             // A paragraph before a figure introduces it, so they stay together.
             Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
                 40.0 + self.least(rest)
@@ -357,10 +364,11 @@ impl<'a> Flow<'a> {
     }
 
     /// Returns the drawing of a figure, its height on the page, and its scale, which is as large as
-    /// the page allows but at most 1.
+    /// the page and the largest height of a plot allow but at most 1.
     fn picture(&self, figure: &Figure, id: &str) -> (Drawing, f64, f64) {
         let drawing = figure.draw(id);
-        let most = self.floor() - MARGIN[1] - 60.0;
+        let page = self.floor() - MARGIN[1] - 60.0;
+        let most = if matches!(figure.kind, FigureKind::Plot(_)) { PLOT } else { page };
         let scale = POINTS_PER_PX
             .min(self.width() / drawing.width.max(1.0))
             .min(most / drawing.height.max(1.0));

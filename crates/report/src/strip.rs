@@ -199,7 +199,7 @@ impl Strip {
     }
 }
 
-/// Defines every body of a scene, with ids that start with `id`.
+/// Defines the bodies that have a pose in at least one of the frames `shown`, with ids that start with `id`.
 pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize]) -> Item {
     let define = |(at, body): (usize, &SceneBody)| {
         let outlines = body.outlines.iter().map(|line| {
@@ -213,7 +213,8 @@ pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize
         });
         Body { id: name(id, at), items: outlines.chain(hatch).chain(marks).collect() }
     };
-    Item::Defined(scene.bodies.iter().enumerate().map(define).collect())
+    let seen = |at: usize| shown.iter().any(|frame| scene.frames.pose(*frame, at).is_some());
+    Item::Defined(scene.bodies.iter().enumerate().filter(|(at, _)| seen(*at)).map(define).collect())
 }
 
 /// Returns the id of a body, which is unique within a page.

@@ -35,6 +35,8 @@ fn deep(poses: DepthPoses, frames: usize) -> Scene {
         events: flat.events.clone(),
         moment: Some(Moment { time: f64::NAN, body: 1, text: "never".into(), falls: true }),
         paths: vec![2, 3],
+        forces: Vec::new(),
+        panes: Vec::new(),
     });
     flat
 }
@@ -74,6 +76,40 @@ fn quaternions_keep_their_turn_and_their_sign_does_not_jump() {
                 .map(|c| (channels[c][frame] - channels[c][frame - 1]).abs())
                 .fold(0.0, f64::max);
             assert!(step < 0.06, "frame {frame}: a jump of {step}");
+        }
+    }
+}
+
+#[test]
+fn forces_in_space_read_back_at_their_place_and_a_place_without_force_is_a_gap() {
+    let count = 30;
+    let push = |frame: usize, slot: usize| -> [[f64; 3]; 2] {
+        let at = frame as f64;
+        let force =
+            if slot == 1 && frame < 10 { [0.0; 3] } else { [-20.0 * at, 30.0, 1000.0 + at] };
+        [[0.1 * at, slot as f64, -0.5], force]
+    };
+    let forces: Vec<Vec<_>> =
+        (0..count).map(|frame| (0..2).map(|slot| push(frame, slot)).collect()).collect();
+    let mut scene = deep(DepthPoses::Free(vec![vec![turning(0); 3]; count]), count);
+    let depth = scene.depth.as_mut().unwrap();
+    depth.forces.clone_from(&forces);
+    depth.panes = vec![[0, 2], [1, 2]];
+    let page = html(&document(vec![player(scene)]));
+    let depth = &payload(&page)["players"][0]["panes"][0]["depth"];
+    assert_eq!(depth["axes"], json!([[0, 2], [1, 2]]));
+    for axis in 0..3 {
+        let at = unpack(&depth["forces"]["at"][axis]);
+        let force = unpack(&depth["forces"]["force"][axis]);
+        for (frame, list) in forces.iter().enumerate() {
+            for (slot, [point, components]) in list.iter().enumerate() {
+                if *components == [0.0; 3] {
+                    assert!(at[slot][frame].is_nan() && force[slot][frame].is_nan());
+                } else {
+                    assert!((at[slot][frame] - point[axis]).abs() <= 0.5 / 512.0);
+                    assert!((force[slot][frame] - components[axis]).abs() <= 0.5);
+                }
+            }
         }
     }
 }

@@ -217,6 +217,19 @@ fn the_hatch_of_the_ground_covers_the_picture_and_not_the_county() {
 }
 
 #[test]
+fn a_strip_holds_only_the_bodies_that_it_shows() {
+    // A body in space has a drawing for each side from which it is seen; most are seen between the panels only.
+    let mut scene = scene(3, 60);
+    for (frame, poses) in scene.frames.poses.iter_mut().enumerate() {
+        if frame != 7 {
+            poses[2] = [f64::NAN; 3];
+        }
+    }
+    let hidden = figure(FigureKind::Strip(Strip::of_run(Arc::new(scene), 2))).to_svg();
+    assert!(hidden.contains("-b1\"") && !hidden.contains("-b2\""));
+}
+
+#[test]
 fn a_tie_is_drawn_between_its_bodies_until_it_tears() {
     let mut tied = scene(2, 60);
     let torn_at = tied.frames.times[30];

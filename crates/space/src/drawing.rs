@@ -66,16 +66,20 @@ impl Sight {
         }
     }
 
+    /// Returns the indices of the axes that point right and up on the page.
+    fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Across => [0, 2],
+            Self::Along => [1, 2],
+            Self::Above => [0, 1],
+        }
+    }
+
     /// Returns the axes of the page that point right and up. Together with the direction toward the viewer, they form a
     /// right-handed system.
     fn page(self) -> [Vec3; 2] {
-        let [x, y, z] =
-            [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
-        match self {
-            Self::Across => [x, z],
-            Self::Along => [y, z],
-            Self::Above => [x, y],
-        }
+        let all = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+        self.axes().map(|axis| all[axis])
     }
 }
 
@@ -86,7 +90,7 @@ pub(crate) const PLATE: f64 = 0.012;
 const RATE: f64 = 20.0;
 
 /// Number of steps of the view direction of a body per right angle.
-const STEPS: f64 = 10.0;
+const STEPS: f64 = 6.0;
 
 /// Number of steps of [`coarse_scene`].
 const COARSE_STEPS: f64 = 3.0;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{
-    WORDS, command, demand_table, device_table, interface_table, legend, record_fingerprints,
-    trust, unknowns,
+    WORDS, balanced, command, demand_table, device_table, inputs, interface_table, legend,
+    not_modeled, record_fingerprints, trust, unknowns,
 };
 use barrelstack::variants::words::dots_of;
 use barrelstack::variants::{Range, Remedy};
@@ -26,7 +26,8 @@ pub fn player(run: &Run, scene: Scene) -> Player {
     Player {
         id: "player".into(),
         caption: format!(
-            "The computed motion of the run, to scale, in a view that can be turned.{}",
+            "The computed motion of the run, to scale, in a view that can be turned. Arrows show contact forces, each on the \
+             body that it pushes up.{}",
             legend(&scene)
         ),
         scene: Arc::new(Scene { ground: ground_histories(run), ..scene }),
@@ -55,7 +56,8 @@ pub fn document(answer: &Answer) -> Document {
         id: "players".into(),
         caption: format!(
             "One run, in a view that can be turned, or in three flat views at the same time and scale. In the flat views, \
-             bodies are drawn in the order of their depth at rest.{}",
+             bodies are drawn in the order of their depth at rest. Arrows show contact forces, each on the body that it \
+             pushes up.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),
@@ -116,6 +118,18 @@ pub fn document(answer: &Answer) -> Document {
             }
         }
     }
+    blocks.push(heading("For the engineer"));
+    let mut engineering = Vec::new();
+    if let Some(balance) = &summary.energy {
+        engineering.push(Block::heading(3, "Energy balance"));
+        engineering.push(Block::Paragraph(balanced(balance)));
+    }
+    engineering.push(Block::heading(3, "Inputs"));
+    engineering.extend(inputs(&answer.scenario));
+    if !free {
+        engineering.extend([Block::heading(3, "What is not modeled"), not_modeled(true)]);
+    }
+    blocks.push(Block::details("Energies, inputs and limits", engineering));
     Document {
         title: summary.title.clone(),
         verdict: Verdict {

@@ -33,7 +33,7 @@ pub struct Standing {
     pub settled: Option<Settled>,
 }
 
-/// Poses and twists of all bodies in the frames of a run.
+/// Poses and twists of all bodies, and the contact forces, in the frames of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     /// Times (s).
@@ -43,6 +43,9 @@ pub struct Frames {
     pub poses: Vec<Vec<[f64; 7]>>,
     /// For every frame and body, the velocity of the center of mass (m/s) and the spin (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
+    /// For every frame, each pair of surfaces that touch: the index of the pair in the model, the center of pressure (m),
+    /// and the contact force (N) on the body that it pushes up.
+    pub forces: Vec<Vec<(usize, [f64; 6])>>,
 }
 
 /// Result of a run.
@@ -176,9 +179,10 @@ pub(crate) fn affordable(
 ) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
-    // A frame has 13 numbers of every body: position, quaternion, velocity and spin.
+    // A frame has 13 numbers of every body: position, quaternion, velocity and spin. It has the forces of about four pairs of
+    // surfaces for every body, each with seven numbers.
     let frames = end_time * scenario.record.frame_rate + 1.0;
-    check_kept((frames, stack.parts.len(), 13), (0.0, 0))?;
+    check_kept((frames, stack.parts.len(), 13 + 28), (0.0, 0))?;
     Ok(end_time)
 }
 

@@ -8,9 +8,10 @@ use barrelstack::run::{Ended, Progress, Verdict, Work, method, thresholds};
 use barrelstack::scenario::Scenario;
 use barrelstack::step::restitution_warning;
 use barrelstack::watch::{ElementFates, Ending, ForceBetween, PROGRESS, after_collapse, leans_on};
+use barrelstack_dynamics::forces::{PairForce, centers_of_pressure};
 use barrelstack_dynamics::{
-    Applied, ApplyError, BodyId, EnergySummary, Pose, RunError, Scratch, Settled, Spatial, State,
-    Stepper, Twist,
+    Applied, ApplyError, BodyId, EnergySummary, Model, Pose, RunError, Scratch, Settled, Spatial,
+    State, Stepper, Twist, Vec3,
 };
 
 use crate::fate::Fates;
@@ -107,7 +108,7 @@ impl Simulation {
             ending: None,
         };
         let stepper = Stepper::start(&stack.model, &ground, &mut state, &mut scratch, &settings);
-        watch.observe(&state, &scratch);
+        watch.observe(&stack.model, &state, &scratch);
         watch.end(&state);
         let scenario = scenario.clone();
         let fixed = Arc::new(Fixed { scenario, ground, stack, settled, settings, before });
@@ -167,7 +168,7 @@ impl Simulation {
         let Self { fixed, state, scratch, stepper, watch, failure } = self;
         match stepper.step(&fixed.stack.model, &fixed.ground, state, scratch) {
             Ok(()) => {
-                watch.observe(state, scratch);
+                watch.observe(&fixed.stack.model, state, scratch);
                 true
             }
             Err(error) => {
@@ -314,7 +315,12 @@ impl Simulation {
 
 impl Watch {
     /// Observes the initial state or an accepted step.
-    fn observe(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
+    fn observe(
+        &mut self,
+        model: &Model<Spatial>,
+        state: &State<Spatial>,
+        scratch: &Scratch<Spatial>,
+    ) {
         // The state in which the first loss of seat is found still counts as standing.
         let standing = self.fates.collapse().is_none();
         self.fates.observe(state, scratch);
@@ -332,6 +338,14 @@ impl Watch {
                 [v.x, v.y, v.z, w.x, w.y, w.z]
             };
             self.frames.twists.push(state.twists.iter().map(twist).collect());
+            let push = |(pair, center): (PairForce<Spatial>, Vec3)| {
+                // Each force is that on the body that it pushes up.
+                let force = if pair.force.z < 0.0 { -pair.force } else { pair.force };
+                let numbers = [center.x, center.y, center.z, force.x, force.y, force.z];
+                (pair.pair, numbers)
+            };
+            let pushes = centers_of_pressure(model, state, scratch).into_iter().map(push);
+            self.frames.forces.push(pushes.collect());
         }
     }
 

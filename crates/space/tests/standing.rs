@@ -179,3 +179,36 @@ fn what_is_not_known_in_space_is_refused_with_its_field() {
     let error = demo(&[]).run().unwrap_err();
     assert_eq!(error.fields(), ["stack.view"], "{error}");
 }
+
+#[test]
+fn the_forces_of_a_frame_carry_the_stack_below_its_center_of_mass() {
+    let run = run::run(&demo(&["stack.levels=3", "run.duration=0.2 s"])).unwrap();
+    let model = &run.stack.model;
+    let others = (0..model.bodies().len()).filter(|body| *body != Stack::GROUND);
+    let (mut weight, mut middle) = (0.0, [0.0; 2]);
+    for body in others {
+        let own = model.bodies()[body].mass * 9.80665;
+        let [x, y, ..] = run.frames.poses[0][body];
+        weight += own;
+        middle = [middle[0] + own * x, middle[1] + own * y];
+    }
+    let grounded = |pair: usize| {
+        let pair = model.pair(pair);
+        pair.contactor == Stack::GROUND || pair.target == Stack::GROUND
+    };
+    let (mut borne, mut center) = (0.0, [0.0; 2]);
+    for &(pair, [x, y, z, _, _, up]) in &run.frames.forces[0] {
+        assert!(up > 0.0, "pair {pair} pushes down");
+        if grounded(pair) {
+            assert!(z.abs() < 0.01, "the floor presses at a height of {z} m");
+            borne += up;
+            center = [center[0] + up * x, center[1] + up * y];
+        }
+    }
+    assert!((borne / weight - 1.0).abs() < 1e-4, "{borne} of {weight} N");
+    for axis in 0..2 {
+        let off = (center[axis] - middle[axis]) / weight;
+        assert!(off.abs() < 1e-3, "the forces act {off} m beside the weight");
+    }
+    assert_eq!(run.frames.forces.len(), run.frames.times.len());
+}

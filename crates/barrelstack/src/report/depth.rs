@@ -36,6 +36,8 @@ pub(super) fn depth(
         events: events.to_vec(),
         moment: moment.cloned(),
         paths: Vec::new(),
+        forces: Vec::new(),
+        panes: Vec::new(),
     })
 }
 

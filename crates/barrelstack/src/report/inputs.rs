@@ -2,7 +2,6 @@
 
 use barrelstack_report::{Block, Cell, Table, significant};
 
-use crate::run::Run;
 use crate::scenario::{Scenario, Setting, Source, catalog};
 
 /// Formats a given input as it was written, followed by its value in SI units if the two differ.
@@ -69,10 +68,10 @@ pub(crate) fn readable(value: &str) -> String {
 /// Significant digits of a printed input; the scenario file beside the report has all digits.
 const DIGITS: usize = 6;
 
-/// Tabulates the inputs that the user gave and, in a collapsed section, all inputs.
-pub(super) fn inputs(run: &Run) -> Vec<Block> {
-    let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
-    let mut settings = run.stated.settings();
+/// Tabulates the inputs that differ from their defaults, with the sources of the dimensions; on screen also all inputs.
+pub fn inputs(stated: &Scenario) -> Vec<Block> {
+    let absent = stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
+    let mut settings = stated.settings();
     settings.retain(|setting| {
         let inside = setting.path.strip_prefix("stack.").and_then(|path| path.split('.').next());
         setting.source == Source::Given || inside.is_none_or(|table| !absent.contains(&table))
@@ -82,7 +81,7 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         settings.iter().filter(|one| one.source == Source::Given),
         &[
             ("input", "", &|one| Cell::text(&one.path)),
-            ("value", "", &|one| Cell::text(given(&run.stated, one))),
+            ("value", "", &|one| Cell::text(given(stated, one))),
             ("meaning", "", &|one| Cell::text(one.help)),
         ],
     );
@@ -94,17 +93,31 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         ))
     });
     let mut blocks = vec![Block::Table(chosen)];
-    blocks.extend(dimensions(run));
-    blocks.push(Block::details(
-        format!("All {} inputs, including defaults", all.rows.len()),
-        [Block::Table(all)].into_iter().chain(left_out).collect(),
-    ));
+    blocks.extend(dimensions(stated));
+    let title = format!("All {} inputs, including defaults", all.rows.len());
+    let list = [Block::Table(all)].into_iter().chain(left_out).collect();
+    blocks.push(Block::on_screen(title.clone(), vec![Block::details(title, list)]));
     blocks
 }
 
+/// Lists what the model of a stack leaves out, in a plane or in space.
+pub fn not_modeled(in_space: bool) -> Block {
+    let plane = "The third dimension: the stack is judged in one vertical plane at a time, across the barrels or along them.";
+    let always = [
+        "Deformation of wood and steel: bodies are rigid, staves do not split, tubes do not bend and welds do not break; only \
+         ties and straps yield and tear.",
+        "Waves of the wine beyond the first, and splashing.",
+        "Soil and building: the ground motion acts at the floor.",
+        "Wear, creep, temperature and air.",
+        "Breakage of a barrel that lands.",
+    ];
+    let said = (!in_space).then_some(plane).into_iter().chain(always);
+    Block::List(said.map(str::to_owned).collect())
+}
+
 /// Returns the sources of the dimensions that the catalog provides.
-fn dimensions(run: &Run) -> Option<Block> {
-    let stack = run.scenario.stack()?;
+fn dimensions(scenario: &Scenario) -> Option<Block> {
+    let stack = scenario.stack()?;
     let barrel = catalog::barrel(stack.barrel.base);
     let rack = catalog::rack(stack.rack.base);
     let mut sources = Vec::new();

@@ -7,15 +7,16 @@ use barrelstack_report::{
     SeriesStyle, Strip, Table, Trace, capital, significant,
 };
 
+use super::inputs::{inputs, not_modeled};
 use super::tables::{demand_table, device_table, interface_table};
 use super::trust::trust;
 use super::unknowns::unknowns;
-use super::{drawing, inputs, planes, spectrum};
+use super::{drawing, planes, spectrum};
 use crate::assemble::PartKind;
 use crate::ensemble::RATE;
 use crate::run::Run;
 use crate::scenario::View;
-use crate::summary::Summary;
+use crate::summary::{EnergyBalance, Summary};
 use crate::variants::{Range, Shown, Spread, Variants};
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
@@ -47,15 +48,21 @@ pub(super) fn all(
 fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>) -> Vec<Block> {
     const PARTS: &str = "odies, demands, stresses, forces, motion, energies";
     let Some(other) = other else {
-        let blocks = engineering(own).into_iter().chain(inputs(own.0)).collect();
-        return vec![Block::details(format!("B{PARTS} and inputs"), blocks)];
+        let blocks = engineering(own).into_iter().chain(given(own.0)).collect();
+        return vec![Block::details(format!("B{PARTS}, inputs and limits"), blocks)];
     };
     let of = |plane: (&Run, &Summary, Option<&Variants>), mark: &str| {
         let view = plane.0.assembly.view.map_or("", View::words);
         let mut blocks = engineering(plane);
         for block in &mut blocks {
-            if let Block::Figure(figure) = block {
-                figure.id += mark;
+            let inner = match block {
+                Block::OnScreen { blocks, .. } => blocks.as_mut_slice(),
+                other => std::slice::from_mut(other),
+            };
+            for block in inner {
+                if let Block::Figure(figure) = block {
+                    figure.id += mark;
+                }
             }
         }
         Block::details(format!("{}: b{PARTS}", capital(view)), blocks)
@@ -64,7 +71,7 @@ fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>
     vec![
         of(own, ""),
         of((&other.run, &other.summary, other.variants.as_ref()), &mark),
-        Block::details("Inputs", inputs(own.0)),
+        Block::details("Inputs and limits", given(own.0)),
     ]
 }
 
@@ -85,12 +92,12 @@ pub(super) fn stage(
 fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) -> Vec<Block> {
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "Outcome of every body", vec![Block::Table(fates(summary))]);
-    section(&mut blocks, 3, "Displacements", displacements(run, variants));
+    on_screen(&mut blocks, "Displacements", displacements(run, variants));
     let table = demand_table(&summary.demands, &summary.demands_whole_run);
     let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     section(&mut blocks, 3, "Demands", shown);
-    section(&mut blocks, 3, "Normal stress on barrels and racks", stresses(run));
-    section(&mut blocks, 3, "Forces between bodies", forces(run, summary));
+    on_screen(&mut blocks, "Normal stress on barrels and racks", stresses(run));
+    on_screen(&mut blocks, "Forces between bodies", forces(run, summary));
     for one in &summary.devices.0 {
         section(&mut blocks, 3, &capital(one.words.many), device_table(one));
     }
@@ -99,9 +106,12 @@ fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) ->
     blocks
 }
 
-fn inputs(run: &Run) -> Vec<Block> {
+fn given(run: &Run) -> Vec<Block> {
     let mut blocks = Vec::new();
-    section(&mut blocks, 3, "Inputs", inputs::inputs(run));
+    section(&mut blocks, 3, "Inputs", inputs(&run.stated));
+    if run.assembly.levels > 0 {
+        section(&mut blocks, 3, "What is not modeled", vec![not_modeled(false)]);
+    }
     blocks
 }
 
@@ -109,6 +119,15 @@ fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>)
     if !content.is_empty() {
         blocks.push(Block::heading(level, title));
         blocks.extend(content);
+    }
+}
+
+/// Appends a section of level 3 that is left out on paper.
+fn on_screen(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
+    let mut own = Vec::new();
+    section(&mut own, 3, title, content);
+    if !own.is_empty() {
+        blocks.push(Block::on_screen(title, own));
     }
 }
 
@@ -380,6 +399,16 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
+/// Describes how well the energy balance of a run holds.
+pub fn balanced(balance: &EnergyBalance) -> String {
+    format!(
+        "The energy supplied by the ground and by gravity equals the energy stored and dissipated, except for a residual of {} \
+         times the {} kJ supplied.",
+        significant(balance.residual_ratio, 2),
+        significant(1e-3 * balance.input, 3)
+    )
+}
+
 /// Plots the energies that change during a run, and the sum of the stored and dissipated energies,
 /// which must equal the work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
@@ -415,11 +444,7 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let all: Vec<&str> = parts.iter().flat_map(|(_, names, _)| names.iter().copied()).collect();
     series.push(line("sum of all of these", &all, color(10)));
     vec![
-        Block::Paragraph(format!(
-            "The energy supplied by the ground and by gravity equals the energy stored and dissipated, except for a residual of {} times the {} kJ supplied.",
-            significant(balance.residual_ratio, 2),
-            significant(1e-3 * balance.input, 3)
-        )),
+        Block::Paragraph(balanced(balance)),
         history(
             run,
             "energy",

@@ -53,8 +53,8 @@ pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
     let mut blocks = Vec::new();
     blocks.extend(spectrum(motion, rocking.as_ref()).map(Block::Figure));
     if let Some(rocking) = rocking {
-        blocks.push(Block::Paragraph(words(&rocking)));
-        blocks.push(Block::Figure(periods(&rocking)));
+        let rocking = vec![Block::Paragraph(words(&rocking)), Block::Figure(periods(&rocking))];
+        blocks.push(Block::on_screen("Rocking periods", rocking));
     }
     blocks
 }

@@ -151,6 +151,8 @@ impl JudgedCase {
 pub struct Cases {
     /// Title of the study.
     pub title: String,
+    /// The stacks in words, without what a factor varies; `None` for free scenes.
+    pub stacks: Option<String>,
     /// Names of the motions, to which [`JudgedCase::record`] refers.
     pub records: Vec<String>,
     /// Names of the modes of collapse, in the order of first occurrence.
@@ -241,6 +243,7 @@ impl Reading {
         };
         let cases = Cases {
             title: made.title.clone(),
+            stacks: made.stacks.clone(),
             records: Vec::new(),
             modes: Vec::new(),
             measures,

@@ -107,37 +107,41 @@ fn collapse(decision: &Decision) -> String {
     let curve = &decision.curves[0];
     let measure = cases.measure();
     let collapsed = cases.all.iter().filter(|case| case.collapsed).count();
+    let stacks = cases.stacks.as_ref().map_or_else(
+        || "stacks".to_owned(),
+        |stacks| {
+            // A verb follows, as in "stacks of 4 levels, shaken along the barrels, collapse".
+            if stacks.contains(',') { format!("{stacks},") } else { stacks.clone() }
+        },
+    );
+    let of = cases.stacks.as_ref().map_or_else(String::new, |_| format!(" of {stacks}"));
+    let counted = format!("{collapsed} of {} cases{of} collapse", cases.all.len());
     if curve.violates_order() {
         return format!(
-            "{collapsed} of {} cases collapse, and collapse does not become steadily likelier with {}: use the raw fractions.",
-            cases.all.len(),
+            "{counted}, and collapse does not become steadily likelier with {}: use the raw fractions.",
             measure.label
         );
     }
     let rests_on = format!("{} cases, {} motions", cases.all.len(), cases.records.len());
     match (&curve.fit, &curve.median) {
-        (Ok(fit), Some(interval)) => format!(
-            "Half of the stacks collapse at a {} of {} ({} with 95 % confidence; {rests_on}).",
-            measure.label,
-            measure.words(fit.curve.median),
-            measure.range(*interval)
-        ),
-        (Ok(fit), None) => format!(
-            "Half of the stacks collapse at a {} of {} ({rests_on}, which determine no interval).",
-            measure.label,
-            measure.words(fit.curve.median)
-        ),
+        (Ok(fit), median) => {
+            let known = median.map_or_else(
+                || format!("{rests_on}, which determine no interval"),
+                |median| format!("{} with 95 % confidence; {rests_on}", measure.range(median)),
+            );
+            format!(
+                "At a {} of {} ({known}) half of the {stacks} collapse.",
+                measure.label,
+                measure.words(fit.curve.median)
+            )
+        }
         // The share of samples estimates that of the sampled population; a share over chosen levels has no meaning.
         (Err(_), _) if cases.sampled => {
             let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
             let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);
-            format!(
-                "{collapsed} of {} cases collapse: {} with 95 % confidence.",
-                cases.all.len(),
-                range(share, percent)
-            )
+            format!("{counted}: {} with 95 % confidence.", range(share, percent))
         }
-        (Err(_), _) => format!("{collapsed} of {} cases collapse.", cases.all.len()),
+        (Err(_), _) => format!("{counted}."),
     }
 }
 

@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 
 use barrelstack_report::described;
 
-use crate::scenario::fnv1a;
+use crate::direction::Direction;
+use crate::scenario::{Scenario, fnv1a};
 use crate::system;
 
 use super::claim::Claim;
@@ -57,6 +58,9 @@ described! {
         pub version: String,
         /// Title of the study.
         pub title: String,
+        /// The stacks in words, such as "stacks of 4 levels on two-barrel racks, shaken along the barrels", without what a
+        /// factor varies; null for free scenes.
+        pub stacks: Option<String>,
         /// Fingerprint of the study file, the scenarios that it extends, the bytes of its records, and the
         /// version of the program.
         pub study_hash: String,
@@ -385,6 +389,7 @@ impl Study {
             program: "barrelstack".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             title: self.title.clone(),
+            stacks: self.stacks(&base),
             study_hash: self.fingerprint(),
             text_hash: self.text_hash(),
             seed: self.seed,
@@ -405,6 +410,20 @@ impl Study {
             cases: 0,
             complete: false,
         })
+    }
+
+    /// Describes the stacks of the study by the levels, the rack and the direction of shaking of `base`, each unless a
+    /// factor varies it; `None` for a free scene.
+    fn stacks(&self, base: &Scenario) -> Option<String> {
+        let fields = || self.factors.iter().flat_map(|factor| &factor.fields);
+        let varied = |path: &str| fields().any(|field| field == path);
+        let stack = base.stack()?;
+        let levels = (!varied("stack.levels")).then(|| format!(" of {} levels", stack.levels));
+        let rack = (!varied("stack.rack.base")).then(|| format!(" on {} racks", stack.rack.base));
+        let direction = Direction::of(base).filter(|_| !varied("stack.view"));
+        let shaken = direction.map(|direction| format!(", shaken {}", direction.words()));
+        let said = [levels, rack, shaken].into_iter().flatten();
+        Some("stacks".to_owned() + &said.collect::<String>())
     }
 
     /// Returns the fingerprint of the study file, as text.

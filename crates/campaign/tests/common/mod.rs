@@ -54,6 +54,7 @@ pub(crate) fn made(
         program: "barrelstack".into(),
         version: "0".into(),
         title: "made by hand".into(),
+        stacks: Some("stacks of 4 levels on two-barrel racks, shaken along the barrels".into()),
         text_hash: String::new(),
         study_hash: "0".into(),
         seed: 7,

@@ -481,12 +481,47 @@ pub fn contact_force<S: Space>(
     scratch: &Scratch<S>,
     contact: &Contact<S>,
 ) -> (S::Vector, S::Vector) {
-    let pair = &model.pair(contact.pair);
-    let placed = &model.bounded(pair.target).surfaces[pair.surface];
-    let target = scratch.rotations[pair.target];
     let rotation = frame_of(model, scratch, contact);
-    let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
     let force =
         contact.normal * contact.normal_force - S::along(contact.friction_force, contact.normal);
-    (S::rotate(rotation, force), origin + S::rotate(rotation, contact.point))
+    (S::rotate(rotation, force), placed_point(model, state, scratch, contact.pair, contact.point))
+}
+
+/// Returns a point (m) in the inertial frame, given in the frame of the target's surface of a pair.
+fn placed_point<S: Space>(
+    model: &Model<S>,
+    state: &State<S>,
+    scratch: &Scratch<S>,
+    pair: usize,
+    point: S::Vector,
+) -> S::Vector {
+    let pair = model.pair(pair);
+    let placed = &model.bounded(pair.target).surfaces[pair.surface];
+    let target = scratch.rotations[pair.target];
+    let rotation = S::compose(target, placed.rotation);
+    state.poses[pair.target].position
+        + S::rotate(target, placed.offset)
+        + S::rotate(rotation, point)
+}
+
+/// Returns every pair that touches, with its center of pressure (m) in the inertial frame; in a single run.
+pub fn centers_of_pressure<S: Space<Real = f64>>(
+    model: &Model<S>,
+    state: &State<S>,
+    scratch: &Scratch<S>,
+) -> Vec<(PairForce<S>, S::Vector)> {
+    let center = |elements: &[Pressed<S>]| {
+        let pair = elements[0].pair;
+        let force = scratch.pair_forces.iter().find(|force| force.pair == pair)?;
+        let mut weight = 0.0;
+        let mut center = S::Vector::default();
+        for element in elements {
+            weight += element.normal_force;
+            if weight > 0.0 {
+                center = center + (element.point - center) * (element.normal_force / weight);
+            }
+        }
+        Some((*force, placed_point(model, state, scratch, pair, center)))
+    };
+    scratch.pressed.chunk_by(|a, b| a.pair == b.pair).filter_map(center).collect()
 }

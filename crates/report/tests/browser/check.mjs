@@ -14,11 +14,13 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { accessible, spoiled } from "./lib/access.mjs";
 import { PHONE, launch, missing, open } from "./lib/browser.mjs";
-import { addressed, fingers, inDepth, pace, presets, shows, switches, turns, without } from "./lib/deep.mjs";
+import { addressed, arrows, fingers, inDepth, pace, presets, shows, switches, turns, without } from "./lib/deep.mjs";
 import { overlay, variants } from "./lib/ghosts.mjs";
 import { Goldens, looks } from "./lib/golden.mjs";
-import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
-import { ofComparison, ofHeights, ofReproduction, ofRun, ofStudy } from "./lib/numbers.mjs";
+import { cards, darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
+import {
+  ofAftershocks, ofCellar, ofComparison, ofHeights, ofLayouts, ofMotion, ofProtection, ofReproduction, ofRun, ofScore, ofStudy,
+} from "./lib/numbers.mjs";
 import { PAGES, make, reportOf } from "./lib/pages.mjs";
 import { links, loops, still } from "./lib/opening.mjs";
 import { cameras, drawing, frameRate, keyboard, scrubbing, together } from "./lib/player.mjs";
@@ -65,7 +67,7 @@ const twoAtATime = async (queue, use) => {
 const used = async ([name, { several, plain }]) => {
   const long = ["minute", "heap"].includes(name);
   const moved = name !== "disc";
-  const checks = plain ? [["has no finding of axe", accessible]] : [
+  const checks = plain ? [["has no finding of axe", accessible], ["is cut nowhere on a phone", cards], ["prints all its sections", paper]] : [
     ...(several ? [["all panes keep one time and one scale", together]] : [["shows the recording at ten random times", scrubbing]]),
     ["draws what it shows", drawing],
     ["heeds the keyboard, and every control has a name", keyboard],
@@ -80,6 +82,7 @@ const used = async ([name, { several, plain }]) => {
     ["has no finding of axe", accessible],
     ["is dark where that is asked for", darkness],
     ["has no sideways scroll on a phone", phone],
+    ["is cut nowhere on a phone", cards],
     ["prints all its sections", paper],
   ];
   let faults = [];
@@ -100,6 +103,7 @@ for (const name of ["demo", "eight", "along", "levels", "space"]) {
     "shows wood where barrels are, in three dimensions": shows,
     "turns and zooms by pointer, wheel and keys": turns,
     "has the silhouettes of the flat picture": name === "space" ? null : presets,
+    "shows contact forces as arrows": arrows,
     "leads to the flat picture and back": switches,
     "states its pace in three dimensions": pace,
     "has no finding of axe in three dimensions": accessible,
@@ -131,6 +135,12 @@ for (const [name, file, compared] of [
   ["levels", "levels.json", ofComparison],
   ["heights", "heights/heights.json", ofHeights],
   ["study", "study/decision.json", ofStudy],
+  ["protect", "protect/protect.json", ofProtection],
+  ["score", "score/rockscore.json", ofScore],
+  ["motion", "motion.json", ofMotion],
+  ["cellar", "cellar/cellar.json", ofCellar],
+  ["layouts", "layouts/comparison.json", ofLayouts],
+  ["aftershock", "aftershock/aftershocks.json", ofAftershocks],
   ["reproduce", null, ofReproduction],
 ]) {
   await checkOn(file ? "states the numbers of its JSON" : "its headline counts the rows of its table", name, (page) =>
@@ -147,6 +157,20 @@ await checkOn("wrong numbers are detected", "demo", async (page) => {
   demand(await spoil(({ bodies }) => { bodies.at(-2).peak_slip += 0.01; }), "another slip is not detected");
   demand(await spoil(({ remedy }) => { remedy.tried[0].failed += 1; }), "another count of a change is not detected");
 });
+for (const [name, file, compared, change] of [
+  ["protect", "protect/protect.json", ofProtection, ({ protections }) => { protections[0].motions += 1; }],
+  ["score", "score/rockscore.json", ofScore, ({ states }) => { states[0].collapsed[3] += 0.02; }],
+  ["motion", "motion.json", ofMotion, ({ records }) => { records[0].channels[0].measures.pgv.value *= 1.001; }],
+  ["cellar", "cellar/cellar.json", ofCellar, ({ stacks }) => { stacks[0].falls.share -= 0.02; }],
+  ["layouts", "layouts/comparison.json", ofLayouts, ({ layouts }) => { layouts[1].barrels_fallen.mean += 1; }],
+  ["aftershock", "aftershock/aftershocks.json", ofAftershocks, ({ inspection }) => { inspection.at(-1).falls[0].share += 0.02; }],
+]) {
+  await checkOn("a wrong number is detected", name, async (page) => {
+    const document = JSON.parse(readFileSync(join(pages, file)));
+    change(document);
+    demand(await compared(page, document).then(() => false, () => true), "it is not");
+  });
+}
 await suite.check("axe finds what is wrong with a spoiled page", () => on("eight", {}, spoiled));
 // Pictures.
 await goldens.tools();

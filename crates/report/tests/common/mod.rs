@@ -112,25 +112,29 @@ pub(crate) fn unpack(packed: &Value) -> Vec<Vec<f64>> {
     let whole = |key: &str| usize::try_from(packed[key].as_u64().unwrap()).unwrap();
     let (quantum, second) = (packed["q"].as_f64().unwrap(), whole("o") == 2);
     let mut at = 0;
+    let mut integer = || {
+        let (mut bits, mut weight) = (0.0_f64, 1.0);
+        loop {
+            let byte = bytes[at];
+            at += 1;
+            bits += f64::from(byte & 0x7f) * weight;
+            weight *= 128.0;
+            if byte & 0x80 == 0 {
+                break bits;
+            }
+        }
+    };
     let channels = (0..whole("c"))
         .map(|_| {
-            let (mut last, mut step) = (0.0_f64, 0.0_f64);
+            let (mut last, mut step, mut missing) = (0.0_f64, 0.0_f64, 0.0);
             (0..whole("n"))
                 .map(|_| {
-                    let (mut bits, mut weight) = (0.0_f64, 1.0);
-                    loop {
-                        let byte = bytes[at];
-                        at += 1;
-                        bits += f64::from(byte & 0x7f) * weight;
-                        weight *= 128.0;
-                        if byte & 0x80 == 0 {
-                            break;
-                        }
-                    }
+                    let bits = if missing > 0.0 { 0.0 } else { integer() };
                     if bits == 0.0 {
+                        missing = if missing > 0.0 { missing - 1.0 } else { integer() };
                         return f64::NAN;
                     }
-                    bits -= 1.0;
+                    let bits = bits - 1.0;
                     let code = if bits % 2.0 == 0.0 { bits / 2.0 } else { -(bits + 1.0) / 2.0 };
                     step = if second { step + code } else { code };
                     last += step;

@@ -36,6 +36,8 @@ pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
         events: all,
         moment: moment(run, &own),
         paths: top(run).collect(),
+        forces: forces(run, frames),
+        panes: Sight::ALL.map(Sight::axes).to_vec(),
     }
 }
 
@@ -61,7 +63,35 @@ pub(super) fn of_bodies<'a>(
         events,
         moment,
         paths: Vec::new(),
+        forces: Vec::new(),
+        panes: Vec::new(),
     }
+}
+
+/// Returns the contact forces in some frames, each as its point and its components. A pair keeps its place in the list
+/// while it touches; a place without a pair has a force of zero.
+fn forces(run: &Run, frames: &[usize]) -> Vec<Vec<[Point3; 2]>> {
+    let mut places: Vec<Option<usize>> = Vec::new();
+    let list = |frame: &usize| {
+        let touching = &run.frames.forces[*frame];
+        for place in &mut places {
+            *place = place.filter(|pair| touching.iter().any(|(touches, _)| touches == pair));
+        }
+        let mut list = vec![[[0.0; 3]; 2]; places.len()];
+        for &(pair, [x, y, z, fx, fy, fz]) in touching {
+            let known = places.iter().position(|place| *place == Some(pair));
+            let free = || places.iter().position(Option::is_none);
+            let place = known.or_else(free).unwrap_or(places.len());
+            if place == places.len() {
+                places.push(None);
+                list.push([[0.0; 3]; 2]);
+            }
+            places[place] = Some(pair);
+            list[place] = [[x, y, z], [fx, fy, fz]];
+        }
+        list
+    };
+    frames.iter().map(list).collect()
 }
 
 fn point(of: Vec3) -> Point3 {

@@ -198,6 +198,38 @@ export async function presets(page) {
   return `${found.count} barrels, typically ${(100 * found.typical).toFixed(0)} % off`;
 }
 
+/** Arrows of forces appear where the switch asks for them, and the pointer shows their values. */
+export async function arrows(page) {
+  const box = page.locator('.player [data-act="forces"]').first();
+  demand(await box.isVisible(), "there is no switch of forces");
+  await page.evaluate(() => window.barrelstack.player.seek(0));
+  const bare = (await facts(page)).picture;
+  await box.check();
+  demand((await facts(page)).picture !== bare, "the switch draws no arrow");
+  const found = await page.evaluate(() => {
+    const { player } = window.barrelstack, faults = [];
+    let asked = 0;
+    for (const share of [0, 0.3, 1]) {
+      player.seek(share * player.times().at(-1));
+      for (const { stage, deep, frame } of player.panes.filter((one) => one.deep)) {
+        for (const { at, force } of deep.pushesAt(frame())) {
+          if (Math.hypot(...force) < 500) continue;
+          stage.hover = deep.project(at).slice(0, 2);
+          deep.draw(frame(), player.time());
+          asked += 1;
+          if (!/^[\d.]+\u00a0k?N$/.test(stage.valued?.text ?? "")) faults.push(`over an arrow of ${Math.hypot(...force)} N it says ${stage.valued?.text}`);
+        }
+        stage.hover = null;
+      }
+    }
+    return { asked, faults };
+  });
+  await box.uncheck();
+  demand(found.faults.length === 0, found.faults.slice(0, 5).join("\n"));
+  demand(found.asked >= 10, `only ${found.asked} arrows could be asked`);
+  return `${found.asked} arrows`;
+}
+
 /** The switch and its key lead to the flat picture and back, to the same address of time and play. */
 export async function switches(page) {
   const state = () => page.evaluate(() => ({

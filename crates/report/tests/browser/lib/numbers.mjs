@@ -51,6 +51,7 @@ async function contents(page) {
     const text = (element) => element.textContent.replaceAll("\u00a0", " ");
     return {
       headline: text(document.querySelector("h1")),
+      rest: text(document.querySelector(".account .rest") ?? document.createElement("p")),
       heads: [...document.querySelectorAll(".screen .pane-head")].map(text),
       tables: [...document.querySelectorAll("table")].map((table) => ({
         caption: text(table.caption),
@@ -188,8 +189,9 @@ export async function ofHeights(page, { heights }) {
 /** The page of a study. */
 export async function ofStudy(page, decision) {
   const shown = await contents(page), reading = new Reading();
-  demand(shown.headline === decision.headline, `the headlines are "${shown.headline}" and "${decision.headline}"`);
-  const [table] = tablesOf(shown, "Raw counts of collapse"), { raw } = decision.fragility[0];
+  isHeadline(shown, decision);
+  const [table] = tablesOf(shown, "Raw counts of collapse"), { raw, median, median_interval: interval } = decision.fragility[0];
+  reading.are("median in the headline", shown.headline, [median, ...interval].map((value) => 100 * value));
   demand(table.rows.length === raw.length, "the page has other levels than the JSON");
   raw.forEach(({ intensity, cases, failures, interval }, at) => {
     const [level, count, failed, share, wilson] = table.rows[at];
@@ -199,6 +201,153 @@ export async function ofStudy(page, decision) {
     reading.are(`failures at ${level}`, failed, [failures]);
     reading.are(`share at ${level}`, share, percents([failures / cases]));
     reading.are(`interval at ${level}`, wilson, percents(interval));
+  });
+  return reading.close();
+}
+
+/** Finds the rows of a table by the text of their first cells, and the cells of a row by the beginnings of their heads. */
+function cellsOf({ head, rows }, name) {
+  const row = rows.find(([first]) => first.replace(/^✓\s*/, "") === name);
+  demand(row, `no row is called ${name}`);
+  return (begin, nth = 0) => {
+    const columns = head.flatMap((text, at) => (text.startsWith(begin) ? [at] : []));
+    demand(columns.length > nth, `no column begins with "${begin}"`);
+    return row[columns[nth]];
+  };
+}
+
+/** A long headline goes on below the picture. */
+function isHeadline({ headline, rest }, document) {
+  const whole = document.headline === headline || document.headline === `${headline} ${rest}`;
+  demand(whole, `the headlines are "${headline} ${rest}" and "${document.headline}"`);
+}
+
+/** The page of a ranking of protections. */
+export async function ofProtection(page, document) {
+  const shown = await contents(page), reading = new Reading();
+  isHeadline(shown, document);
+  const [table] = tablesOf(shown, "The stack as it is and all");
+  demand(table.rows.length === document.protections.length, "the page has other protections than the JSON");
+  for (const { name, cost, collapse, barrels_fallen: fallen, barrels_saved: saved, motions } of document.protections) {
+    const cell = cellsOf(table, name), ends = ({ mean, low, high }) => [mean, low, high];
+    reading.are(`cost of ${name}`, cell("cost"), cost[0] === cost[1] ? [cost[0]] : cost);
+    reading.are(`collapse with ${name}`, cell("collapse"), percents(ends(collapse)));
+    reading.are(`barrels fallen with ${name}`, cell("barrels fallen"), ends(fallen));
+    reading.are(`barrels saved by ${name}`, cell("fewer fall"), saved === null ? [null] : ends(saved));
+    reading.are(`motions of ${name}`, cell("motions"), [motions]);
+  }
+  return reading.close();
+}
+
+/** The sheet of a score. */
+export async function ofScore(page, { score, velocities, states }) {
+  const shown = await contents(page), reading = new Reading();
+  reading.are("headline", shown.headline, [score]);
+  const [table] = tablesOf(shown, "Velocity at which");
+  demand(table.rows.length === states.length, "the sheet has other states than the JSON");
+  const first = table.head.findIndex((head) => head.startsWith("at "));
+  states.forEach(({ state, direction, velocity, interval, found, collapsed }, at) => {
+    const row = table.rows[at];
+    demand(row[0] === state && row[1] === PLACES[direction], `row ${at} is that of "${row[0]}", ${row[1]}`);
+    if (found === "curve") reading.are(`${state}, ${row[1]}`, row[2], [velocity, ...(interval ?? [])].map((v) => 100 * v));
+    collapsed.forEach((share, level) => {
+      reading.are("level", table.head[first + level], [100 * velocities[level]]);
+      reading.are(`${state}, ${row[1]}, ${table.head[first + level]}`, row[first + level], percents([share]));
+    });
+  });
+  return reading.close();
+}
+
+/** The page of a record before and after processing, and the document of the record as written. */
+export async function ofMotion(page, { records: [{ channels: [{ measures, duration }] }] }) {
+  const shown = await contents(page), reading = new Reading();
+  const [table] = tablesOf(shown, "Measures of the motion");
+  const after = (name, value) => {
+    const row = table.rows.find(([first]) => first === name);
+    demand(row, `no row is called ${name}`);
+    reading.are(name, row.at(-1), [value]);
+  };
+  after("length", duration);
+  for (const [name, key, unit] of [
+    ["PGA", "pga", 1 / GRAVITY], ["PGV", "pgv", 100], ["PGD", "pgd", 100], ["PGV/PGA", "pgv/pga", 1], ["Arias intensity", "arias", 1],
+    ["CAV", "cav", 1], ["duration D5-75", "d5-75", 1], ["duration D5-95", "d5-95", 1], ["mean period Tm", "tm", 1],
+  ]) after(name, unit * measures[key].value);
+  return reading.close();
+}
+
+const shareOf = ({ share, interval }) => percents([share, ...interval]);
+
+/** The page of a cellar. */
+export async function ofCellar(page, document) {
+  const shown = await contents(page), reading = new Reading();
+  isHeadline(shown, document);
+  const [stacks] = tablesOf(shown, "All stacks"), [aisles] = tablesOf(shown, "Times are counted"), [rows] = tablesOf(shown, "Rows:");
+  const times = (found) => (found === null ? [null] : found.least === found.most ? [found.p50] : [found.p05, found.p95]);
+  demand(stacks.rows.length === document.stacks.length && rows.rows.length === document.rows.length, "the page has other stacks than the JSON");
+  for (const one of document.stacks) {
+    const cell = cellsOf(stacks, one.name);
+    reading.are(`${one.name} falls`, cell("falls"), shareOf(one.falls));
+    reading.are(`${one.name} falls by itself`, cell("by itself"), percents([one.by_itself.share]));
+    reading.are(`${one.name} is knocked over`, cell("knocked over"), percents([one.knocked_over.share]));
+    reading.are(`${one.name} falls after`, cell("falls after"), times(one.falls_at));
+    reading.are(`barrels of ${one.name}`, cell("barrels fallen"), [one.barrels_fallen]);
+    reading.are(`wine of ${one.name}`, cell("wine lost"), [1000 * one.wine_lost]);
+  }
+  for (const one of document.aisles) {
+    const cell = cellsOf(aisles, one.name);
+    reading.are(`a barrel comes into ${one.name}`, cell("a barrel comes in"), shareOf(one.entered));
+    reading.are(`${one.name} is blocked`, cell("blocked at the end"), shareOf(one.blocked));
+    reading.are(`${one.name} is blocked after`, cell("blocked after"), times(one.blocked_at));
+    reading.are(`first barrel in ${one.name}`, cell("first barrel"), times(one.first_barrel));
+  }
+  for (const one of document.rows) {
+    const cell = cellsOf(rows, String(one.row));
+    reading.are(`row ${one.row} starts it`, cell("starts it"), shareOf(one.starts));
+    reading.are(`row ${one.row} by itself`, cell("fall by themselves"), [one.by_themselves]);
+    reading.are(`row ${one.row} knocked over`, cell("knocked over"), [one.knocked_over]);
+  }
+  return reading.close();
+}
+
+/** The page of layouts of a cellar. */
+export async function ofLayouts(page, document) {
+  const shown = await contents(page), reading = new Reading();
+  isHeadline(shown, document);
+  const [loss] = tablesOf(shown, "Loss against capacity"), [ways] = tablesOf(shown, "How the stacks fall");
+  const mean = ({ mean, interval }) => [mean, ...(interval && interval[0] < interval[1] ? interval : [])];
+  for (const one of document.layouts) {
+    const cell = cellsOf(loss, one.name), way = cellsOf(ways, one.name);
+    reading.are(`barrels in ${one.name}`, cell("barrels"), [one.capacity]);
+    reading.are(`barrels that fall in ${one.name}`, cell("fall"), mean(one.barrels_fallen));
+    reading.are(`share that falls in ${one.name}`, cell("share"), percents([one.share_lost.mean]));
+    reading.are(`wine lost in ${one.name}`, cell("wine lost"), [1000 * one.wine_lost]);
+    reading.are(`cost of ${one.name}`, cell("cost"), one.cost);
+    reading.are(`stacks of ${one.name}`, way("stacks"), [one.stacks]);
+    reading.are(`by themselves in ${one.name}`, way("fall by themselves"), mean(one.by_themselves));
+    reading.are(`knocked over in ${one.name}`, way("knocked over"), mean(one.knocked_over));
+  }
+  return reading.close();
+}
+
+/** The page of aftershocks. */
+export async function ofAftershocks(page, document) {
+  const shown = await contents(page), reading = new Reading();
+  isHeadline(shown, document);
+  const [shocks] = tablesOf(shown, "Aftershocks after"), [order] = tablesOf(shown, "Stacks in the order");
+  demand(document.inspection.length > 0, "no stack is left to inspect");
+  for (const { factor, shock } of document.aftershocks) {
+    const cell = cellsOf(shocks, String(factor)), plain = (text) => text.replace("95 % interval", "");
+    reading.are(`stand before ${factor}`, cell("stacks standing before"), [shock.stood]);
+    reading.are(`fall under ${factor}`, cell("fall by themselves"), [shock.by_themselves]);
+    reading.are(`are knocked over under ${factor}`, cell("knocked over"), [shock.knocked_over]);
+    reading.are(`survive ${factor}`, plain(cell("survive")), shock.share_survive ? percents([shock.share_survive.mean, ...shock.share_survive.interval]) : [null]);
+    reading.are(`all survive ${factor}`, cell("all survive"), shareOf(shock.all_survive));
+  }
+  document.inspection.forEach(({ name, stands, falls }, at) => {
+    demand(order.rows[at][0] === name, `place ${at} is that of ${order.rows[at][0]}`);
+    const cell = cellsOf(order, name);
+    reading.are(`${name} stands`, cell("stands after"), shareOf(stands));
+    falls.forEach((one, k) => reading.are(`${name} falls`, cell(`falls under ${document.aftershocks[k].factor}`), shareOf(one)));
   });
   return reading.close();
 }

@@ -7,13 +7,15 @@ import { missing } from "./browser.mjs";
 
 /** The date and the commit that pages state, the same on every day. */
 const STAMP = { SOURCE_DATE_EPOCH: "1408875644", BARRELSTACK_COMMIT: "0123456789ab" };
+const ROOM = ["--set=run.duration=9 s", "--set=block.1.stacks=1"];
 const FRICTION = "interface.rack-ground.friction.coefficient";
 
 /**
  * Pages by name: the arguments of the program without `--out`, what is run before it (`{folder}` is that of all
  * pages; a document that is printed with `--json` is kept beside that folder), whether several runs or planes share
- * the page, whether it is looked at for readers of screens only (`plain`), its file where that is not
- * report.html, and the looks of it that are kept as pictures.
+ * the page, whether it is looked at for readers of screens, for phones and for paper only (`plain`), its file where that
+ * is not report.html, and the looks of it that are kept as pictures. Where the arguments name `{out}`, that is its folder.
+ * What is run after it may print a document, too.
  */
 export const PAGES = {
   demo: {
@@ -57,6 +59,28 @@ export const PAGES = {
     args: ["motion", "select", "{folder}/records", "--target", "ec8:ag=0.3,site=B", "--spectrum", "h1", "--count", "2", "--scale", "0.01..100"],
     looks: [],
   },
+  protect: {
+    plain: true,
+    file: "index.html",
+    args: ["protect", "demo-napa", "--set", "stack.levels=3", "--count=4", "--rounds=1", "--pgv=50 cm/s", "--quiet"],
+    looks: [],
+  },
+  score: { plain: true, file: "index.html", args: ["score", "demo-napa", "--set", "stack.levels=3", "--one-in=4", "--quiet"], looks: [] },
+  motion: {
+    plain: true,
+    file: "record.html",
+    args: ["motion", "process", "napa-college-2014", "--component=H1", "--high-pass=0.2 Hz", "-o", "{out}/record.txt", "--figure", "{out}/record.html", "--overwrite"],
+    after: ["motion", "info", "{out}/record.txt", "--json"],
+    looks: [],
+  },
+  // One stack in each of two rows, for nine seconds.
+  cellar: { plain: true, args: ["run", "demo-cellar", "--variants=1", ...ROOM, "--quiet"], looks: [] },
+  layouts: { plain: true, args: ["compare", "demo-cellar", "--against", "stack.levels=4", "--variants=2", ...ROOM, "--quiet"], looks: [] },
+  aftershock: {
+    plain: true,
+    args: ["aftershock", "demo-cellar", "--variants=2", ...ROOM, "--set=stack.levels=3", "--set=motion.scale.factor=0.8", "--scale=0.75,2", "--quiet"],
+    looks: [],
+  },
   disc: { args: ["run", "rolling-disc", "--quiet"], looks: [] },
   // A stack that stands for a minute, and one that falls early and goes on, each alone.
   minute: {
@@ -98,12 +122,14 @@ export async function make(folder) {
   const work = async () => {
     for (let name = names.shift(); name; name = names.shift()) {
       rmSync(join(folder, name), { recursive: true, force: true });
-      const { before = [], args } = PAGES[name];
-      const steps = [...before, [...args, "--out", join(folder, name)]];
+      const { before = [], args, after } = PAGES[name], own = join(folder, name);
+      const placed = args.some((word) => word.includes("{out}"));
+      if (placed) mkdirSync(own, { recursive: true });
+      const steps = [...before, placed ? args : [...args, "--out", own], ...(after ? [after] : [])];
       let fault = null;
       for (const step of steps) {
         const out = step.includes("--json") ? `${join(folder, name)}.json` : null;
-        fault ??= await run(program, step.map((word) => word.replace("{folder}", folder)), out);
+        fault ??= await run(program, step.map((word) => word.replace("{folder}", folder).replace("{out}", own)), out);
       }
       if (fault) throw new Error(`the page ${name} was not made: ${fault}`);
     }
