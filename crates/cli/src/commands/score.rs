@@ -53,7 +53,11 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
         let found = league(&scenario, &protocol, &args.out, &options, &report).map_err(place)?;
         drop(progress);
         let csv = found.to_csv();
-        write(&args.out, &found.document, &[("league.csv", csv.as_bytes())])?;
+        write(
+            &args.out,
+            &args.page.language.page(&found.document),
+            &[("league.csv", csv.as_bytes())],
+        )?;
         let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
         lines.extend(table(&found));
         lines.extend(page::place(&args.out));

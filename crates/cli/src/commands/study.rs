@@ -23,6 +23,7 @@ pub(crate) use answer::StudyResult;
 
 use crate::interrupt::{Interrupt, Stopped, keeps};
 use crate::lanes::LanesArgs;
+use crate::language::LanguageArgs;
 use crate::printer;
 
 /// End of the help.
@@ -76,6 +77,8 @@ struct RunArgs {
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
     lanes: LanesArgs,
+    #[command(flatten)]
+    language: LanguageArgs,
     /// Print one JSON document in place of the summary.
     #[arg(long)]
     json: bool,
@@ -203,7 +206,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         ));
     }
     let (answer, made) = collected(out)?;
-    let page = report::write_page(out)?;
+    let page = report::write_page(out, args.language)?;
     if args.json {
         printer::document(&StudyResult::of(&(&answer, &made)))?;
     } else {

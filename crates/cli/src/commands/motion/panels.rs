@@ -9,7 +9,7 @@ use barrelstack_motion::{
     Sampled, TargetSpectrum, husid, rotated_spectrum, standard_periods,
 };
 use barrelstack_report::{
-    Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
+    Axis, Band, Figure, Format, Mark, Panels, Plot, Series, significant,
 };
 
 use super::measures::{columns, peak_reading};
@@ -154,7 +154,7 @@ fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure
         lines.push(format!("{samples} samples, one every {} s{start}", channel.time_step));
     }
     let caption = format!("{title}: {what}");
-    Figure { id: id.to_owned(), caption, kind: FigureKind::Panels(Panels { title, lines, rows }) }
+    Figure::new(id, caption, Panels { title, lines, rows })
 }
 
 pub(super) fn time() -> Axis {
