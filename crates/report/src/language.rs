@@ -253,7 +253,9 @@ impl Translator {
                 found.push(around(open, self.sentences(inner, depth + 1), close));
             }
         }
-        for (mark, word) in [("; ", "; "), (", ", ", "), (" and ", " y "), (" or ", " o ")] {
+        for (mark, word) in
+            [("; ", "; "), (": ", ": "), (", ", ", "), (" and ", " y "), (" or ", " o ")]
+        {
             if text.contains(mark) {
                 let parts: Vec<Translated> =
                     text.split(mark).map(|part| self.phrase(part, depth + 1)).collect();

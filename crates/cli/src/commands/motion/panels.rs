@@ -8,9 +8,7 @@ use barrelstack_motion::{
     Channel, FourierSpectrum, NoiseCriterion, Quantity, Record, ResponseSpectrum, STANDARD_GRAVITY,
     Sampled, TargetSpectrum, husid, rotated_spectrum, standard_periods,
 };
-use barrelstack_report::{
-    Axis, Band, Figure, Format, Mark, Panels, Plot, Series, significant,
-};
+use barrelstack_report::{Axis, Band, Figure, Format, Mark, Panels, Plot, Series, significant};
 
 use super::measures::{columns, peak_reading};
 use super::output::vacant;
