@@ -12,7 +12,7 @@ pub use dictionary::dictionary;
 
 use barrelstack_report::column::column_name;
 use barrelstack_report::{
-    Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
+    Document, Language, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
 };
 use serde_json::{Value, json};
 
@@ -191,8 +191,8 @@ impl Folder {
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(&self, answer: &Answer) -> Result<(), ExportError> {
-        self.write_files(&files(answer)?)
+    pub fn write(&self, answer: &Answer, language: Language) -> Result<(), ExportError> {
+        self.write_files(&files(answer, language)?)
     }
 
     /// Writes files, each given with its name; otherwise works like [`Folder::write`].
@@ -280,14 +280,14 @@ fn first_in(folder: &Path) -> Option<String> {
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by name; with two planes, the names of the files of one plane are
+/// Returns the files of an answer by name, with the report in a language; with two planes, the names of the files of one plane are
 /// prefixed with the name of the plane.
 ///
 /// # Errors
 /// When the archive of histories cannot be written.
-pub fn files(answer: &Answer) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+pub fn files(answer: &Answer, language: Language) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     let Shown { run, summary, .. } = &answer.decides;
-    let document = report::answer_document(answer);
+    let document = report::answer_document(answer).in_language(language);
     let mut files = vec![
         ("summary.json".to_owned(), (summary.to_json() + "\n").into_bytes()),
         ("scenario.toml".to_owned(), answer.scenario.to_resolved_toml().into_bytes()),

@@ -101,6 +101,7 @@ fn page(
         provenance: provenance(run, summary),
         words: WORDS.to_vec(),
         warnings,
+        ..Document::default()
     }
 }
 

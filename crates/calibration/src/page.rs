@@ -54,6 +54,7 @@ impl Calibration {
             )],
             warnings: self.warnings.clone(),
             words: Vec::new(),
+            ..Document::default()
         }
     }
 

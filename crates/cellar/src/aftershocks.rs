@@ -6,7 +6,9 @@ use std::path::Path;
 use barrelstack::report::WORDS;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{Advance, Range};
-use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, described, listed};
+use barrelstack_report::{
+    Block, Cell, Document, Language, Table, Tone, Verdict, described, listed,
+};
 
 use crate::answer::shared;
 use crate::report::count;
@@ -402,15 +404,19 @@ pub fn document(summary: &AftershockSummary) -> Document {
         provenance,
         words: WORDS.to_vec(),
         warnings: summary.warnings.clone(),
+        ..Document::default()
     }
 }
 
-/// Returns the output files by name.
+/// Returns the output files by name, with the report in a language.
 ///
 /// # Errors
 /// If the summary cannot be written as JSON.
-pub fn files(summary: &AftershockSummary) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
-    let page = barrelstack_report::html(&document(summary));
+pub fn files(
+    summary: &AftershockSummary,
+    language: Language,
+) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
+    let page = barrelstack_report::html(&document(summary).in_language(language));
     let json = described::to_json(summary)? + "\n";
     let [strengths, stacks] = numbers(summary).map(|table| table.to_csv().into_bytes());
     Ok(vec![

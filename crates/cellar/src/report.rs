@@ -7,8 +7,8 @@ use barrelstack::report::WORDS;
 use barrelstack::variants::words::percent;
 use barrelstack::variants::{FEW, Range};
 use barrelstack_report::{
-    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Pane, Players, RegionKind, Table,
-    Verdict, described,
+    Block, Cell, Document, Dots, Figure, FloorPlan, Heat, Language, Pane, Players, RegionKind,
+    Table, Verdict, described,
 };
 use barrelstack_space::drawing::{Shown, Sight, together};
 
@@ -191,6 +191,7 @@ pub fn document(answer: &Answer) -> Document {
         provenance: provenance(answer),
         words: WORDS.to_vec(),
         warnings: summary.warnings.clone(),
+        ..Document::default()
     }
 }
 
@@ -386,12 +387,12 @@ fn obstacles(summary: &CellarSummary) -> Table {
 }
 
 impl Answer {
-    /// Returns the output files by name.
+    /// Returns the output files by name, with the report in a language.
     ///
     /// # Errors
     /// If the summary cannot be written as JSON.
-    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
-        let document = document(self);
+    pub fn files(&self, language: Language) -> Result<Vec<(String, Vec<u8>)>, serde_json::Error> {
+        let document = document(self).in_language(language);
         let page = barrelstack_report::html(&document);
         let plan = Figure::new("plan", "The room from above.", picture(self));
         let mut files = vec![

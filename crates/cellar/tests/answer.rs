@@ -6,7 +6,7 @@ use barrelstack::variants::RunChoice;
 use barrelstack::variants::words::percent;
 use barrelstack_cellar::report::document;
 use barrelstack_cellar::{Answer, Cellar, Prepared, answer};
-use barrelstack_report::{Block, Table, described};
+use barrelstack_report::{Block, Language, Table, described};
 use serde_json::Value;
 
 /// Two stacks of two levels, shaken for a short time.
@@ -82,7 +82,7 @@ fn every_number_of_the_page_is_that_of_the_document() {
     };
     assert_eq!(sum("falls"), sum("by_itself") + sum("knocked_over"));
     assert_eq!(sum("by_itself") / 2.0, json["room"]["by_themselves"].as_f64().unwrap());
-    let files = answer.files().unwrap();
+    let files = answer.files(Language::English).unwrap();
     let text = |name: &str| {
         let file = files.iter().find(|(known, _)| known == name).unwrap();
         String::from_utf8(file.1.clone()).unwrap()

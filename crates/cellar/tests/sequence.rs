@@ -9,7 +9,7 @@ use barrelstack_cellar::{
     Advance, Answer, Cellar, CellarFailure, Prepared, RoomRun, Settings, aftershocks, answer,
     answer_with, run as run_room, run_part, sequence, words,
 };
-use barrelstack_report::Tone;
+use barrelstack_report::{Language, Tone};
 
 use crate::common::bits;
 
@@ -64,7 +64,7 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     assert!(summary.headline.contains("; in the second "), "{}", summary.headline);
     assert!(summary.headline.contains("is followed only until"), "{}", summary.headline);
     assert_ne!(words::tone(summary), Tone::Stands);
-    let files = answer.files().unwrap();
+    let files = answer.files(Language::English).unwrap();
     let (_, csv) = files.iter().find(|(name, _)| name == "shocks.csv").unwrap();
     assert_eq!(String::from_utf8_lossy(csv).lines().count(), 1 + 2 * 2);
     // The clock of the whole runs on.
@@ -257,7 +257,7 @@ fn aftershocks_of_several_strengths_follow_one_main_shock() {
     }
     let said = &found.headline;
     assert!(said.starts_with("Of 2 stacks ") && said.contains("is followed only until"), "{said}");
-    let files = aftershocks::files(&found).unwrap();
+    let files = aftershocks::files(&found, Language::English).unwrap();
     // A row for each stack that stands after the main shock, in each strength; one number in each cell.
     let csv = |at: usize| String::from_utf8_lossy(&files[at].1).into_owned();
     assert_eq!(csv(2).lines().count(), 1 + 2);

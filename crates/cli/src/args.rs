@@ -6,6 +6,8 @@ use std::str::FromStr;
 use barrelstack_cellar::kept::Part;
 use clap::{Parser, Subcommand};
 
+use crate::language::LanguageArgs;
+
 /// End of the first page of help.
 const AFTER_HELP: &str = "\
 Start with:
@@ -132,6 +134,8 @@ pub(crate) struct RunArgs {
     /// Paper size of report.pdf.
     #[arg(long, value_enum, value_name = "PAPER", default_value = "a4", requires = "pdf")]
     pub(crate) paper: crate::figures::PaperName,
+    #[command(flatten)]
+    pub(crate) language: LanguageArgs,
     /// Page that contains the program, such as barrelstack.html of a release. The page is embedded
     /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
@@ -187,6 +191,8 @@ pub(crate) struct DemoArgs {
     pub(crate) set: Vec<String>,
     #[command(flatten)]
     pub(crate) variants: VariantArgs,
+    #[command(flatten)]
+    pub(crate) language: LanguageArgs,
     /// Do not search for changes that would have kept the stack up; the search may take as long as
     /// the run.
     #[arg(long)]
@@ -225,6 +231,8 @@ pub(crate) struct ReproduceArgs {
     pub(crate) no_studies: bool,
     #[command(flatten)]
     pub(crate) figures: crate::figures::FigureArgs,
+    #[command(flatten)]
+    pub(crate) language: LanguageArgs,
     /// Folder for the page (for screen and print) and its figures; files of an earlier page are
     /// replaced.
     #[arg(long, value_name = "DIR", default_value = "barrelstack-reproduce")]

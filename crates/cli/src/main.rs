@@ -8,6 +8,7 @@ mod comparison;
 mod figures;
 mod interrupt;
 mod lanes;
+mod language;
 mod printer;
 mod process;
 mod progress;

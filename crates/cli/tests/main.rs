@@ -19,6 +19,7 @@ mod hostile_commands;
 mod hostile_records;
 mod hostile_scenarios;
 mod interrupt;
+mod languages;
 mod motion;
 mod motion_folders;
 mod motion_more;

@@ -9,7 +9,7 @@ use barrelstack::render::{Part, RenderFolder, Rendered, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::watch::{Joint, StressEnvelope};
-use barrelstack_report::{Format, Player, Scene, document_pdf, html, player_html};
+use barrelstack_report::{Format, Language, Player, Scene, document_pdf, html, player_html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -283,7 +283,9 @@ impl Run {
         overwrite: bool,
     ) -> PyResult<Vec<(PathBuf, usize)>> {
         let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
-        let how = Rendering { formats, dpi, paper: paper_of(paper)?, rate, between, largest };
+        let language = Language::English;
+        let paper = paper_of(paper)?;
+        let how = Rendering { formats, dpi, paper, rate, between, largest, language };
         let (run, summary) = (self.run(), &self.shown().summary);
         rendered(py, (&folder, &parts, overwrite), (&how, run.end_time), |folder| {
             folder.write(run, summary, &how)
@@ -294,7 +296,7 @@ impl Run {
     fn write(&self, py: Python<'_>, folder: PathBuf, overwrite: bool) -> PyResult<()> {
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            folder.write(&self.answer)
+            folder.write(&self.answer, Language::English)
         });
         written.map_err(errors::general)
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use barrelstack::export::Folder;
 use barrelstack::render::Rendering;
-use barrelstack_report::{Format, document_pdf, html};
+use barrelstack_report::{Format, Language, document_pdf, html};
 use barrelstack_space::drawing::coarse_scene;
 use barrelstack_space::report::{document, player};
 use barrelstack_space::run::Frames;
@@ -132,7 +132,9 @@ impl SpatialRun {
         overwrite: bool,
     ) -> PyResult<Vec<(PathBuf, usize)>> {
         let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
-        let how = Rendering { formats, dpi, paper: paper_of(paper)?, rate, between, largest };
+        let language = Language::English;
+        let paper = paper_of(paper)?;
+        let how = Rendering { formats, dpi, paper, rate, between, largest, language };
         rendered(py, (&folder, &parts, overwrite), (&how, self.answer.run.end_time), |folder| {
             export::render(&self.answer, folder, &how)
         })
@@ -148,7 +150,7 @@ impl SpatialRun {
     ) -> PyResult<()> {
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            folder.write_files(&export::files(&self.answer, stated))
+            folder.write_files(&export::files(&self.answer, stated, Language::English))
         });
         written.map_err(errors::general)
     }

@@ -437,12 +437,12 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     context.textBaseline = "middle";
     context.fillStyle = paint.soft;
     context.textAlign = "left";
-    halo(pen, "grid of 1\u00a0m", 14, height - 14);
+    halo(pen, t("grid of {1}", "1\u00a0m"), 14, height - 14);
     // A plane models one barrel of a row.
-    if (depth.bodies.some(({ rows }) => rows.length > 1)) halo(pen, "rows move as one", 14, height - 31);
+    if (depth.bodies.some(({ rows }) => rows.length > 1)) halo(pen, t("rows move as one"), 14, height - 31);
     if (!eye.turned && stages()[0] === stage) {
       context.textAlign = "right";
-      halo(pen, width < 420 ? "drag to turn" : "drag to turn, two fingers or Ctrl and wheel to zoom", width - 14, height - 14);
+      halo(pen, width < 420 ? t("drag to turn") : t("drag to turn, two fingers or Ctrl and wheel to zoom"), width - 14, height - 14);
     }
     flat.valued = flat.hover ? drawForceValue(pen, arrows, flat.hover, []) : null;
     if (flat.hover && !flat.valued) drawLabel(pen, flat.hover);
@@ -515,7 +515,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     const body = bodyAt(at);
     if (body === null || !depth.bodies[body].name) return;
     const { context } = pen, { name, role } = depth.bodies[body];
-    const text = role === "barrel" || role === "rack" ? `${role} ${name}` : name;
+    const text = role === "barrel" ? t("barrel {1}", name) : role === "rack" ? t("rack {1}", name) : name;
     context.font = "600 13px system-ui, sans-serif";
     const wide = context.measureText(text).width + 16;
     const [x, y] = [Math.min(Math.max(at[0] - 0.5 * wide, 4), width - wide - 4), Math.max(at[1] - 36, 4)];

@@ -1,21 +1,21 @@
 // Keys of a player, and the panel that lists them.
 
 const KEYS = [
-  ["Space", "play and pause"],
-  ["← →", "one frame back or forward; with Shift, ten frames"],
-  ["Home End", "first frame, last frame"],
-  ["< >", "slower, faster"],
-  ["M", "slow loop around the decisive moment"],
-  ["C", "next camera"],
-  ["N P F", "names, paths, forces"],
-  ["T G", "color by stress, other runs over this one"],
-  ["+ − 0", "zoom in, zoom out, whole picture"],
-  ["W A S D", "move the picture (in 3D, turn it); dragging does the same"],
-  ["V", "switch between 3D and the flat picture, if there are both"],
-  ["1 2 3 4", "in 3D, view from the corner, across the barrels, along them, from above"],
-  ["Shift W A S D", "in 3D, move the picture"],
-  ["Shift F", "full screen and back"],
-  ["?", "these keys"],
+  [t("Space"), t("play and pause")],
+  ["← →", t("one frame back or forward; with Shift, ten frames")],
+  ["Home End", t("first frame, last frame")],
+  ["< >", t("slower, faster")],
+  ["M", t("slow loop around the decisive moment")],
+  ["C", t("next camera")],
+  ["N P F", t("names, paths, forces")],
+  ["T G", t("color by stress, other runs over this one")],
+  ["+ − 0", t("zoom in, zoom out, whole picture")],
+  ["W A S D", t("move the picture (in 3D, turn it); dragging does the same")],
+  ["V", t("switch between 3D and the flat picture, if there are both")],
+  ["1 2 3 4", t("in 3D, view from the corner, across the barrels, along them, from above")],
+  ["Shift W A S D", t("in 3D, move the picture")],
+  ["Shift F", t("full screen and back")],
+  ["?", t("these keys")],
 ];
 
 // Fills the panel of keys and returns the function that opens it.
@@ -25,7 +25,7 @@ function makePanel(dialog) {
     const caps = keys.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
     list.append(make("dt", {}, ...caps), make("dd", {}, words));
   }
-  const hint = make("p", {}, "Zoom with Ctrl and the wheel, or with two fingers; a double click shows the whole picture again. In 3D, one finger turns the picture and a tap names a body. Hold the pointer over an arrow to see its force.");
+  const hint = make("p", {}, t("Zoom with Ctrl and the wheel, or with two fingers; a double click shows the whole picture again. In 3D, one finger turns the picture and a tap names a body. Hold the pointer over an arrow to see its force."));
   dialog.querySelector("form").before(list, hint);
   return () => (dialog.open ? dialog.close() : dialog.showModal());
 }

@@ -104,10 +104,10 @@ function button(text, label, action) {
 for (const figure of document.querySelectorAll("figure.plot, figure.envelope")) {
   const name = figure.id.replace("figure-", "");
   const number = figure.querySelector("figcaption b").textContent.replace(/\.$/, "");
-  const files = make("span", { class: "files" }, button("SVG", `Save ${number} as SVG`, () =>
+  const files = make("span", { class: "files" }, button("SVG", t("Save {1} as SVG", number), () =>
     save(`${name}.svg`, "image/svg+xml", standalone(figure.querySelector(".drawing > svg")))));
   const plot = board.plots.find((p) => p.id === name);
-  if (plot) files.append(button("CSV", `Save the data of ${number} as CSV`, () => save(`${name}.csv`, "text/csv", csvOf(plot))));
+  if (plot) files.append(button("CSV", t("Save the data of {1} as CSV", number), () => save(`${name}.csv`, "text/csv", csvOf(plot))));
   figure.querySelector("figcaption").append(" ", files);
 }
 
@@ -139,11 +139,11 @@ async function copy(text) {
 for (const table of document.querySelectorAll(".table > table")) {
   const words = table.querySelector("caption > span");
   const number = words.querySelector("b").textContent.replace(/\.$/, "");
-  words.append(" ", make("span", { class: "files" }, button("Copy", `Copy ${number}`, async (element) => {
+  words.append(" ", make("span", { class: "files" }, button(t("Copy"), t("Copy {1}", number), async (element) => {
     const had = document.activeElement;
-    element.textContent = (await copy(tabbed(table))) ? "Copied" : "Not copied";
+    element.textContent = (await copy(tabbed(table))) ? t("Copied") : t("Not copied");
     if (had) had.focus();
-    setTimeout(() => { element.textContent = "Copy"; }, 1500);
+    setTimeout(() => { element.textContent = t("Copy"); }, 1500);
   })));
 }
 

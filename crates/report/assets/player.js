@@ -72,7 +72,7 @@ function makePlayer(raw, figure, dashes, earlier) {
     for (const pane of panes) pane.show(pane === lead ? frame : nearest(pane.data.times, time), time, opens);
     timeline.cursor(time);
     scrub.value = time;
-    scrub.setAttribute("aria-valuetext", `${time.toFixed(2)} seconds`);
+    scrub.setAttribute("aria-valuetext", t("{1} seconds", time.toFixed(2)));
     for (const listener of listeners) listener(time);
   }
 
@@ -147,7 +147,7 @@ function makePlayer(raw, figure, dashes, earlier) {
 
   function mark() {
     act("play").classList.toggle("playing", playing);
-    act("play").setAttribute("aria-label", playing ? "Pause" : "Play");
+    act("play").setAttribute("aria-label", playing ? t("Pause") : t("Play"));
   }
 
   function stepTo(k) {
@@ -289,7 +289,7 @@ function makePlayer(raw, figure, dashes, earlier) {
 // One scene: its stage, its clock and its announcements.
 function makePane(data, box) {
   const stage = makeStage(data, box.querySelector("canvas.scene"));
-  if (data.moment) stage.canvas.setAttribute("aria-label", `The bodies at the time shown; ${data.moment.text}, at ${data.moment.t.toFixed(2)}\u00a0s`);
+  if (data.moment) stage.canvas.setAttribute("aria-label", t("The bodies at the time shown; {1}, at {2}", data.moment.text, `${data.moment.t.toFixed(2)}\u00a0s`));
   const clock = box.querySelector(".clock"), news = box.querySelector(".news");
   const end = data.count > 0 ? data.times[data.count - 1] : 0;
   let shown = 0, said = null;
@@ -305,7 +305,7 @@ function makePane(data, box) {
       drawn.draw(shown, own);
       // A run that has ended holds its last frame, and its clock states this.
       const ended = time > end + 0.02;
-      clock.textContent = ended ? `ended at ${end.toFixed(2)}\u00a0s` : `${own.toFixed(2)}\u00a0s`;
+      clock.textContent = ended ? t("ended at {1}", `${end.toFixed(2)}\u00a0s`) : `${own.toFixed(2)}\u00a0s`;
       clock.classList.toggle("ended", ended);
       const current = currentEvents(told, time);
       const event = current.length > 0 && !opens ? current[current.length - 1] : null;

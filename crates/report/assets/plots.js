@@ -21,13 +21,13 @@ function makePlot(raw, columns, figure, page) {
     full = raw.x.range || [table[0][0], table[0][table[0].length - 1]];
   }
   const values = [];
-  const reset = make("button", { type: "button", class: "reset" }, "Reset zoom");
+  const reset = make("button", { type: "button", class: "reset" }, t("Reset zoom"));
   reset.hidden = true;
   const at = make("output", { class: "at" });
   const legend = make("ul", { class: "legend" });
   const box = make("div", {
     class: "canvas", tabindex: "0", role: "group",
-    "aria-label": `Plot of ${raw.y.title} over ${raw.x.title}. Arrow keys move the cursor, plus and minus zoom, 0 shows all.`,
+    "aria-label": t("Plot of {1} over {2}. Arrow keys move the cursor, plus and minus zoom, 0 shows all.", raw.y.title, raw.x.title),
   });
   const head = make("div", { class: "head" }, legend, reset);
   live.append(head, box);

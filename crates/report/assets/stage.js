@@ -106,7 +106,7 @@ function makeStage(data, canvas) {
     if (!(data.count > 0)) {
       context.fillStyle = paint.soft;
       context.font = "14px system-ui, sans-serif";
-      context.fillText("no frames to show", 16, 28);
+      context.fillText(t("no frames to show"), 16, 28);
       return;
     }
     const view = viewAt(frame);

@@ -105,7 +105,7 @@ function makeTimeline(canvas, panes, ground, start, end) {
       context.fillText(text, x, top + 1, most);
     };
     label(history.label, SIDE, "left", 0.55 * width);
-    label(`peak ${withUnit(Math.abs(peak), 3, history.unit)} at ${when.toFixed(2)}\u00a0s`, width - SIDE, "right", 0.45 * width);
+    label(t("peak {1} at {2}", withUnit(Math.abs(peak), 3, history.unit), `${when.toFixed(2)}\u00a0s`), width - SIDE, "right", 0.45 * width);
   }
 
   function cursor(time) {

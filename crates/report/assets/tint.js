@@ -36,5 +36,5 @@ function drawTintScale({ context, paint }, tint, full) {
   context.font = "11px system-ui, sans-serif";
   context.textBaseline = "top";
   context.textAlign = "left";
-  context.fillText(`${tint.label}, 0 to ${withUnit(full, 2, tint.unit)} and more`, x, y + 12);
+  context.fillText(t("{1}, 0 to {2} and more", tint.label, withUnit(full, 2, tint.unit)), x, y + 12);
 }

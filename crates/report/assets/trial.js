@@ -9,7 +9,7 @@
     opened = true;
     const text = new TextDecoder().decode(await held("trial-page"));
     const start = document.getElementById("trial-start").textContent;
-    const frame = make("iframe", { title: "The program" });
+    const frame = make("iframe", { title: t("The program") });
     frame.srcdoc = text.replace("<body>", () => `<body><script type="application/json" id="start">${start}<\/script>`);
     dialog.append(frame);
   });

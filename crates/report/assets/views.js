@@ -68,8 +68,8 @@ function makeViews(screen, panes, act, changed, refit) {
     if (deep.length === 0 || !findSurface()) return;
     group.hidden = false;
     if (!deep.some(({ data }) => data.depth.bodies.some(({ role }) => role === "rack"))) {
-      act("across").textContent = "front";
-      act("along").textContent = "side";
+      act("across").textContent = t("front");
+      act("along").textContent = t("side");
     }
     if (!asksFlat()) await choose(true);
   }

@@ -1,6 +1,6 @@
 //! A document: a verdict, blocks in reading order, warnings and provenance.
 
-use crate::{Dots, Figure, Player, Players, Table};
+use crate::{Dots, Figure, Language, Player, Players, Table};
 
 /// The content of a report or page, independent of the output format.
 ///
@@ -22,6 +22,8 @@ pub struct Document {
     /// Warnings that the reader must know before relying on the result; shown directly after the
     /// first player.
     pub warnings: Vec<String>,
+    /// Language of the texts; see [`Document::in_language`].
+    pub language: Language,
 }
 
 impl Document {

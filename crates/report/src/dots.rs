@@ -1,6 +1,9 @@
 //! Variants of a verdict, drawn as one dot each.
 
-use crate::drawing::{Drawing, Item};
+use crate::{
+    Language,
+    drawing::{Drawing, Item},
+};
 
 /// Outcomes of the variants in one plane or in space, drawn on paper below the headline as one dot for each
 /// variant.
@@ -28,7 +31,7 @@ const RADIUS: f64 = 3.6;
 impl Dots {
     /// Returns the counts with the appearance of their dots, such as "Along the barrels: 53 fall
     /// (filled), 11 stand (rings)".
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn words(&self, language: Language) -> String {
         let counts: Vec<String> = [
             (self.fell, ["falls", "fall"], "filled"),
             (self.open, ["has no verdict", "have no verdict"], "gray"),
@@ -36,22 +39,26 @@ impl Dots {
         ]
         .into_iter()
         .filter(|(count, ..)| *count > 0)
-        .map(|(count, verbs, look)| format!("{count} {} ({look})", verbs[usize::from(count != 1)]))
+        .map(|(count, verbs, look)| {
+            let verb = language.fixed(verbs[usize::from(count != 1)]);
+            format!("{count} {verb} ({})", language.fixed(look))
+        })
         .collect();
-        let place = if self.direction.is_empty() { "variants" } else { &self.direction };
+        let place =
+            if self.direction.is_empty() { language.fixed("variants") } else { &self.direction };
         format!("{}: {}", crate::capital(place), counts.join(", "))
     }
 
     /// Draws the dots in rows, first those of variants that fall; `None` if there are too many dots
     /// or none.
-    pub(crate) fn draw(&self) -> Option<Drawing> {
+    pub(crate) fn draw(&self, language: Language) -> Option<Drawing> {
         let all = self.fell + self.open + self.stood;
         if all == 0 || all > MOST {
             return None;
         }
         let columns = all.min(ROW);
         let size = [columns, all.div_ceil(ROW)].map(|count| PITCH * f64::from(count));
-        let mut drawing = Drawing::new(size[0], size[1], &self.words());
+        let mut drawing = Drawing::new(size[0], size[1], &self.words(language));
         for dot in 0..all {
             let class = match dot {
                 fell if fell < self.fell => "variant fell",
@@ -68,7 +75,7 @@ impl Dots {
 #[cfg(test)]
 mod tests {
     use super::Dots;
-    use crate::drawing::Item;
+    use crate::{Language, drawing::Item};
 
     fn dots(fell: u32, open: u32, stood: u32) -> Dots {
         Dots { direction: "along the barrels".into(), fell, stood, open }
@@ -76,7 +83,7 @@ mod tests {
 
     #[test]
     fn each_variant_has_one_dot_and_those_that_fall_come_first() {
-        let drawing = dots(53, 1, 76).draw().unwrap();
+        let drawing = dots(53, 1, 76).draw(Language::English).unwrap();
         let classes: Vec<&str> = drawing
             .items
             .iter()
@@ -97,18 +104,21 @@ mod tests {
     #[test]
     fn counts_are_stated_in_words() {
         assert_eq!(
-            dots(53, 0, 11).words(),
+            dots(53, 0, 11).words(Language::English),
             "Along the barrels: 53 fall (filled), 11 stand (rings)"
         );
-        assert_eq!(dots(0, 0, 1).words(), "Along the barrels: 1 stands (rings)");
+        assert_eq!(dots(0, 0, 1).words(Language::English), "Along the barrels: 1 stands (rings)");
         let in_space = Dots { direction: String::new(), ..dots(1, 2, 0) };
-        assert_eq!(in_space.words(), "Variants: 1 falls (filled), 2 have no verdict (gray)");
+        assert_eq!(
+            in_space.words(Language::English),
+            "Variants: 1 falls (filled), 2 have no verdict (gray)"
+        );
     }
 
     #[test]
     fn no_dots_are_drawn_where_they_would_be_too_many() {
-        assert!(dots(0, 0, 0).draw().is_none());
-        assert!(dots(100, 0, 156).draw().is_some());
-        assert!(dots(100, 0, 157).draw().is_none());
+        assert!(dots(0, 0, 0).draw(Language::English).is_none());
+        assert!(dots(100, 0, 156).draw(Language::English).is_some());
+        assert!(dots(100, 0, 157).draw(Language::English).is_none());
     }
 }

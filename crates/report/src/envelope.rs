@@ -2,7 +2,7 @@
 //! during the run.
 
 use crate::{
-    Polyline, csv_field,
+    Language, Polyline, csv_field,
     drawing::{Anchor, Drawing, Room, Runs, text_width},
     number,
     scene::Extent,
@@ -58,7 +58,7 @@ impl Envelope {
         self.samples.len().min(self.static_stress.len()).min(self.dynamic_stress.len())
     }
 
-    pub(crate) fn draw(&self, title: &str, room: Room) -> Drawing {
+    pub(crate) fn draw(&self, title: &str, room: Room, language: Language) -> Drawing {
         let width = room.of(WIDTH[0], WIDTH[1]);
         let legend = room.of(LEGEND, 2.0 * LEGEND - 24.0);
         let mut extent = Extent::EMPTY;
@@ -107,7 +107,7 @@ impl Envelope {
                 .collect();
             drawing.path(class, "", shapes, true);
         }
-        self.legend(&mut drawing, peak, per_stress * scale, room);
+        self.legend(&mut drawing, (peak, per_stress * scale), room, language);
         drawing
     }
 
@@ -157,27 +157,34 @@ impl Envelope {
 
     /// Draws the legend and the stress scale: side by side on a page, one below the other on a
     /// phone.
-    fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
+    fn legend(
+        &self,
+        drawing: &mut Drawing,
+        (peak, per_stress): (f64, f64),
+        room: Room,
+        language: Language,
+    ) {
         drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
         drawing.text(
             "label",
             [SIDE + 33.0, 18.0],
             Anchor::Start,
-            "largest until the first loss of seat",
+            language.fixed("largest until the first loss of seat"),
         );
         drawing.rect("static", [SIDE, 28.5], [26.0, 10.0]);
-        drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "at rest");
+        drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, language.fixed("at rest"));
         let (edge, top, anchor) = match room {
             Room::Page => (WIDTH[0] - SIDE, 18.0, Anchor::End),
             Room::Phone => (SIDE, 58.0, Anchor::Start),
         };
         if let Some(ratio) = self.amplification {
-            let text = format!("amplification {}", number::significant(ratio, 2));
+            let text = language.text(&format!("amplification {}", number::significant(ratio, 2)));
             drawing.text("label strong", [edge, top], anchor, &text);
         }
         let bar = round_length(0.6 * peak);
         if bar > 0.0 {
             let text = format!("normal stress: {} {}", number::significant(bar, 1), self.unit);
+            let text = language.text(&text);
             let (length, y) = (bar * per_stress, top + 16.0);
             let from = match room {
                 Room::Page => edge - text_width(&text, 12.0) - 8.0 - length,
@@ -193,7 +200,7 @@ impl Envelope {
             };
             drawing.text("label", [at, y + 4.0], anchor, text.trim_end());
         } else {
-            drawing.text("note", [edge, top + 20.0], anchor, "no stress");
+            drawing.text("note", [edge, top + 20.0], anchor, language.fixed("no stress"));
         }
     }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::{
-    Block, Diagram, Document, Envelope, FloorPlan, Panels, Plot, Strip,
+    Block, Diagram, Document, Envelope, FloorPlan, Language, Panels, Plot, Strip,
     drawing::{Drawing, Room},
     escape, pages, raster,
 };
@@ -18,6 +18,8 @@ pub struct Figure {
     pub caption: String,
     /// The picture.
     pub kind: FigureKind,
+    /// Language of the words that the picture adds, such as those of a legend.
+    pub language: Language,
 }
 
 /// The kinds of pictures.
@@ -56,7 +58,14 @@ impl Figure {
         caption: impl Into<String>,
         picture: impl Into<FigureKind>,
     ) -> Self {
-        Self { id: id.into(), caption: caption.into(), kind: picture.into() }
+        let language = Language::English;
+        Self { id: id.into(), caption: caption.into(), kind: picture.into(), language }
+    }
+
+    /// Returns the figure with the words that the picture adds in a language; other texts stay.
+    #[must_use]
+    pub(crate) fn in_language(self, language: Language) -> Self {
+        Self { language, ..self }
     }
 
     /// Returns the picture as a standalone SVG document with a white background; text remains text.
@@ -115,10 +124,10 @@ impl Figure {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),
             FigureKind::Panels(panels) => panels.draw(id, &self.caption, room),
-            FigureKind::Strip(strip) => strip.draw(id, &self.caption),
-            FigureKind::Envelope(envelope) => envelope.draw(&self.caption, room),
+            FigureKind::Strip(strip) => strip.draw(id, &self.caption, self.language),
+            FigureKind::Envelope(envelope) => envelope.draw(&self.caption, room, self.language),
             FigureKind::Diagram(diagram) => diagram.draw(id, &self.caption, room),
-            FigureKind::FloorPlan(plan) => plan.draw(id, &self.caption, room),
+            FigureKind::FloorPlan(plan) => plan.draw(id, &self.caption, room, self.language),
         }
     }
 }
@@ -165,11 +174,16 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     walk(&document.blocks, &mut |block| match block {
         Block::Figure(figure) => found.push((names.take(&figure.id), figure.clone())),
         Block::Player(player) => {
-            found.push((names.take(&player.id), player.paper_figure(&document.blocks)));
+            let drawn = player.paper_figure(&document.blocks).in_language(document.language);
+            found.push((names.take(&player.id), drawn));
         }
         Block::Players(players) => {
             let drawn = players.paper_figures();
-            found.extend(drawn.into_iter().map(|figure| (names.take(&figure.id), figure)));
+            found.extend(
+                drawn
+                    .into_iter()
+                    .map(|figure| (names.take(&figure.id), figure.in_language(document.language))),
+            );
         }
         Block::Heading { .. }
         | Block::Paragraph(_)

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::{
-    Characters, Point, csv_field,
+    Characters, Language, Point, csv_field,
     drawing::{Anchor, Drawing, Item, Room, text_width},
     number,
 };
@@ -108,11 +108,11 @@ const SHADE: [&str; SHADES] =
 const COLUMNS: f64 = 100.0;
 
 impl FloorPlan {
-    pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
+    pub(crate) fn draw(&self, id: &str, title: &str, room: Room, language: Language) -> Drawing {
         let [length, depth] = self.size.map(|side| side.max(1e-3));
         let scale = (room.of(MOST[0], PHONE) / length).min(MOST[1] / depth);
         let width = room.of(MOST[0], PHONE) + 2.0 * MARGIN;
-        let legend = self.legend(width - 2.0 * MARGIN);
+        let legend = self.legend(width - 2.0 * MARGIN, language);
         let floor = depth * scale;
         let height = floor + 2.0 * MARGIN + LINE * (legend.len() as f64 + 1.0);
         let mut drawing = Drawing::new(width, height, title);
@@ -181,15 +181,16 @@ impl FloorPlan {
     }
 
     /// Returns the entries of the legend, each with its classes and its words, in lines of a width (px).
-    fn legend(&self, width: f64) -> Vec<Vec<(Vec<&'static str>, String)>> {
+    fn legend(&self, width: f64, language: Language) -> Vec<Vec<(Vec<&'static str>, String)>> {
         let present = |kind: &&RegionKind| self.regions.iter().any(|region| region.kind == **kind);
         let mut entries: Vec<_> = RegionKind::ALL
             .iter()
             .filter(present)
-            .map(|kind| (vec![kind.class()], kind.word().to_owned()))
+            .map(|kind| (vec![kind.class()], language.fixed(kind.word()).to_owned()))
             .collect();
         if let Some(heat) = &self.heat {
-            let words = format!("{}: up to 20, 40, 60, 80, 100 %", heat.label);
+            let steps = language.fixed("up to 20, 40, 60, 80, 100 %");
+            let words = format!("{}: {steps}", heat.label);
             entries.push((SHADE.to_vec(), words));
         }
         let wide = |(classes, word): &(Vec<&str>, String)| entry(classes, word);

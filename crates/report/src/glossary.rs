@@ -55,8 +55,8 @@ impl Glossary {
         out + &escape::html(rest)
     }
 
-    /// Returns the list of all marked terms with their meanings; empty if there are none.
-    pub(crate) fn list(&self) -> String {
+    /// Returns the list of all marked terms with their meanings under a title; empty if there are none.
+    pub(crate) fn list(&self, title: &str) -> String {
         let used = self.marked.iter().enumerate().filter(|(_, [_, anywhere])| *anywhere);
         let rows: Vec<String> = used
             .map(|(at, _)| {
@@ -71,7 +71,7 @@ impl Glossary {
             return String::new();
         }
         format!(
-            "<section class=\"provenance\" id=\"words\">\n<h2>{TITLE}</h2>\n<dl>\n{}</dl>\n</section>\n",
+            "<section class=\"provenance\" id=\"words\">\n<h2>{title}</h2>\n<dl>\n{}</dl>\n</section>\n",
             rows.concat()
         )
     }
@@ -97,7 +97,7 @@ fn find(text: &str, word: &str) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Glossary, find};
+    use super::{Glossary, TITLE, find};
     use crate::Word;
 
     const WORDS: [Word; 2] = [
@@ -123,7 +123,7 @@ mod tests {
         assert!(!glossary.marked("rack").contains("button"));
         glossary.again();
         assert!(glossary.marked("rack").contains("button"));
-        assert_eq!(glossary.list().matches("<dt>").count(), 2);
-        assert_eq!(Glossary::of(&WORDS).list(), "");
+        assert_eq!(glossary.list(TITLE).matches("<dt>").count(), 2);
+        assert_eq!(Glossary::of(&WORDS).list(TITLE), "");
     }
 }

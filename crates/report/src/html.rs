@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Figure, FigureKind, Player, Strip, Table, Tone, Verdict,
+    Block, Document, Figure, FigureKind, Language, Player, Strip, Table, Tone, Verdict,
     document::{FINE, elsewhere},
     drawing::Room,
     escape,
     figure::{Counter, Names},
-    glossary::Glossary,
+    glossary::{Glossary, TITLE},
     number,
     page::{Payload, assemble},
     stamp,
@@ -37,7 +37,8 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     let mut writer = Writer::of(document);
     writer.header(document);
     if trial.is_some() {
-        writer.put(trial::OPENER);
+        let opener = document.language.markup(trial::OPENER);
+        writer.put(&opener);
     }
     writer.out.push_str("<main id=\"content\">\n");
     let (opening, rest) = document.parted();
@@ -51,7 +52,7 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     writer.words();
     writer.provenance(&provenance);
     writer.out.push_str("</main>\n");
-    assemble(&document.title, &writer.out, writer.payload, trial)
+    assemble((&document.title, document.language), &writer.out, writer.payload, trial)
 }
 
 /// Writes a player alone as one HTML file that makes no network requests, for a cell of a notebook.
@@ -63,7 +64,7 @@ pub fn player_html(title: &str, player: &Player) -> String {
     writer.put("<main id=\"content\">\n");
     writer.player(player);
     writer.put("</main>\n");
-    assemble(title, &writer.out, writer.payload, None)
+    assemble((title, document.language), &writer.out, writer.payload, None)
 }
 
 /// Blocks to be added to an existing page: their markup, and the data of their players and plots.
@@ -133,6 +134,16 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// Returns a fixed text in the language of the document.
+    pub(crate) fn t(&self, english: &'static str) -> &'static str {
+        self.document.language.fixed(english)
+    }
+
+    /// Returns the word before a number with the number, such as "Figure 3".
+    fn numbered(&self, word: &'static str, number: usize) -> String {
+        format!("{} {number}", self.t(word))
+    }
+
     /// Appends `markup`, which must contain only escaped text.
     pub(crate) fn put(&mut self, markup: &str) {
         self.out.push_str(markup);
@@ -152,24 +163,24 @@ impl<'a> Writer<'a> {
 
     /// Writes the meanings of the marked terms.
     fn words(&mut self) {
-        let list = self.glossary.list();
+        let list = self.glossary.list(self.document.language.fixed(TITLE));
         self.put(&list);
     }
 
     fn header(&mut self, document: &Document) {
         let verdict = &document.verdict;
         let tone = verdict.tone;
-        self.put("<a class=\"skip\" href=\"#content\">Skip to the content</a>\n");
+        let skip = self.t("Skip to the content");
+        self.put(&format!("<a class=\"skip\" href=\"#content\">{skip}</a>\n"));
         self.put(&format!("<header class=\"verdict {}\">\n", tone.class()));
         self.element("<p class=\"title\">", &document.title, "</p>");
-        self.put(&badge(tone));
+        self.put(&badge(tone, document.language));
         self.element("<h1>", verdict.opening().0, "</h1>");
         let count = document.warnings.len();
         if count > 0 {
             let plural = if count == 1 { "" } else { "s" };
-            self.put(&format!(
-                "<p class=\"heed\"><a href=\"#warnings\">{count} warning{plural}</a></p>\n"
-            ));
+            let count = document.language.text(&format!("{count} warning{plural}"));
+            self.put(&format!("<p class=\"heed\"><a href=\"#warnings\">{count}</a></p>\n"));
         }
         self.put("</header>\n");
     }
@@ -184,7 +195,8 @@ impl<'a> Writer<'a> {
         {
             return;
         }
-        self.put("<section class=\"account\" aria-label=\"Verdict in words\">\n");
+        let label = self.t("Verdict in words");
+        self.put(&format!("<section class=\"account\" aria-label=\"{label}\">\n"));
         if !rest.is_empty() {
             self.explained("<p class=\"rest\">", rest, "</p>");
         }
@@ -197,12 +209,12 @@ impl<'a> Writer<'a> {
         if !verdict.command.is_empty() {
             // Without non-breaking spaces, because the command is meant to be copied.
             let command = escape::html(&verdict.command);
-            self.put(&format!(
-                "<p class=\"command\">To compare them side by side: <code>{command}</code></p>\n"
-            ));
+            let to = self.t("To compare them side by side:");
+            self.put(&format!("<p class=\"command\">{to} <code>{command}</code></p>\n"));
         }
         if !verdict.fine.is_empty() {
-            self.put(&format!("<details class=\"fine\">\n<summary>{FINE}</summary>\n"));
+            let fine = self.t(FINE);
+            self.put(&format!("<details class=\"fine\">\n<summary>{fine}</summary>\n"));
             self.explained("<p>", &verdict.fine.join(" "), "</p>");
             self.put("</details>\n");
         }
@@ -213,8 +225,10 @@ impl<'a> Writer<'a> {
         if warnings.is_empty() {
             return;
         }
-        self.put("<section class=\"warnings\" id=\"warnings\" aria-label=\"Warnings\">\n");
-        self.put("<h2>Warnings</h2>\n<ul>\n");
+        let title = self.t("Warnings");
+        self.put(&format!(
+            "<section class=\"warnings\" id=\"warnings\" aria-label=\"{title}\">\n<h2>{title}</h2>\n<ul>\n"
+        ));
         for warning in warnings {
             self.element("<li>", warning, "</li>");
         }
@@ -225,12 +239,14 @@ impl<'a> Writer<'a> {
         if sections.len() < 3 {
             return;
         }
-        self.put("<nav class=\"contents\" aria-label=\"Sections\"><ul>\n");
+        let label = self.t("Sections");
+        self.put(&format!("<nav class=\"contents\" aria-label=\"{label}\"><ul>\n"));
         for (anchor, text) in sections {
             self.element(&format!("<li><a href=\"#{anchor}\">"), text, "</a></li>");
         }
         if provenance {
-            self.put("<li><a href=\"#provenance\">Provenance</a></li>\n");
+            let title = self.t("Provenance");
+            self.put(&format!("<li><a href=\"#provenance\">{title}</a></li>\n"));
         }
         self.put("</ul></nav>\n");
     }
@@ -239,15 +255,20 @@ impl<'a> Writer<'a> {
         if pairs.is_empty() {
             return;
         }
-        self.put("<section class=\"provenance\" id=\"provenance\">\n<h2>Provenance</h2>\n<dl>\n");
+        let title = self.t("Provenance");
+        self.put(&format!(
+            "<section class=\"provenance\" id=\"provenance\">\n<h2>{title}</h2>\n<dl>\n"
+        ));
         for (name, value) in pairs {
             self.element("<div><dt>", name, "</dt>");
             self.element("<dd>", value, "</dd></div>");
         }
         self.put("</dl>\n");
-        self.element("<p class=\"text\">", SCOPE, "</p>");
+        let scope = self.document.language.text(SCOPE);
+        self.element("<p class=\"text\">", &scope, "</p>");
         self.put("<dl class=\"signature\">\n");
         for line in SIGNATURE {
+            let line = self.t(line);
             self.element("<div><dt>", line, "</dt><dd></dd></div>");
         }
         self.put("</dl>\n</section>\n");
@@ -299,12 +320,13 @@ impl<'a> Writer<'a> {
 
     fn table(&mut self, table: &Table) {
         let count = self.counter.table();
+        let count = self.numbered("Table", count);
         self.put("<div class=\"table\" tabindex=\"0\" role=\"region\"");
         let label = escape::html(&table.caption);
         let wide = table.columns.len() > CARDS;
         let cards = if wide { " class=\"cards\"" } else { "" };
-        self.put(&format!(" aria-label=\"Table {count}. {label}\">\n<table{cards}>\n"));
-        let number = format!("<caption><span><b>Table {count}.</b> ");
+        self.put(&format!(" aria-label=\"{count}. {label}\">\n<table{cards}>\n"));
+        let number = format!("<caption><span><b>{count}.</b> ");
         self.explained(&number, &table.caption, "</span></caption>");
         let numeric = table.numeric();
         let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
@@ -389,12 +411,13 @@ impl<'a> Writer<'a> {
     }
 
     pub(crate) fn caption(&mut self, caption: &str) {
-        let number = format!("<figcaption><b>Figure {}.</b> ", self.counter.figure());
+        let number = self.counter.figure();
+        let number = format!("<figcaption><b>{}.</b> ", self.numbered("Figure", number));
         self.explained(&number, caption, "</figcaption>");
     }
 
     pub(crate) fn strip(&mut self, strip: &Strip, id: &str) {
-        let drawings = strip.drawings(id);
+        let drawings = strip.drawings(id, self.document.language);
         let width = drawings.first().map_or(0.0, |drawing| drawing.width.round());
         self.put(&format!("<div class=\"panels\" style=\"--panel:{width}px\">\n"));
         for drawing in drawings {
@@ -405,9 +428,10 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Returns the markup of a tone: its sign and its word.
-pub fn badge(tone: Tone) -> String {
-    format!("<p class=\"tone\">{}<span>{}</span></p>\n", sign(tone), escape::html(tone.word()))
+/// Returns the markup of a tone: its sign and its word in a language.
+pub fn badge(tone: Tone, language: Language) -> String {
+    let word = escape::html(language.fixed(tone.word()));
+    format!("<p class=\"tone\">{}<span>{word}</span></p>\n", sign(tone))
 }
 
 /// Returns the sign of a tone; each tone has its own shape, so that no meaning depends on color

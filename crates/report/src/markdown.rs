@@ -2,7 +2,7 @@
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Attachment, Block, Document, Event, Player, Players, Table, Word, attachments,
+    Attachment, Block, Document, Event, Language, Player, Players, Table, Word, attachments,
     document::FINE,
     escape,
     figure::{Counter, Names, pane_letter},
@@ -30,11 +30,13 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
         folder: figure_dir.trim_end_matches('/').to_owned(),
         names: Names::default(),
         counter: Counter::default(),
+        language: document.language,
     };
+    let t = |english| document.language.fixed(english);
     let verdict = &document.verdict;
     writer.line(&format!("# {}\n", escape::markdown(&document.title)));
     let headline = escape::markdown(&verdict.headline);
-    writer.line(&format!("**{}: {headline}**\n", verdict.tone.word()));
+    writer.line(&format!("**{}: {headline}**\n", t(verdict.tone.word())));
     let (opening, rest) = document.parted();
     writer.blocks(opening, 0);
     if !verdict.advice.is_empty() {
@@ -45,14 +47,15 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     }
     writer.line("");
     if !verdict.command.is_empty() {
-        writer.line(&format!("To compare them side by side:\n\n    {}\n", verdict.command));
+        let to = t("To compare them side by side:");
+        writer.line(&format!("{to}\n\n    {}\n", verdict.command));
     }
     if !document.warnings.is_empty() {
-        writer.line("## Warnings\n");
+        writer.line(&format!("## {}\n", t("Warnings")));
         writer.list(&document.warnings);
     }
     if !verdict.fine.is_empty() {
-        writer.line(&format!("## {FINE}\n"));
+        writer.line(&format!("## {}\n", t(FINE)));
         for sentence in &verdict.fine {
             writer.line(&escape::markdown(sentence));
         }
@@ -61,7 +64,7 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     writer.blocks(rest, 0);
     let words = glossary::used(&document.words, &writer.out);
     if !words.is_empty() {
-        writer.line(&format!("## {}\n", glossary::TITLE));
+        writer.line(&format!("## {}\n", t(glossary::TITLE)));
         let line = |one: &&Word| format!("**{}**: {}", one.word, escape::markdown(one.meaning));
         for one in words.iter().map(line) {
             writer.line(&format!("- {one}"));
@@ -70,14 +73,16 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     }
     let provenance = stamp::provenance(document);
     if !provenance.is_empty() {
-        writer.line("## Provenance\n\n| what | value |\n| :--- | :--- |");
+        let heads = ["Provenance", "what", "value"].map(t);
+        let [title, what, value] = heads;
+        writer.line(&format!("## {title}\n\n| {what} | {value} |\n| :--- | :--- |"));
         for (name, value) in &provenance {
             writer.line(&format!("| {} | {} |", escape::markdown(name), escape::markdown(value)));
         }
         for line in SIGNATURE {
-            writer.line(&format!("| {line} | |"));
+            writer.line(&format!("| {} | |", t(line)));
         }
-        writer.line(&format!("\n{SCOPE}\n"));
+        writer.line(&format!("\n{}\n", document.language.text(SCOPE)));
     }
     let text = format!("{}\n", writer.out.trim_end());
     MarkdownBundle { text, files: attachments(document) }
@@ -88,6 +93,7 @@ struct Writer {
     folder: String,
     names: Names,
     counter: Counter,
+    language: Language,
 }
 
 impl Writer {
@@ -139,8 +145,9 @@ impl Writer {
             format!("{}/", safe.replace('(', "%28").replace(')', "%29"))
         };
         let caption = escape::markdown(caption);
-        self.line(&format!("![Figure {number}]({folder}{name}.svg)\n"));
-        self.line(&format!("**Figure {number}.** {caption} ([data]({folder}{name}.csv))\n"));
+        let [figure, data] = ["Figure", "data"].map(|text| self.language.fixed(text));
+        self.line(&format!("![{figure} {number}]({folder}{name}.svg)\n"));
+        self.line(&format!("**{figure} {number}.** {caption} ([{data}]({folder}{name}.csv))\n"));
     }
 
     fn player(&mut self, player: &Player) {
@@ -151,7 +158,8 @@ impl Writer {
 
     fn players(&mut self, players: &Players) {
         let number = self.counter.figure();
-        self.line(&format!("**Figure {number}.** {}\n", escape::markdown(&players.caption)));
+        let figure = self.language.fixed("Figure");
+        self.line(&format!("**{figure} {number}.** {}\n", escape::markdown(&players.caption)));
         let mut events = Vec::new();
         for (at, (pane, figure)) in players.panes.iter().zip(players.paper_figures()).enumerate() {
             let number = format!("{number}{}", pane_letter(at));
@@ -168,19 +176,21 @@ impl Writer {
         if events.is_empty() {
             return;
         }
-        self.line("| time (s) | event | |\n| ---: | :--- | :--- |");
+        let [time, event] = ["time", "event"].map(|text| self.language.fixed(text));
+        self.line(&format!("| {time} (s) | {event} | |\n| ---: | :--- | :--- |"));
         for (pane, event) in events {
             let time = number::fixed(event.time, 2);
             let who = if pane.is_empty() { String::new() } else { format!("{pane}: ") };
             let text = escape::markdown(&format!("{who}{}", event.text));
-            self.line(&format!("| {time} | {} | {text} |", event.kind.word()));
+            self.line(&format!("| {time} | {} | {text} |", self.language.fixed(event.kind.word())));
         }
         self.line("");
     }
 
     fn table(&mut self, table: &Table) {
         let number = self.counter.table();
-        self.line(&format!("**Table {number}.** {}\n", escape::markdown(&table.caption)));
+        let word = self.language.fixed("Table");
+        self.line(&format!("**{word} {number}.** {}\n", escape::markdown(&table.caption)));
         if table.columns.is_empty() {
             return;
         }

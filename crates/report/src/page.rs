@@ -5,7 +5,7 @@ use std::{collections::HashMap, fmt::Write as _};
 use serde_json::{Value, json};
 
 use crate::{
-    Axis, Band, Mark, Plot, Scale,
+    Axis, Band, Language, Mark, Plot, Scale,
     escape::{self, json_in_script},
     pack,
     style::{DASHES, PALETTE, STYLE, standalone_style},
@@ -22,7 +22,8 @@ const THREE_JS: &str = include_str!("../assets/vendor/three.iife.min.js");
 const THREE_LICENSE: &str = include_str!("../assets/vendor/three-LICENSE");
 
 /// Scripts of the player, in the order of their dependencies.
-const PLAYER: [&str; 14] = [
+const PLAYER: [&str; 15] = [
+    include_str!("../assets/language.js"),
     include_str!("../assets/held.js"),
     include_str!("../assets/decode.js"),
     include_str!("../assets/forces.js"),
@@ -48,6 +49,12 @@ const DEPTH: [&str; 3] = [
 
 /// Further scripts of a report, which are not part of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
+
+/// Returns all scripts that may give texts to `t`.
+#[cfg(test)]
+pub(crate) fn all_scripts() -> impl Iterator<Item = &'static str> {
+    PLAYER.into_iter().chain(DEPTH).chain(REPORT).chain([trial::SCRIPT])
+}
 
 /// Content security policy of a page. It forbids every address except embedded data; the icon is an
 /// empty data address, so a browser makes no further request.
@@ -160,7 +167,7 @@ fn axis(axis: &Axis) -> Value {
 
 /// Assembles the whole file.
 pub(crate) fn assemble(
-    title: &str,
+    (title, language): (&str, Language),
     body: &str,
     payload: Payload,
     trial: Option<&Trial<'_>>,
@@ -173,7 +180,7 @@ pub(crate) fn assemble(
         live || played || ["<table", "<figure"].iter().any(|element| body.contains(element));
     let (policy, style) =
         if trial.is_some() { (PROGRAM_POLICY, trial::STYLE) } else { (POLICY, "") };
-    let mut out = head(title, policy, if live { UPLOT_CSS } else { "" }, style);
+    let mut out = head((title, language), policy, if live { UPLOT_CSS } else { "" }, style);
     out.push_str(body);
     if scripted {
         hold(
@@ -199,8 +206,14 @@ pub(crate) fn assemble(
     if scripted {
         let depth = DEPTH.into_iter().filter(|_| played);
         let tried = trial.map(|_| trial::SCRIPT);
-        let scripts: String = PLAYER.into_iter().chain(depth).chain(REPORT).chain(tried).collect();
-        out += &strict(&scripts);
+        let scripts: Vec<&str> =
+            PLAYER.into_iter().chain(depth).chain(REPORT).chain(tried).collect();
+        let entries = language.entries(&scripts);
+        if !entries.is_empty() {
+            let entries = json!(entries).to_string();
+            hold(&mut out, "application/json", "language", &json_in_script(&entries));
+        }
+        out += &strict(&scripts.concat());
     }
     out.push_str("</body>\n</html>\n");
     out
@@ -208,11 +221,12 @@ pub(crate) fn assemble(
 
 /// Returns the file up to its body, with a content security policy, and with style sheets before
 /// and after the common style sheet.
-fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
+fn head((title, language): (&str, Language), policy: &str, before: &str, after: &str) -> String {
+    let code = language.code();
     let title = escape::html(title);
     let palette = palette_css();
     format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+        "<!doctype html>\n<html lang=\"{code}\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
@@ -247,7 +261,7 @@ pub struct Shell<'a> {
 impl Shell<'_> {
     /// Returns the whole file.
     pub fn html(&self) -> String {
-        let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
+        let mut out = head((self.title, Language::English), PROGRAM_POLICY, "", self.style);
         out.push_str(self.body);
         for (id, bytes) in self.at_hand {
             hold(&mut out, "text/plain", id, &pack::gzip_letters(bytes));

@@ -138,6 +138,11 @@ impl<'a> Flow<'a> {
         }
     }
 
+    /// Returns a fixed text in the language of the document.
+    fn t(&self, english: &'static str) -> &'static str {
+        self.document.language.fixed(english)
+    }
+
     /// Starts a new page.
     fn turn(&mut self) {
         self.settle(Some(self.current));
@@ -225,7 +230,7 @@ impl<'a> Flow<'a> {
             Tone::Invalid => "page-bold page-invalid",
             Tone::Neutral => "page-bold page-neutral",
         };
-        let tone = verdict.tone.word().to_uppercase();
+        let tone = self.t(verdict.tone.word()).to_uppercase();
         self.tagged(StructRole::P, None, |flow| flow.text(class, 0.0, &tone));
         let headline = |flow: &mut Self| flow.text("page-headline", 0.0, &verdict.headline);
         self.tagged(StructRole::H1, None, headline);
@@ -245,13 +250,11 @@ impl<'a> Flow<'a> {
             self.paragraph("page-text", &verdict.sentences.join(" "));
         }
         if !verdict.command.is_empty() {
-            self.paragraph(
-                "page-text",
-                &format!("To compare them side by side: {}", verdict.command),
-            );
+            let to = self.t("To compare them side by side:");
+            self.paragraph("page-text", &format!("{to} {}", verdict.command));
         }
         if !verdict.fine.is_empty() {
-            self.heading("page-part", FINE, 28.0);
+            self.heading("page-part", self.t(FINE), 28.0);
             self.paragraph("page-text", &verdict.fine.join(" "));
         }
     }
@@ -259,12 +262,12 @@ impl<'a> Flow<'a> {
     /// Draws the outcomes of the variants at 0.7 points for each px.
     fn dots(&mut self, dots: &Dots) {
         const SCALE: f64 = 0.7;
-        let Some(drawing) = dots.draw() else { return };
+        let Some(drawing) = dots.draw(self.document.language) else { return };
         let height = SCALE * drawing.height;
         self.need(height + 14.0);
-        self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &dots.words()));
+        let words = dots.words(self.document.language);
+        self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &words));
         let at = [MARGIN[0], self.y + 1.0];
-        let words = dots.words();
         self.tagged(StructRole::Figure, Some(&words), |flow| {
             flow.page().drawing.push(Item::Nested { at, scale: SCALE, drawing });
         });
@@ -274,7 +277,7 @@ impl<'a> Flow<'a> {
     fn warnings(&mut self) {
         let document = self.document;
         if !document.warnings.is_empty() {
-            self.heading("page-section", "Warnings", 30.0);
+            self.heading("page-section", self.t("Warnings"), 30.0);
             self.list(&document.warnings);
         }
     }
@@ -285,11 +288,11 @@ impl<'a> Flow<'a> {
             return;
         }
         let pairs = provenance.into_iter().map(|(name, value)| vec![name, value]);
-        let lines = SIGNATURE.map(|line| vec![line.to_owned(), String::new()]);
+        let lines = SIGNATURE.map(|line| vec![self.t(line).to_owned(), String::new()]);
         let rows: Vec<Vec<String>> = pairs.chain(lines).collect();
-        self.heading("page-section", "Provenance", 40.0);
+        self.heading("page-section", self.t("Provenance"), 40.0);
         self.rows(&Sheet::new(Vec::new(), rows, vec![false; 2], self.width()));
-        self.paragraph("page-text", SCOPE);
+        self.paragraph("page-text", &self.document.language.text(SCOPE));
     }
 
     /// Writes the collapsed content, including nested collapsed content.
@@ -297,7 +300,7 @@ impl<'a> Flow<'a> {
         if self.folded.is_empty() {
             return;
         }
-        self.heading("page-section", "Appendix", 60.0);
+        self.heading("page-section", self.t("Appendix"), 60.0);
         let mut at = 0;
         while let Some(&(summary, blocks, counter)) = self.folded.get(at) {
             self.counter = counter;
@@ -325,12 +328,14 @@ impl<'a> Flow<'a> {
                 Block::Player(player) => self.player(player),
                 Block::Players(players) => {
                     let number = self.counter.figure();
-                    for (at, figure) in players.paper_figures().iter().enumerate() {
-                        self.figure(&format!("{number}{}", pane_letter(at)), figure);
+                    for (at, figure) in players.paper_figures().into_iter().enumerate() {
+                        let figure = figure.in_language(self.document.language);
+                        self.figure(&format!("{number}{}", pane_letter(at)), &figure);
                     }
                 }
                 Block::Details { summary, blocks } => {
-                    self.paragraph("page-small", &format!("{summary}: see the appendix."));
+                    let see = self.t("see the appendix.");
+                    self.paragraph("page-small", &format!("{summary}: {see}"));
                     self.folded.push((summary, blocks, self.counter));
                     self.counter.skip(blocks);
                 }
@@ -378,7 +383,7 @@ impl<'a> Flow<'a> {
 
     fn figure(&mut self, number: &str, figure: &Figure) {
         let id = self.names.take(&figure.id);
-        let caption = format!("Figure {number}. {}", figure.caption);
+        let caption = format!("{} {number}. {}", self.t("Figure"), figure.caption);
         let style = Style::of(Tag::Text, "page-small");
         let lines = wrap(Font::of(false), style.font_size, &caption, self.width()).len();
         let (drawing, height, scale) = self.picture(figure, &id);
@@ -399,11 +404,11 @@ impl<'a> Flow<'a> {
         // At the second fall the first one is visible too.
         let first = falls.next();
         let Some(fall) = falls.next().or(first).filter(|_| self.counter.figures == 0) else {
-            return player.paper_figure(&self.document.blocks);
+            return player.paper_figure(&self.document.blocks).in_language(self.document.language);
         };
         let panel = Panel { time: fall.time, note: fall.text.clone() };
         let strip = Strip { scene: player.scene.clone(), panels: vec![panel] };
-        Figure::new(&player.id, &player.caption, strip)
+        Figure::new(&player.id, &player.caption, strip).in_language(self.document.language)
     }
 
     fn player(&mut self, player: &Player) {
@@ -414,7 +419,7 @@ impl<'a> Flow<'a> {
         let rows: Vec<Vec<String>> = events
             .map(|event| {
                 let time = format!("{} s", number::fixed(event.time, 2));
-                vec![time, event.kind.word().to_owned(), event.text.clone()]
+                vec![time, self.t(event.kind.word()).to_owned(), event.text.clone()]
             })
             .collect();
         if !rows.is_empty() {
@@ -428,7 +433,7 @@ impl<'a> Flow<'a> {
         let head = table.columns.iter().map(crate::Column::heading).collect();
         let rows = table.rows.iter().map(|row| table.shown(row).collect()).collect();
         self.need(66.0);
-        let caption = format!("Table {number}. {}", table.caption);
+        let caption = format!("{} {number}. {}", self.t("Table"), table.caption);
         self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &caption));
         self.y += 3.0;
         self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));
@@ -505,7 +510,7 @@ impl<'a> Flow<'a> {
     fn finish(mut self) -> (Vec<Page>, Tags) {
         self.settle(Some(self.current));
         let (right, y) = (MARGIN[0] + self.width(), self.size[1] - 34.0);
-        let of = self.pages.len();
+        let (of, word) = (self.pages.len(), self.t("of"));
         let size = Style::of(Tag::Text, "page-foot").font_size;
         let titles = wrap(Font::of(false), size, &self.document.title, self.width() - 80.0);
         let title = match titles.as_slice() {
@@ -517,7 +522,7 @@ impl<'a> Flow<'a> {
             let drawing = &mut page.drawing;
             drawing.line("page-rule", [MARGIN[0], y - 12.0], [right, y - 12.0]);
             drawing.text("page-foot", [MARGIN[0], y], Anchor::Start, &title);
-            let number = format!("{} of {of}", at + 1);
+            let number = format!("{} {word} {of}", at + 1);
             drawing.text("page-foot", [right, y], Anchor::End, &number);
             page.tags.resize(page.drawing.items.len(), None);
         }

@@ -29,7 +29,8 @@ impl Writer<'_> {
         self.put(&format!(
             "<figure class=\"player\" id=\"figure-{id}\" data-player=\"{place}\">\n"
         ));
-        self.put(&CONTROLS.replace("{stages}", STAGE));
+        let controls = self.markup(CONTROLS).replace("{stages}", &self.markup(STAGE));
+        self.put(&controls);
         if self.prints {
             self.put("<div class=\"paper\">\n");
             if let FigureKind::Strip(strip) = player.paper_figure(&self.document.blocks).kind {
@@ -49,12 +50,13 @@ impl Writer<'_> {
         self.put(&format!(
             "<figure class=\"player several\" id=\"figure-{id}\" data-player=\"{place}\">\n"
         ));
-        let stage = |pane: &Pane| {
-            format!("<section class=\"pane\">\n{}{STAGE}</section>\n", pane_head(pane))
-        };
+        let one = self.markup(STAGE);
+        let stage =
+            |pane: &Pane| format!("<section class=\"pane\">\n{}{one}</section>\n", pane_head(pane));
         let stages: String = players.panes.iter().map(stage).collect();
         let stages = format!("<div class=\"panes\">\n{stages}</div>\n");
-        self.put(&CONTROLS.replace("{stages}", &stages));
+        let controls = self.markup(CONTROLS).replace("{stages}", &stages);
+        self.put(&controls);
         if self.prints {
             self.put("<div class=\"paper\">\n");
             for (pane, figure) in players.panes.iter().zip(players.paper_figures()) {
@@ -85,6 +87,10 @@ impl Writer<'_> {
         }
     }
 
+    fn markup(&self, english: &str) -> String {
+        self.document.language.markup(english)
+    }
+
     /// Writes events, each with the mark of its pane, which is empty if there is only one pane.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
@@ -96,24 +102,23 @@ impl Writer<'_> {
         let (first, rest) = events.split_at(open);
         self.event_list(first);
         if !rest.is_empty() {
-            self.put(&format!(
-                "<details class=\"more\">\n<summary>{} more events</summary>\n",
-                rest.len()
-            ));
+            let more = self.document.language.text(&format!("{} more events", rest.len()));
+            self.put(&format!("<details class=\"more\">\n<summary>{more}</summary>\n"));
             self.event_list(rest);
             self.put("</details>\n");
         }
     }
 
     fn event_list(&mut self, events: &[(&str, &Event)]) {
-        self.put("<ol class=\"events\" aria-label=\"Events\">\n");
+        let label = self.t("Events");
+        self.put(&format!("<ol class=\"events\" aria-label=\"{label}\">\n"));
         for (pane, event) in events {
             self.put(&format!(
                 "<li><button type=\"button\" data-time=\"{}\"><i class=\"event {}\" aria-hidden=\"true\"></i><span class=\"when\">{}\u{a0}s</span><span class=\"what\">{}</span>",
                 event.time,
                 event.kind.class(),
                 number::fixed(event.time, 2),
-                escape::html(event.kind.word())
+                escape::html(self.t(event.kind.word()))
             ));
             self.put("<span class=\"text\">");
             if !pane.is_empty() {

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::Document;
+use crate::{Document, Language};
 
 /// Date of every page, and the commit of the program that writes it.
 ///
@@ -28,7 +28,11 @@ impl Stamp {
 /// Returns the provenance of a document with the date first, and with the commit beside the
 /// version of the program.
 pub(crate) fn provenance(document: &Document) -> Vec<(String, String)> {
-    stamped(&document.provenance, STAMP.get())
+    let mut pairs = stamped(&document.provenance, STAMP.get());
+    for (name, value) in pairs.iter_mut().filter(|_| document.language != Language::English) {
+        (*name, *value) = (document.language.text(name), document.language.text(value));
+    }
+    pairs
 }
 
 fn stamped(pairs: &[(String, String)], stamp: Option<&Stamp>) -> Vec<(String, String)> {

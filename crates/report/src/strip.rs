@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Point, Polyline, Role, Scene, SceneBody, csv_field,
+    Language, Point, Polyline, Role, Scene, SceneBody, csv_field,
     drawing::{Anchor, Body, Drawing, Item, Placed, text_width},
     number,
     scene::{Extent, hatch, window},
@@ -134,7 +134,7 @@ impl Strip {
 
     /// Draws the panels at equal size. Bodies are defined in the first drawing, with ids that start
     /// with `id`, and referred to by all drawings.
-    pub(crate) fn drawings(&self, id: &str) -> Vec<Drawing> {
+    pub(crate) fn drawings(&self, id: &str, language: Language) -> Vec<Drawing> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
         let shown: Vec<usize> = frames.iter().copied().flatten().collect();
@@ -147,7 +147,8 @@ impl Strip {
             .map(|(at, (panel, frame))| {
                 let time = frame.and_then(|f| self.scene.frames.times.get(f)).copied();
                 let heading = format!("t = {} s", number::fixed(time.unwrap_or(f64::NAN), 2));
-                let title = format!("{heading}. {}", panel.note);
+                let note = language.text(&panel.note);
+                let title = format!("{heading}. {note}");
                 let (width, height) = (view.width, view.height);
                 let mut drawing = Drawing::new(width, height + CAPTION, title.trim_end());
                 if at == 0 {
@@ -155,15 +156,15 @@ impl Strip {
                 }
                 drawing.nest([0.0, 0.0], picture(&self.scene, id, frame, &view));
                 drawing.text("label strong", [1.0, height + 16.0], Anchor::Start, &heading);
-                let note = fit(&panel.note, width);
+                let note = fit(&note, width);
                 drawing.text("note", [1.0, height + 31.0], Anchor::Start, &note);
                 drawing
             })
             .collect()
     }
 
-    pub(crate) fn draw(&self, id: &str, title: &str) -> Drawing {
-        let drawings = self.drawings(id);
+    pub(crate) fn draw(&self, id: &str, title: &str, language: Language) -> Drawing {
+        let drawings = self.drawings(id, language);
         let (wide, high) = drawings.first().map_or((PANEL[0], 0.0), |d| (d.width, d.height));
         let most = (1..drawings.len()).take_while(|n| *n as f64 * (wide + GAP) + wide <= ROW);
         // As many panels as fit into a row, balanced so that the last row has more than one panel.

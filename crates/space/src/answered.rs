@@ -15,7 +15,7 @@ use barrelstack::variants::{self, Advance, Observer, Remedy, RunChoice};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::watch::Ending;
 use barrelstack::{Progress, RunFailure, Scenario};
-use barrelstack_report::Document;
+use barrelstack_report::{Document, Language};
 
 use crate::report::document;
 use crate::variants::Answer;
@@ -202,15 +202,16 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the output files by name.
+    /// Returns the output files by name, with the report in a language.
     ///
     /// # Errors
     /// When an archive cannot be written.
-    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+    pub fn files(&self, language: Language) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
         match self {
-            Self::Planes(answer) => export::files(answer),
+            Self::Planes(answer) => export::files(answer, language),
             Self::Space(answer) => {
-                Ok(crate::export::files(answer, &answer.scenario.to_resolved_toml()))
+                let stated = answer.scenario.to_resolved_toml();
+                Ok(crate::export::files(answer, &stated, language))
             }
         }
     }

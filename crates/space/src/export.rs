@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use barrelstack::export::{ExportError, dictionary};
 use barrelstack::render::{RenderFolder, Rendered, Rendering};
 use barrelstack_report::column::column_name;
-use barrelstack_report::{csv_field, html, paraview_of_solids, shortest};
+use barrelstack_report::{Language, csv_field, html, paraview_of_solids, shortest};
 
 use crate::columns;
 use crate::drawing::{Sight, scene};
@@ -15,14 +15,14 @@ use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
 
-/// Returns the output files for a result, each with its name.
-pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
+/// Returns the output files for a result, each with its name; the report is in a language.
+pub fn files(answer: &Answer, resolved: &str, language: Language) -> Vec<(String, Vec<u8>)> {
     let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),
         ("scenario.toml", resolved.to_owned()),
         ("variants.csv", variants_csv(answer)),
         ("frames.csv", frames_csv(&answer.run)),
-        ("report.html", html(&document(answer))),
+        ("report.html", html(&document(answer).in_language(language))),
     ];
     if answer.run.stack.is_free() {
         // A free scene has no variants.

@@ -148,6 +148,7 @@ pub fn document(answer: &Answer) -> Document {
         provenance: provenance(run, summary),
         words: WORDS.to_vec(),
         warnings: run.warnings.clone(),
+        ..Document::default()
     }
 }
 

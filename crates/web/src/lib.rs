@@ -219,7 +219,9 @@ pub fn answered(
                 let results = verdict::results(&planes()?, request, trails)?;
                 answer_of(scenario, results, &mut progress)
             };
-            let files = export::files(&found.map_err(placed)?).map_err(words_of)?;
+            let files =
+                export::files(&found.map_err(placed)?, barrelstack_report::Language::English)
+                    .map_err(words_of)?;
             let head: Vec<_> = files.iter().map(|(name, bytes)| (name, bytes.len())).collect();
             let rest: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
             Ok(enveloped(&json(&head)?, &rest))

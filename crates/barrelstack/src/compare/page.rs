@@ -41,6 +41,7 @@ pub fn document(sides: &[Side]) -> Document {
                 side.summary.warnings().iter().map(move |text| format!("{}: {text}", letter(at)))
             })
             .collect(),
+        ..Document::default()
     }
 }
 

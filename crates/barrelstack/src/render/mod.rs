@@ -9,8 +9,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use barrelstack_report::{
-    Animation, Attachment, Document, Film, Format, Paper, Scene, document_pdf, figures, markdown,
-    paraview,
+    Animation, Attachment, Document, Film, Format, Language, Paper, Scene, document_pdf, figures,
+    markdown, paraview,
 };
 
 use crate::export::ExportError;
@@ -75,6 +75,8 @@ pub struct Rendering {
     pub between: Option<[f64; 2]>,
     /// Longer side (pixels) of animations.
     pub largest: u32,
+    /// Language of the figures and of the report.
+    pub language: Language,
 }
 
 impl Default for Rendering {
@@ -86,6 +88,7 @@ impl Default for Rendering {
             rate: 20.0,
             between: None,
             largest: 480,
+            language: Language::English,
         }
     }
 }
@@ -216,7 +219,7 @@ impl RenderFolder {
         let filmed = how
             .between
             .map_or_else(|| Arc::clone(scene), |[from, to]| Arc::new(scene.between(from, to)));
-        let document = LazyCell::new(document);
+        let document = LazyCell::new(|| document().in_language(how.language));
         let mut written = Vec::new();
         for &part in &self.parts {
             written.push(self.whole(part, |place| match part {

@@ -27,6 +27,7 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
         provenance: provenance(made),
         warnings: decision.warnings.clone(),
         words: barrelstack::report::WORDS.to_vec(),
+        ..Document::default()
     }
 }
 

@@ -44,6 +44,7 @@ pub(super) fn document(all: &Heights) -> Document {
         ],
         warnings: all.warnings.clone(),
         words: barrelstack::report::WORDS.to_vec(),
+        ..Document::default()
     }
 }
 

@@ -41,6 +41,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
         ],
         warnings: warnings(all),
         words: barrelstack::report::WORDS.to_vec(),
+        ..Document::default()
     }
 }
 

@@ -238,6 +238,7 @@ fn document(league: &League, scenario: &Scenario, protocol: &Protocol) -> Docume
             .flat_map(|(_, sheet)| sheet.document.warnings.clone())
             .collect(),
         words: barrelstack::report::WORDS.to_vec(),
+        ..Document::default()
     }
 }
 

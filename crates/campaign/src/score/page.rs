@@ -49,6 +49,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
         ],
         warnings: warnings(sheet),
         words: barrelstack::report::WORDS.to_vec(),
+        ..Document::default()
     }
 }
 

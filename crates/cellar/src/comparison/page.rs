@@ -235,6 +235,7 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
         provenance: provenance(layouts, found),
         words: WORDS.to_vec(),
         warnings: found.warnings.clone(),
+        ..Document::default()
     }
 }
 

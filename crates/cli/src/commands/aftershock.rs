@@ -11,6 +11,7 @@ use barrelstack_cellar::{Cellar, aftershocks, words};
 use super::Loaded;
 use crate::args::{RunArgs, ScenarioArgs, VariantArgs};
 use crate::figures::PaperName;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::progress::Progress;
 
@@ -39,6 +40,8 @@ pub(crate) struct AftershockArgs {
     overwrite: bool,
     #[command(flatten)]
     tables: crate::tables::TableArgs,
+    #[command(flatten)]
+    language: LanguageArgs,
     /// Print one JSON document, that of `run`, in place of text.
     #[arg(long)]
     json: bool,
@@ -94,6 +97,7 @@ pub(crate) fn aftershock(args: &AftershockArgs) -> anyhow::Result<ExitCode> {
         no_remedy: true,
         pdf: false,
         paper: PaperName::A4,
+        language: args.language,
         with_engine: None,
         state: None,
         keep: None,
@@ -133,7 +137,8 @@ fn residual(
     // The verdict is printed even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        let files = aftershocks::files(&summary).context("cannot write the summary")?;
+        let files =
+            aftershocks::files(&summary, args.language.of()).context("cannot write the summary")?;
         Ok(folder.write_files(&args.tables.of(files)?)?)
     });
     if args.json {

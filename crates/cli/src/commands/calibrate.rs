@@ -20,6 +20,7 @@ use clap::{Subcommand, ValueEnum};
 use crate::args::ScenarioArgs;
 use crate::interrupt::Stopped;
 use crate::lanes::LanesArgs;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::progress::Progress;
 use crate::typed::{typed, word};
@@ -97,6 +98,8 @@ struct ResultArgs {
     /// Allow a folder that is not empty, and replace the files of an earlier page.
     #[arg(long, requires = "out")]
     overwrite: bool,
+    #[command(flatten)]
+    language: LanguageArgs,
 }
 
 /// The pair of bodies that was tested.
@@ -278,7 +281,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     };
     let written = folder.as_ref().map(|folder| {
         crate::interrupt::writes_to(folder.path());
-        folder.write_page(&found.document())
+        folder.write_page(&result.language.page(&found.document()))
     });
     if result.json {
         printer::document(&found.to_document())?;

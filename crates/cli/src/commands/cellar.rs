@@ -119,10 +119,11 @@ pub(super) fn run(
     // The verdict is printed even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        let files = answer.files().context("cannot write the summary")?;
+        let files = answer.files(args.language.of()).context("cannot write the summary")?;
         folder.write_files(&args.tables.of(files)?)?;
         if args.pdf {
-            folder.write_pdf(&report::document(&answer), args.paper.into())?;
+            let document = args.language.page(&report::document(&answer));
+            folder.write_pdf(&document, args.paper.into())?;
         }
         Ok(())
     });

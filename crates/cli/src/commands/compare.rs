@@ -15,6 +15,7 @@ use barrelstack_space::AnyAnswer;
 use super::Loaded;
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{Interrupt, Stopped};
+use crate::language::LanguageArgs;
 use crate::printer;
 
 /// End of the help of `compare`.
@@ -64,6 +65,8 @@ pub(crate) struct CompareArgs {
     pub(super) overwrite: bool,
     #[command(flatten)]
     pub(super) tables: crate::tables::TableArgs,
+    #[command(flatten)]
+    pub(super) language: LanguageArgs,
     /// Print one JSON document in place of the sentences.
     #[arg(long)]
     pub(super) json: bool,
@@ -161,7 +164,7 @@ fn stacks(
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());
     // The verdict is printed even if the files cannot be written.
-    let written = folder.write_page(&document);
+    let written = folder.write_page(&args.language.page(&document));
     let differing = differences(sides.iter().map(|side| &side.stated));
     if args.json {
         printer::document(&Comparison::of(&sides, unfinished))?;
@@ -191,7 +194,7 @@ fn alone(
 ) -> anyhow::Result<ExitCode> {
     let Some((name, answer)) = answers.first() else { return Err(Stopped.into()) };
     crate::interrupt::writes_to(folder.path());
-    let written = answer.files().and_then(|files| folder.write_files(&files));
+    let written = answer.files(args.language.of()).and_then(|files| folder.write_files(&files));
     printer::note(&format!(
         "stopped before the end of {}: nothing is compared",
         listed(unfinished.iter().map(|name| format!("\"{name}\"")))

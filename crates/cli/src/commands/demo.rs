@@ -27,7 +27,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     }
     crate::interrupt::finished();
     // The verdict is printed even if the files cannot be written.
-    let written = answer.files().and_then(|files| folder.write_files(&files));
+    let written = answer.files(args.language.of()).and_then(|files| folder.write_files(&files));
     printer::lines(answer.sentences())?;
     printer::lines(printer::side_by_side(&answer.summary()))?;
     printer::warnings(&answer);

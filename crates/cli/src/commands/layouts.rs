@@ -53,8 +53,8 @@ pub(super) fn compare(
     let found = comparison::compared(&done, unfinished, left_out);
     crate::interrupt::writes_to(folder.path());
     // The verdict is printed even if the files cannot be written.
-    let written =
-        folder.write_page(&comparison::document(&done, &found)).map_err(anyhow::Error::from);
+    let page = args.language.page(&comparison::document(&done, &found));
+    let written = folder.write_page(&page).map_err(anyhow::Error::from);
     let written = written
         .and_then(|()| Ok(folder.write_files(&args.tables.of(comparison::files(&found)?)?)?));
     printed(args, &found, &folder)?;

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::interrupt::{Stopped, keeps};
 use crate::lanes::LanesArgs;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::progress::Progress;
 use crate::store::{folder_below, store_all, writable};
@@ -18,6 +19,8 @@ use crate::store::{folder_below, store_all, writable};
 pub(super) struct PageArgs {
     #[command(flatten)]
     lanes: LanesArgs,
+    #[command(flatten)]
+    pub(super) language: LanguageArgs,
     /// Print one JSON document in place of the table.
     #[arg(long)]
     json: bool,
@@ -48,7 +51,7 @@ impl PageArgs {
         warnings: &[String],
     ) -> anyhow::Result<ExitCode> {
         // The answer is printed even if the files cannot be written.
-        let written = write_both(out, name, page, document);
+        let written = write_both(out, name, &self.language.page(page), document);
         if self.json {
             printer::document(document)?;
         } else {

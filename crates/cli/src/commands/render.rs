@@ -9,6 +9,7 @@ use barrelstack::render::{Part, RenderFolder, Rendering};
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::figures::{FigureArgs, PaperName};
 use crate::interrupt::keeps;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::typed::typed;
 
@@ -31,6 +32,8 @@ pub(crate) struct RenderArgs {
     /// Paper size of report.pdf.
     #[arg(long, value_enum, value_name = "PAPER", default_value = "a4")]
     paper: PaperName,
+    #[command(flatten)]
+    language: LanguageArgs,
     /// Pictures and ParaView time steps per second of the run; animations show at most 50.
     #[arg(long, value_name = "HZ", default_value = "20", value_parser = rate)]
     rate: f64,
@@ -106,6 +109,7 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         rate: args.rate,
         between: args.between()?,
         largest: args.size,
+        language: args.language.of(),
     };
     // The folder is checked before the computation starts.
     let folder = RenderFolder::prepare(&args.out, &args.parts(), args.overwrite)?;

@@ -43,14 +43,11 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
     let out = &args.out;
     let table = barrelstack_reproduction::table(found);
-    let paper = document_pdf(&found.document, Paper::A4);
-    super::page::write(
-        out,
-        &found.document,
-        &[("table.md", table.as_bytes()), ("index.pdf", &paper)],
-    )?;
+    let document = args.language.page(&found.document);
+    let paper = document_pdf(&document, Paper::A4);
+    super::page::write(out, &document, &[("table.md", table.as_bytes()), ("index.pdf", &paper)])?;
     let formats = args.figures.formats();
-    write_figures(&found.document, &out.join("figures"), &formats, args.figures.dpi)?;
+    write_figures(&document, &out.join("figures"), &formats, args.figures.dpi)?;
     Ok(())
 }
 

@@ -60,12 +60,13 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     // The verdict is printed even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), anyhow::Error>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
-        folder.write_files(&args.tables.of(answer.files()?)?)?;
+        folder.write_files(&args.tables.of(answer.files(args.language.of())?)?)?;
+        let document = || args.language.page(&answer.document());
         if let Some(engine) = &engine {
-            folder.write_with_engine(&answer.document(), answer.scenario(), engine)?;
+            folder.write_with_engine(&document(), answer.scenario(), engine)?;
         }
         if args.pdf {
-            folder.write_pdf(&answer.document(), args.paper.into())?;
+            folder.write_pdf(&document(), args.paper.into())?;
         }
         Ok(())
     });

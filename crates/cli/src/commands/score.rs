@@ -58,7 +58,7 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
         let files = args.tables.of(vec![("league.csv".to_owned(), csv.into_bytes())])?;
         let files: Vec<(&str, &[u8])> =
             files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())).collect();
-        write(&args.out, &found.document, &files)?;
+        write(&args.out, &args.page.language.page(&found.document), &files)?;
         let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
         lines.extend(table(&found));
         lines.extend(page::place(&args.out));

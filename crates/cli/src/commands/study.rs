@@ -23,6 +23,7 @@ pub(crate) use answer::StudyResult;
 
 use crate::interrupt::{Interrupt, Stopped, keeps};
 use crate::lanes::LanesArgs;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::tables::TableArgs;
 
@@ -82,6 +83,8 @@ struct RunArgs {
     lanes: LanesArgs,
     #[command(flatten)]
     tables: TableArgs,
+    #[command(flatten)]
+    language: LanguageArgs,
     /// Print one JSON document in place of the summary.
     #[arg(long)]
     json: bool,
@@ -215,7 +218,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     }
     let (answer, made) = collected(out)?;
     args.tables.write(out, &TABLES)?;
-    let page = report::write_page(out)?;
+    let page = report::write_page(out, args.language)?;
     if args.json {
         printer::document(&StudyResult::of(&(&answer, &made)))?;
     } else {

@@ -18,6 +18,7 @@ use super::panels;
 use super::process::share;
 use super::table::{Table, number, percent};
 use super::target;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::typed::typed;
 
@@ -61,6 +62,8 @@ pub(super) struct MatchArgs {
     /// a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
+    #[command(flatten)]
+    language: LanguageArgs,
 }
 
 /// Exit status if a motion was written although its spectrum misses the target.
@@ -115,7 +118,12 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
             compared.on_page("The target spectrum, and the spectra before and after matching."),
             measured.on_page("Measures of the motion before and after matching."),
         ];
-        page::write(figure, &drawn, &after, PageText { headline, tables })?;
+        page::write(
+            figure,
+            &drawn,
+            &after,
+            PageText { headline, tables, language: args.language },
+        )?;
     }
     match missed {
         None => Ok(ExitCode::SUCCESS),

@@ -10,6 +10,7 @@ use barrelstack_report::{
 
 use super::output::vacant;
 use super::panels;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::store::store;
 
@@ -19,6 +20,8 @@ pub(super) struct PageText {
     pub(super) headline: String,
     /// Tables of measures before and after the change.
     pub(super) tables: Vec<Table>,
+    /// Language of the page.
+    pub(super) language: LanguageArgs,
 }
 
 /// `true` if the path has the extension of a page.
@@ -41,7 +44,9 @@ pub(super) fn write(
     text: PageText,
 ) -> anyhow::Result<()> {
     if let (FigureKind::Panels(panels), true) = (&figure.kind, is_page(path)) {
-        store(path, html(&document(panels, after, text)).as_bytes())?;
+        let language = text.language;
+        let page = language.page(&document(panels, after, text));
+        store(path, html(&page).as_bytes())?;
     } else {
         panels::write(path, figure)?;
     }
@@ -83,6 +88,7 @@ fn document(panels: &Panels, after: &Record, text: PageText) -> Document {
             .collect(),
         warnings: Vec::new(),
         words: Vec::new(),
+        ..Document::default()
     }
 }
 

@@ -8,9 +8,7 @@ use barrelstack_motion::{
     Channel, FourierSpectrum, NoiseCriterion, Quantity, Record, ResponseSpectrum, STANDARD_GRAVITY,
     Sampled, TargetSpectrum, husid, rotated_spectrum, standard_periods,
 };
-use barrelstack_report::{
-    Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
-};
+use barrelstack_report::{Axis, Band, Figure, Format, Mark, Panels, Plot, Series, significant};
 
 use super::measures::{columns, peak_reading};
 use super::output::vacant;
@@ -154,7 +152,7 @@ fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure
         lines.push(format!("{samples} samples, one every {} s{start}", channel.time_step));
     }
     let caption = format!("{title}: {what}");
-    Figure { id: id.to_owned(), caption, kind: FigureKind::Panels(Panels { title, lines, rows }) }
+    Figure::new(id, caption, Panels { title, lines, rows })
 }
 
 pub(super) fn time() -> Axis {

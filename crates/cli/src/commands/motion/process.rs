@@ -15,6 +15,7 @@ use super::measures;
 use super::output::{Form, Output};
 use super::page::{self, PageText};
 use super::panels;
+use crate::language::LanguageArgs;
 use crate::typed::{typed, word};
 
 /// Arguments of `process`.
@@ -71,6 +72,8 @@ pub(super) struct ProcessArgs {
     /// Plot the record before and after: as panels (.png, .svg, .pdf) or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
+    #[command(flatten)]
+    language: LanguageArgs,
     #[command(flatten)]
     folder: FolderArgs,
 }
@@ -249,7 +252,12 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         let drawn = panels::before_after(&before, &after)?;
         let headline = "The record before and after processing.".to_owned();
         let tables = vec![table.on_page("Measures of the motion before and after processing.")];
-        page::write(figure, &drawn, &after, PageText { headline, tables })?;
+        page::write(
+            figure,
+            &drawn,
+            &after,
+            PageText { headline, tables, language: args.language },
+        )?;
     }
     Ok(ExitCode::SUCCESS)
 }

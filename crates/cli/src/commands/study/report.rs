@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use barrelstack_campaign::decision::{Decision, Request, SiteHazard, decide_folder};
 
 use crate::commands::page;
+use crate::language::LanguageArgs;
 use crate::printer;
 
 /// End of the help.
@@ -32,6 +33,8 @@ pub(super) struct ReportArgs {
     /// Folder for the page, in place of the folder of the study.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    language: LanguageArgs,
     /// Print one JSON document in place of the summary.
     #[arg(long)]
     json: bool,
@@ -43,7 +46,7 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     let request = Request { hazard, years: Some(f64::from(args.years)) };
     let (decision, _) = decide_folder(&args.folder, &request)?;
     let out = args.out.as_deref().unwrap_or(&args.folder);
-    write(out, &decision)?;
+    write(out, &decision, args.language)?;
     if args.json {
         printer::document(&decision.to_document())?;
     } else {
@@ -58,10 +61,10 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
 ///
 /// A study in which no case has a verdict has no page. This is not an error; the table of the study
 /// states the reasons.
-pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
+pub(super) fn write_page(out: &Path, language: LanguageArgs) -> anyhow::Result<Option<PathBuf>> {
     match decide_folder(out, &Request::default()) {
         Ok((decision, _)) => {
-            write(out, &decision)?;
+            write(out, &decision, language)?;
             Ok(Some(out.join("index.html")))
         }
         Err(error) => {
@@ -71,6 +74,7 @@ pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
     }
 }
 
-fn write(out: &Path, decision: &Decision) -> anyhow::Result<()> {
-    page::write_both(out, "decision.json", &decision.document, &decision.to_document())
+fn write(out: &Path, decision: &Decision, language: LanguageArgs) -> anyhow::Result<()> {
+    let document = language.page(&decision.document);
+    page::write_both(out, "decision.json", &document, &decision.to_document())
 }

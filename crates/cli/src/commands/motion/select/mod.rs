@@ -15,6 +15,7 @@ use clap::ValueEnum;
 
 use super::folder::{self, Batch, FolderArgs, Worked};
 use super::input::Input;
+use crate::language::LanguageArgs;
 use crate::printer;
 use crate::tables::TableArgs;
 use limits::{Limits, Range};
@@ -78,6 +79,8 @@ pub(super) struct SelectArgs {
     /// Folder for the set, the study, the page and the table of all records.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    #[command(flatten)]
+    language: LanguageArgs,
     #[command(flatten)]
     folder: FolderArgs,
 }

@@ -16,7 +16,8 @@ pub(super) fn write(
     candidates: &[Candidate],
     statement: &str,
 ) -> anyhow::Result<()> {
-    page::write(&set.args.out, &document(set, target, candidates, statement), &[])
+    let document = document(set, target, candidates, statement);
+    page::write(&set.args.out, &set.args.language.page(&document), &[])
 }
 
 fn document(

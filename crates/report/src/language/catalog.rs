@@ -1,0 +1,229 @@
+//! The catalog of a language: templates of English texts with their translations.
+
+use std::collections::{HashMap, HashSet};
+
+/// Entries of a language.
+pub(super) struct Catalog {
+    /// All entries as written, for texts without a placeholder and for scripts.
+    entries: HashMap<&'static str, &'static str>,
+    templates: Vec<Template>,
+    /// Templates by a word that every text of the template contains.
+    by_word: HashMap<&'static str, Vec<usize>>,
+    /// Templates without such a word.
+    wordless: Vec<usize>,
+}
+
+/// A part of a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Text(&'static str),
+    /// A placeholder, by its index from 0.
+    Slot(usize),
+}
+
+/// A text with placeholders, and its translation.
+#[derive(Debug)]
+pub(super) struct Template {
+    source: Vec<Part>,
+    target: Vec<Part>,
+    /// Number of letters outside the placeholders.
+    pub(super) letters: usize,
+}
+
+impl Catalog {
+    /// Reads a catalog: lines `"English" = "translation"`, comments that start with `#`, section
+    /// heads, and empty lines. A line that is none of these is passed over; a test reports it.
+    pub(super) fn of(text: &'static str) -> Self {
+        let templates: Vec<Template> = text
+            .lines()
+            .filter_map(entry)
+            .filter(|(source, _)| source.contains('{'))
+            .map(|(source, target)| Template::of(source, target))
+            .filter(|template| template.source.iter().any(|part| matches!(part, Part::Slot(_))))
+            .collect();
+        let entries = text.lines().filter_map(entry).collect();
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        for template in &templates {
+            for word in template.words() {
+                *counts.entry(word).or_default() += 1;
+            }
+        }
+        let (mut by_word, mut wordless) = (HashMap::<_, Vec<usize>>::new(), Vec::new());
+        for (at, template) in templates.iter().enumerate() {
+            // The rarest word leaves the fewest templates to compare with a text.
+            match template.words().into_iter().min_by_key(|word| (counts[word], *word)) {
+                Some(word) => by_word.entry(word).or_default().push(at),
+                None => wordless.push(at),
+            }
+        }
+        Self { entries, templates, by_word, wordless }
+    }
+
+    /// Returns the translation of a text that is an entry as it stands.
+    pub(super) fn entry(&self, text: &str) -> Option<&'static str> {
+        self.entries.get(text).copied()
+    }
+
+    /// Returns the templates that a text may match.
+    pub(super) fn candidates(&self, text: &str) -> Vec<&Template> {
+        let words: HashSet<&str> = words(text).collect();
+        let found = words.iter().filter_map(|word| self.by_word.get(word)).flatten();
+        let mut places: Vec<usize> = found.chain(&self.wordless).copied().collect();
+        places.sort_unstable();
+        places.into_iter().map(|at| &self.templates[at]).collect()
+    }
+}
+
+/// Returns the entry of a line.
+pub(super) fn entry(line: &'static str) -> Option<(&'static str, &'static str)> {
+    let (source, rest) = quoted(line.trim())?;
+    let (target, rest) = quoted(rest.trim_start().strip_prefix('=')?.trim_start())?;
+    let rest = rest.trim_start();
+    (rest.is_empty() || rest.starts_with('#')).then_some((source, target))
+}
+
+/// Reads a TOML string at the start of a text, and returns it with what follows.
+fn quoted(text: &'static str) -> Option<(&'static str, &'static str)> {
+    let inner = text.strip_prefix('"')?;
+    let mut escaped = false;
+    let end = inner.char_indices().find(|(_, c)| {
+        let ends = *c == '"' && !escaped;
+        escaped = *c == '\\' && !escaped;
+        ends
+    });
+    let (end, _) = end?;
+    let (raw, rest) = (&inner[..end], &inner[end + 1..]);
+    if !raw.contains('\\') {
+        return Some((raw, rest));
+    }
+    // Few entries have an escape, and the catalog lives as long as the program.
+    let whole: String = serde_json::from_str(&format!("\"{raw}\"")).ok()?;
+    Some((Box::leak(whole.into_boxed_str()), rest))
+}
+
+/// Returns the words and numbers of a text.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty())
+}
+
+/// Divides a template at its placeholders.
+fn parts(text: &'static str) -> Vec<Part> {
+    let (mut found, mut rest) = (Vec::new(), text);
+    let mut from = 0;
+    while let Some(at) = rest[from..].find('{').map(|at| at + from) {
+        let digits = rest[at + 1..].find('}').map(|end| &rest[at + 1..at + 1 + end]);
+        let Some((slot, digits)) =
+            digits.and_then(|digits| Some((digits.parse::<usize>().ok()?.checked_sub(1)?, digits)))
+        else {
+            from = at + 1;
+            continue;
+        };
+        if at > 0 {
+            found.push(Part::Text(&rest[..at]));
+        }
+        found.push(Part::Slot(slot));
+        rest = &rest[at + digits.len() + 2..];
+        from = 0;
+    }
+    if !rest.is_empty() {
+        found.push(Part::Text(rest));
+    }
+    found
+}
+
+impl Template {
+    fn of(source: &'static str, target: &'static str) -> Self {
+        let (source, target) = (parts(source), parts(target));
+        let letters = source
+            .iter()
+            .map(|part| if let Part::Text(text) = part { super::letters(text) } else { 0 })
+            .sum();
+        Self { source, target, letters }
+    }
+
+    /// `true` if the template begins with a text and not with a placeholder.
+    pub(super) fn begins_with_text(&self) -> bool {
+        matches!(self.source.first(), Some(Part::Text(_)))
+    }
+
+    /// Returns the words that are whole in every text of the template.
+    fn words(&self) -> Vec<&'static str> {
+        let mut found = Vec::new();
+        for (at, part) in self.source.iter().enumerate() {
+            let Part::Text(text) = part else { continue };
+            let (first, last) = (at == 0, at + 1 == self.source.len());
+            for word in words(text) {
+                let start = word.as_ptr() as usize - text.as_ptr() as usize;
+                let joins_before = start == 0 && !first;
+                let joins_after = start + word.len() == text.len() && !last;
+                if !joins_before && !joins_after {
+                    found.push(word);
+                }
+            }
+        }
+        found
+    }
+
+    /// Gives `use_it` each way to read a text as this template, as the texts in the places of the
+    /// placeholders, until it returns `false`.
+    pub(super) fn readings<'a>(&self, text: &'a str, use_it: &mut dyn FnMut(&[&'a str]) -> bool) {
+        let slots = self.source.iter().filter_map(|part| match part {
+            Part::Slot(slot) => Some(*slot + 1),
+            Part::Text(_) => None,
+        });
+        let mut values = vec![""; slots.max().unwrap_or(0)];
+        if let Some(Part::Text(last)) = self.source.last() {
+            if !text.ends_with(last) {
+                return;
+            }
+        }
+        read(&self.source, text, &mut values, use_it);
+    }
+
+    /// Writes the translation with the given texts in the places of the placeholders.
+    pub(super) fn write<'a>(&self, value: &dyn Fn(usize) -> &'a str) -> String {
+        let part = |part: &Part| match part {
+            Part::Text(text) => *text,
+            Part::Slot(slot) => value(*slot),
+        };
+        self.target.iter().map(part).collect()
+    }
+}
+
+/// Reads a text as parts of a template; returns `false` when no further reading is wanted.
+fn read<'a>(
+    parts: &[Part],
+    text: &'a str,
+    values: &mut Vec<&'a str>,
+    use_it: &mut dyn FnMut(&[&'a str]) -> bool,
+) -> bool {
+    match parts {
+        [] => !text.is_empty() || use_it(values),
+        [Part::Text(literal), rest @ ..] => match text.strip_prefix(literal) {
+            Some(after) => read(rest, after, values, use_it),
+            None => true,
+        },
+        [Part::Slot(slot)] => {
+            if text.is_empty() {
+                return true;
+            }
+            values[*slot] = text;
+            use_it(values)
+        }
+        [Part::Slot(slot), rest @ ..] => {
+            let ends: Vec<usize> = match rest[0] {
+                Part::Text(next) => {
+                    text.match_indices(next).map(|(at, _)| at).filter(|at| *at > 0).collect()
+                }
+                Part::Slot(_) => text.char_indices().map(|(at, _)| at).skip(1).collect(),
+            };
+            for end in ends {
+                values[*slot] = &text[..end];
+                if !read(rest, &text[end..], values, use_it) {
+                    return false;
+                }
+            }
+            true
+        }
+    }
+}

@@ -1,0 +1,216 @@
+use std::collections::{BTreeMap, HashSet};
+use std::time::Instant;
+
+use super::{Language, Translator, catalog, flipped, is_prose, markup, sentences};
+use crate::document::{FINE, SCOPE, SIGNATURE};
+use crate::{Tone, glossary, trial};
+
+const SPANISH: &str = include_str!("../../assets/languages/es.toml");
+
+fn translator(entries: &'static str) -> Translator {
+    Translator::new(Box::leak(Box::new(catalog::Catalog::of(entries))))
+}
+
+const SMALL: &str = r#"
+# a comment
+"{1} of {2} variants fall." = "Caen {1} de {2} variantes."
+"along the barrels" = "a lo largo de las barricas"
+"Shaken {1}, {2} stands." = "Sacudida {1}, {2} permanece en pie."
+"the stack" = "la pila"
+"{1} barrels" = "{1} barricas"
+"rack" = "rack"
+"ice" = "hielo"
+"It says \"no\"." = "Dice \"no\"."
+"#;
+
+#[test]
+fn placeholders_may_change_their_order_and_hold_phrases_of_their_own() {
+    let es = translator(SMALL);
+    assert_eq!(es.text("3 of 64 variants fall."), "Caen 3 de 64 variantes.");
+    assert_eq!(
+        es.text("Shaken along the barrels, the stack stands. 3 of 64 variants fall."),
+        "Sacudida a lo largo de las barricas, la pila permanece en pie. Caen 3 de 64 variantes."
+    );
+    assert_eq!(es.text("It says \"no\"."), "Dice \"no\".");
+}
+
+#[test]
+fn letter_case_punctuation_and_lists_need_no_entries() {
+    let es = translator(SMALL);
+    assert_eq!(es.text("Along the barrels"), "A lo largo de las barricas");
+    assert_eq!(es.text("(along the barrels)"), "(a lo largo de las barricas)");
+    assert_eq!(es.text("the stack, 12 barrels and ice"), "la pila, 12 barricas e hielo");
+}
+
+#[test]
+fn a_text_without_an_entry_stays_and_is_reported() {
+    let es = translator(SMALL);
+    let found = es.translated("Shaken along the barrels, the cat stands. Nothing else.");
+    assert_eq!(
+        found.text,
+        "Sacudida a lo largo de las barricas, the cat permanece en pie. Nothing else."
+    );
+    assert_eq!(found.missing, ["the cat", "Nothing else."]);
+    assert!(es.translated("R3, South Napa 2014, 0.35 g, motion.scale=2, --out").missing.is_empty());
+}
+
+#[test]
+fn sentences_end_before_capitals_and_numbers() {
+    assert_eq!(sentences("One. Two! 3 is more? Yes"), ["One.", "Two!", "3 is more?", "Yes"]);
+    assert_eq!(sentences("see e.g. the rack"), ["see e.g. the rack"]);
+    assert_eq!(flipped("Stack"), Some("stack".to_owned()));
+    assert_eq!(flipped("PGA"), None);
+    assert!(is_prose("it falls") && !is_prose("PGV 12 cm/s") && !is_prose("stack.levels"));
+}
+
+#[test]
+fn markup_is_translated_between_tags_and_in_labels() {
+    let markup = r#"<button aria-label="Play"><svg viewBox="0 0 1 1"/></button> <h2>Warnings</h2>"#;
+    let spanish = Language::Spanish.markup(markup);
+    assert!(!spanish.contains("Play") && spanish.contains("<h2>Advertencias</h2>"), "{spanish}");
+    assert!(spanish.contains("</button> <h2>") && spanish.contains("viewBox"), "{spanish}");
+    assert_eq!(Language::English.markup(markup), markup);
+}
+
+/// Placeholders of a template, and its numbers.
+fn values(text: &str) -> Vec<String> {
+    let mut found: Vec<String> = text
+        .split(|c: char| !(c.is_ascii_digit() || "{}.".contains(c)))
+        .map(|part| part.trim_matches('.').to_owned())
+        .filter(|part| part.contains(|c: char| c.is_ascii_digit()))
+        .collect();
+    found.sort();
+    found.dedup();
+    found
+}
+
+#[test]
+fn every_line_of_the_catalog_is_an_entry_with_equal_placeholders_and_numbers() {
+    let mut known = BTreeMap::new();
+    let mut wrong = Vec::new();
+    for (at, line) in SPANISH.lines().enumerate() {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let Some((source, target)) = catalog::entry(line) else {
+            wrong.push(format!("line {}: not an entry: {line}", at + 1));
+            continue;
+        };
+        if let Some(before) = known.insert(source, at + 1) {
+            wrong.push(format!("line {}: as line {before}: {line}", at + 1));
+        }
+        if values(source) != values(target) {
+            wrong.push(format!("line {}: different values: {line}", at + 1));
+        }
+        if source.contains("}{") || target.is_empty() {
+            wrong.push(format!("line {}: cannot be read: {line}", at + 1));
+        }
+    }
+    assert!(known.len() > 500, "{} entries", known.len());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Texts that pages add to those of a document.
+fn frame() -> Vec<String> {
+    let fixed = [
+        "Skip to the content",
+        "Verdict in words",
+        "Warnings",
+        "Sections",
+        "Provenance",
+        "Appendix",
+        "Table",
+        "Figure",
+        "Events",
+        "To compare them side by side:",
+        "1 warning",
+        "2 warnings",
+        "7 more events",
+        "see the appendix.",
+        "of",
+        "data",
+        "what",
+        "value",
+        "time",
+        "event",
+        "made on",
+        "commit",
+        "program",
+        "start",
+        "end",
+        "largest until the first loss of seat",
+        "at rest",
+        "amplification 2.1",
+        "normal stress: 20 kPa",
+        "no stress",
+        "up to 20, 40, 60, 80, 100 %",
+        "aisle",
+        "door",
+        "wall or column",
+        "stack",
+        "falls by itself",
+        "is knocked over",
+        "had fallen before",
+        "wrongly placed",
+        "falls",
+        "fall",
+        "has no verdict",
+        "have no verdict",
+        "stands",
+        "stand",
+        "filled",
+        "gray",
+        "rings",
+        "variants",
+        "uplift",
+        "slip",
+        "gives way",
+        "note",
+        FINE,
+        SCOPE,
+        glossary::TITLE,
+    ];
+    let tones = [Tone::Stands, Tone::Falls, Tone::Invalid, Tone::Neutral].map(Tone::word);
+    fixed.into_iter().chain(SIGNATURE).chain(tones).map(str::to_owned).collect()
+}
+
+/// Texts between tags, and labels.
+fn texts_of_markup(markup: &str) -> Vec<String> {
+    let between = markup.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text);
+    let labels = markup.split("aria-label=\"").skip(1).filter_map(|part| part.split('"').next());
+    let all = between.chain(labels).map(str::trim);
+    all.filter(|text| !text.is_empty() && !text.contains('{')).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_frame_of_pages_is_translated() {
+    let translator = Translator::new(Language::Spanish.catalog().unwrap());
+    let mut texts = frame();
+    for markup in [
+        trial::OPENER,
+        include_str!("../../assets/player.html"),
+        include_str!("../../assets/stage.html"),
+    ] {
+        texts.extend(texts_of_markup(markup));
+    }
+    for script in crate::page::all_scripts() {
+        texts.extend(markup::texts_of_script(script).map(str::to_owned));
+    }
+    assert!(texts.len() > 120, "{}", texts.len());
+    let missing: HashSet<String> =
+        texts.iter().flat_map(|text| translator.translated(text).missing).collect();
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
+#[test]
+fn a_long_text_is_translated_in_a_moment() {
+    let text =
+        "Shaken along the barrels, 53 of 64 variants fall (83 %, 95 % interval 72 to 90 %). ";
+    let texts: Vec<String> = (0..2000).map(|at| format!("{text}{at} barrels fall.")).collect();
+    let start = Instant::now();
+    let translator = Translator::new(Language::Spanish.catalog().unwrap());
+    let letters: usize = texts.iter().map(|text| translator.text(text).len()).sum();
+    assert!(letters > 100_000);
+    assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
+}
