@@ -115,7 +115,7 @@ impl<F: FnMut(&mut String)> Visit<F> {
                     self.histories(&mut players.ground);
                     self.texts(&mut players.overlay);
                 }
-                Block::Details { summary, blocks } => {
+                Block::Details { summary, blocks } | Block::OnScreen { what: summary, blocks } => {
                     self.text(summary);
                     self.blocks(blocks);
                 }
