@@ -59,7 +59,7 @@ fn numbers(text: &str) -> Vec<String> {
 }
 
 /// Words of input files and names given in them, which are the same in every language.
-const KEPT: [&str; 25] = [
+const KEPT: [&str; 26] = [
     "auto",
     "barrels-to-racks",
     "circle",
@@ -73,6 +73,7 @@ const KEPT: [&str; 25] = [
     "nodes",
     "pgv",
     "rack-on-rack",
+    "rails",
     "rest",
     "rolling",
     "single-bar",

@@ -159,7 +159,12 @@ fn series(label: &str, times: &[f64], f: impl Fn(f64) -> f64) -> Series {
 }
 
 fn figure(id: &str, caption: &str, kind: FigureKind) -> Block {
-    Block::Figure(Figure { id: id.into(), caption: caption.into(), kind })
+    Block::Figure(Figure {
+        id: id.into(),
+        caption: caption.into(),
+        kind,
+        language: barrelstack_report::Language::English,
+    })
 }
 
 fn timeline(y: Axis, series: Vec<Series>) -> Plot {

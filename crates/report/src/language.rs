@@ -202,8 +202,11 @@ impl Translator {
         if rank.0 == 0 && rank.1 != usize::MAX {
             return best;
         }
+        // A sentence of which less than half is translated stays in English.
+        let whole = letters(text);
         for found in self.derived(text, depth) {
-            if found.untranslated() < best.untranslated() {
+            let left = found.untranslated();
+            if left < best.untranslated() && 2 * left <= whole {
                 best = found;
             }
         }
@@ -366,6 +369,12 @@ fn is_prose(text: &str) -> bool {
             && !word.starts_with('-')
             && !UNITS.contains(&word)
     })
+}
+
+/// `true` if a text has a word of at least four letters that is not in capitals.
+fn is_phrase(text: &str) -> bool {
+    text.split(|c: char| !c.is_alphabetic())
+        .any(|word| word.chars().count() > 3 && word.chars().skip(1).all(char::is_lowercase))
 }
 
 #[cfg(test)]

@@ -9,7 +9,12 @@ use barrelstack_report::{
 };
 
 fn figure(kind: FigureKind) -> Figure {
-    Figure { id: "figure 1".into(), caption: HOSTILE.into(), kind }
+    Figure {
+        id: "figure 1".into(),
+        caption: HOSTILE.into(),
+        kind,
+        language: barrelstack_report::Language::English,
+    }
 }
 
 fn parsed(svg: &str) -> roxmltree::Document<'_> {

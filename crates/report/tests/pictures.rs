@@ -13,6 +13,7 @@ fn strip() -> Figure {
         id: "strip".into(),
         caption: "Two barrels.".into(),
         kind: FigureKind::Strip(Strip::of_run(Arc::new(scene(2, 60)), 1)),
+        language: barrelstack_report::Language::English,
     }
 }
 

@@ -58,6 +58,7 @@ fn markdown_names_only_files_that_go_with_it() {
             id: id.into(),
             caption: HOSTILE.into(),
             kind: FigureKind::Plot(Plot::default()),
+            language: barrelstack_report::Language::English,
         })
     };
     let doc = document(vec![

@@ -3,7 +3,7 @@
 use barrelstack::ensemble::CaseResult;
 use barrelstack::scenario::View;
 use barrelstack::variants::{Plane, Spread, together, words};
-use barrelstack_report::badge;
+use barrelstack_report::{Language, badge};
 use serde::Serialize;
 
 use crate::{Case, Request, trails};
@@ -46,7 +46,7 @@ impl Verdict {
         };
         Ok(Self {
             headline: words::headline(&spreads),
-            badge: badge(tone),
+            badge: badge(tone, Language::English),
             tone: tone.class(),
             planes: spreads.iter().map(judged).collect(),
         })

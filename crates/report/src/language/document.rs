@@ -3,10 +3,10 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-use super::{Language, Translated, Translator, is_prose};
+use super::{Language, Translated, Translator, is_phrase, is_prose};
 use crate::{
     Axis, Block, Cell, Document, Event, Figure, FigureKind, History, Moment, Plot, Scene, Table,
-    Trace, Word,
+    Trace, Word, figure::walk,
 };
 
 impl Document {
@@ -41,6 +41,22 @@ impl Document {
             let unknown = [word, meaning].into_iter().filter(|text| catalog.entry(text).is_none());
             missing.extend(unknown.map(|text| (*text).to_owned()));
         }
+        // A word in such a place is not a name, even if it begins with a capital.
+        walk(&self.blocks, &mut |block| {
+            let heads: Vec<&String> = match block {
+                Block::Heading { text, .. } => vec![text],
+                Block::Details { summary, .. } => vec![summary],
+                Block::Table(table) => table.columns.iter().map(|column| &column.name).collect(),
+                Block::Paragraph(_)
+                | Block::List(_)
+                | Block::Figure(_)
+                | Block::Player(_)
+                | Block::Players(_) => Vec::new(),
+            };
+            let plain = |text: &&&String| translator.text(text) == ***text && is_phrase(text);
+            let kept = heads.iter().filter(plain).map(|text| (*text).clone());
+            missing.extend(kept.filter(|text| catalog.entry(text).is_none()));
+        });
         let mut document = self.clone();
         let find = |text: &mut String| {
             let Translated { missing: parts, .. } = translator.translated(text);

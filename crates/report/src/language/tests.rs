@@ -1,7 +1,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::time::Instant;
 
-use super::{Language, Translator, catalog, flipped, is_prose, markup, sentences};
+use super::{Language, Translator, catalog, flipped, is_phrase, is_prose, markup, sentences};
 use crate::document::{FINE, SCOPE, SIGNATURE};
 use crate::{Tone, glossary, trial};
 
@@ -198,8 +198,13 @@ fn the_frame_of_pages_is_translated() {
         texts.extend(markup::texts_of_script(script).map(str::to_owned));
     }
     assert!(texts.len() > 120, "{}", texts.len());
-    let missing: HashSet<String> =
-        texts.iter().flat_map(|text| translator.translated(text).missing).collect();
+    let same = |text: &&String| is_phrase(text) && translator.text(text) == **text;
+    let kept = texts.iter().filter(same).filter(|text| translator.catalog.entry(text).is_none());
+    let missing: HashSet<String> = texts
+        .iter()
+        .flat_map(|text| translator.translated(text).missing)
+        .chain(kept.cloned())
+        .collect();
     assert!(missing.is_empty(), "{missing:#?}");
 }
 
