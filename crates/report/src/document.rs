@@ -154,8 +154,8 @@ impl Block {
 pub(crate) const FINE: &str = "The numbers behind it";
 
 /// Returns the sentence that stands on paper in place of content of the page on screen.
-pub(crate) fn elsewhere(what: &str) -> String {
-    format!("{what}: on the HTML page of this report.")
+pub(crate) fn elsewhere(what: &str, language: Language) -> String {
+    language.text(&format!("{what}: on the HTML page of this report."))
 }
 
 /// One piece of content. All text is plain text, which is escaped and never interpreted as markup.

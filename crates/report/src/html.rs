@@ -312,7 +312,11 @@ impl<'a> Writer<'a> {
                     self.put("<div class=\"on-screen\">\n");
                     self.blocks(blocks);
                     self.put("</div>\n");
-                    self.element("<p class=\"on-paper\">", &elsewhere(what), "</p>");
+                    self.element(
+                        "<p class=\"on-paper\">",
+                        &elsewhere(what, self.document.language),
+                        "</p>",
+                    );
                 }
             }
         }

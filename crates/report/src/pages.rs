@@ -340,7 +340,7 @@ impl<'a> Flow<'a> {
                     self.counter.skip(blocks);
                 }
                 Block::OnScreen { what, blocks } => {
-                    self.paragraph("page-small", &elsewhere(what));
+                    self.paragraph("page-small", &elsewhere(what, self.document.language));
                     self.counter.skip(blocks);
                 }
             }

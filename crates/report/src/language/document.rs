@@ -45,7 +45,9 @@ impl Document {
         walk(&self.blocks, &mut |block| {
             let heads: Vec<&String> = match block {
                 Block::Heading { text, .. } => vec![text],
-                Block::Details { summary, .. } => vec![summary],
+                Block::Details { summary, .. } | Block::OnScreen { what: summary, .. } => {
+                    vec![summary]
+                }
                 Block::Table(table) => table.columns.iter().map(|column| &column.name).collect(),
                 Block::Paragraph(_)
                 | Block::List(_)
