@@ -15,12 +15,13 @@ use super::numbering;
 
 /// Builds an animation player for a run.
 pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
-    Block::Player(Player {
+    let player = Player {
         id: id.to_owned(),
         caption: caption.to_owned(),
         scene: Arc::clone(scene),
         traces: Vec::new(),
-    })
+    };
+    Block::on_screen("The animation", vec![Block::Player(player)])
 }
 
 /// Builds a row of pictures of selected instants.
@@ -245,7 +246,8 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Block {
             ("force at rest", "kN", &|(.., at_rest)| Cell::Number(1e-3 * at_rest, 3)),
         ],
     );
-    Block::details("The pairs as a table, with the forces at rest", vec![Block::Table(table)])
+    let what = "The pairs as a table, with the forces at rest";
+    Block::on_screen(what, vec![Block::details(what, vec![Block::Table(table)])])
 }
 
 /// Returns contactor, target and force at rest (N) of all pairs that touch by design.

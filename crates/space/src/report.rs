@@ -118,18 +118,7 @@ pub fn document(answer: &Answer) -> Document {
             }
         }
     }
-    blocks.push(heading("For the engineer"));
-    let mut engineering = Vec::new();
-    if let Some(balance) = &summary.energy {
-        engineering.push(Block::heading(3, "Energy balance"));
-        engineering.push(Block::Paragraph(balanced(balance)));
-    }
-    engineering.push(Block::heading(3, "Inputs"));
-    engineering.extend(inputs(&answer.scenario));
-    if !free {
-        engineering.extend([Block::heading(3, "What is not modeled"), not_modeled(true)]);
-    }
-    blocks.push(Block::details("Energies, inputs and limits", engineering));
+    blocks.extend([heading("For the engineer"), for_engineers(answer)]);
     Document {
         title: summary.title.clone(),
         verdict: Verdict {
@@ -150,6 +139,21 @@ pub fn document(answer: &Answer) -> Document {
         warnings: run.warnings.clone(),
         ..Document::default()
     }
+}
+
+/// Returns the collapsed section for engineers.
+fn for_engineers(answer: &Answer) -> Block {
+    let mut blocks = Vec::new();
+    if let Some(balance) = &answer.summary.energy {
+        let energy = Block::Paragraph(balanced(balance));
+        blocks.extend([Block::heading(3, "Energy balance"), energy]);
+    }
+    blocks.push(Block::heading(3, "Inputs"));
+    blocks.extend(inputs(&answer.scenario));
+    if !answer.run.stack.is_free() {
+        blocks.extend([Block::heading(3, "What is not modeled"), not_modeled(true)]);
+    }
+    Block::details("Energies, inputs and limits", blocks)
 }
 
 /// Returns the sections on all variants: their statistics, the constants that decide, and what would have kept the stack

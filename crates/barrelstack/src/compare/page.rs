@@ -27,7 +27,9 @@ pub fn document(sides: &[Side]) -> Document {
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));
     let common = vec![Block::Table(tables::common(sides, &differing))];
-    section("Inputs in common", vec![Block::details("Inputs that are equal in all runs", common)]);
+    let what = "Inputs that are equal in all runs";
+    let common = Block::on_screen(what, vec![Block::details(what, common)]);
+    section("Inputs in common", vec![common]);
     Document {
         title: heading(sides),
         verdict: verdict(sides, &differing),

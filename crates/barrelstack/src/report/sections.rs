@@ -55,9 +55,10 @@ fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>
         let view = plane.0.assembly.view.map_or("", View::words);
         let mut blocks = engineering(plane);
         for block in &mut blocks {
-            let inner = match block {
-                Block::OnScreen { blocks, .. } => blocks.as_mut_slice(),
-                other => std::slice::from_mut(other),
+            let inner = if let Block::OnScreen { blocks, .. } = block {
+                blocks.as_mut_slice()
+            } else {
+                std::slice::from_mut(block)
             };
             for block in inner {
                 if let Block::Figure(figure) = block {
