@@ -118,7 +118,7 @@ fn complete(kind: &str, documents: &[Document]) {
         assert!(page.contains("<html lang=\"es\">") && page.contains("Saltar al contenido"));
         assert!(!markdown(&spanish, "figures").text.contains("**Figure "));
         assert!(document_pdf(&spanish, Paper::A4).len() > 1000);
-        assert_eq!(*document, document.in_language(Language::English));
+        assert!(html(document) == html(&document.in_language(Language::English)));
     }
     assert!(
         missing.is_empty(),

@@ -172,9 +172,7 @@ impl Template {
             Part::Text(_) => None,
         });
         let mut values = vec![""; slots.max().unwrap_or(0)];
-        if let Some(Part::Text(last)) = self.source.last()
-            && !text.ends_with(last)
-        {
+        if matches!(self.source.last(), Some(Part::Text(last)) if !text.ends_with(last)) {
             return;
         }
         read(&self.source, text, &mut values, use_it);
