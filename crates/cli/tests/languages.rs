@@ -288,7 +288,7 @@ fn the_option_selects_the_language_of_files_and_not_of_the_terminal() {
     assert!(page.contains("<html lang=\"en\">") && !page.contains("id=\"language\""));
     assert!(translated.contains("<html lang=\"es\">") && translated.contains("id=\"language\""));
     assert!(!translated.contains(">Warnings<") && !translated.contains(">Provenance<"));
-    let refused = barrelstack(&["run", "--language", "fr"]);
+    let refused = barrelstack(["run", "--language", "fr"]);
     assert_eq!(refused.status.code(), Some(2));
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(said.contains("possible values: en, es"), "{said}");

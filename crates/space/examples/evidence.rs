@@ -25,7 +25,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::scenario::{MotionSpec, Scene, View};
 use barrelstack::variants::{LEVEL, planes, run};
 use barrelstack_fragility::{Interval, wilson};
-use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
+use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 use barrelstack_space::fate::Heading;
 use barrelstack_space::variants::run_all;
 
@@ -137,7 +137,7 @@ fn drawn(shares: &[Share]) -> Figure {
     let plot = Plot { x, y: Axis::named(names), series: series.collect(), ..Plot::default() };
     let caption =
         "The same stacks, motions and imperfections across the barrels, along them, and in space.";
-    Figure { id: "shares".into(), caption: caption.into(), kind: FigureKind::Plot(plot) }
+    Figure::new("shares", caption, plot)
 }
 
 /// Returns the results of the variants of a stack in a plane, under one component of the motion.

@@ -83,17 +83,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.push(heading("How far to trust this run"));
         blocks.extend(trust(found));
     }
-    blocks.push(heading("In numbers"));
-    let caption = if free {
-        "The run that is shown."
-    } else {
-        "The run that is shown; demands are those until the first loss of seat."
-    };
-    let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
-    numbers
-        .rows
-        .extend(rows(run, summary).into_iter().map(|(a, b)| vec![Cell::text(a), Cell::text(b)]));
-    blocks.push(Block::Table(numbers));
+    blocks.extend([heading("In numbers"), numbers(run, summary)]);
     // The numbers of a failed run look like results but are invalid.
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
         blocks.push(heading("Outcome of every body"));
@@ -139,6 +129,19 @@ pub fn document(answer: &Answer) -> Document {
         warnings: run.warnings.clone(),
         ..Document::default()
     }
+}
+
+/// Returns the table of the numbers of the run that is shown.
+fn numbers(run: &Run, summary: &Summary) -> Block {
+    let caption = if run.stack.is_free() {
+        "The run that is shown."
+    } else {
+        "The run that is shown; demands are those until the first loss of seat."
+    };
+    let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
+    let row = |(a, b)| vec![Cell::text(a), Cell::text(b)];
+    numbers.rows.extend(rows(run, summary).into_iter().map(row));
+    Block::Table(numbers)
 }
 
 /// Returns the collapsed section for engineers.
