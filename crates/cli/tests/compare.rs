@@ -104,7 +104,7 @@ fn a_verified_run_keeps_its_verification_in_summary_and_report() {
     assert!(repeats >= 5, "{repeats}");
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(page.contains(">How far to trust this run</h2>"));
-    assert_eq!(page.matches("<td>disturbed by 1\u{a0}nm, ").count(), 4);
+    assert_eq!(page.matches(">disturbed by 1\u{a0}nm, ").count(), 4);
     // Without it there is no such section.
     let other = tempfile::tempdir().unwrap();
     barrelstack(["run", "candia-8-barrels", SHORT, FEW, "--out", other.path().to_str().unwrap()]);

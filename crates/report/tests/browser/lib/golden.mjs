@@ -51,7 +51,7 @@ async function look(browser, path, name, change) {
     }
     if (change) await page.evaluate(change);
     // What a fold holds is looked at by itself: in a block as long as a page nobody sees that a line is gone.
-    const places = "body > header, main > :not(details:has(figure)), details:has(figure) > .folded > *";
+    const places = "body > header, main > :not(details:has(figure)), details:has(figure) > .folded > :not(.on-screen), .folded > .on-screen > *";
     const blocks = await page.evaluate((places) => [...document.querySelectorAll(places)]
       .map((element) => ({ element, box: element.getBoundingClientRect() }))
       .filter(({ box }) => box.width > 0 && box.height > 0)
