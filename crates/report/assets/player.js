@@ -63,6 +63,7 @@ function makePlayer(raw, figure, dashes, earlier) {
   const moment = typeof raw.opens === "number" ? panes[raw.opens].data.moment : null;
   const loop = moment && makeLoop(screen, moment.t, [start, end], (time) => show(nearest(times, time)), (looping) => {
     act("moment").setAttribute("aria-pressed", looping);
+    mark();
   });
   if (!loop) act("moment").hidden = true;
 
@@ -146,8 +147,9 @@ function makePlayer(raw, figure, dashes, earlier) {
   }
 
   function mark() {
-    act("play").classList.toggle("playing", playing);
-    act("play").setAttribute("aria-label", playing ? t("Pause") : t("Play"));
+    const moves = playing || Boolean(loop && loop.isLooping());
+    act("play").classList.toggle("playing", moves);
+    act("play").setAttribute("aria-label", moves ? t("Pause") : t("Play"));
   }
 
   function stepTo(k) {
@@ -158,7 +160,12 @@ function makePlayer(raw, figure, dashes, earlier) {
     settled();
   }
 
-  const toggle = () => (playing ? pause() : play());
+  // Whatever moves is paused first; after the loop, the run plays from its beginning.
+  function toggle() {
+    if (!playing && !(loop && loop.isLooping())) return play();
+    take();
+    pause();
+  }
   const buttons = {
     play: toggle,
     first: () => stepTo(0),

@@ -40,7 +40,7 @@ async function moving(browser, path, hash, use) {
   }
 }
 
-/** Elsewhere it loops slowly around the moment; play, slider and button take over at once. */
+/** Elsewhere it loops slowly around the moment; Space, slider and button stop it at once. */
 export function loops(browser, path) {
   return moving(browser, path, "", async (page) => {
     let now = await facts(page);
@@ -55,7 +55,14 @@ export function loops(browser, path) {
     demand(seen.at(-1) > seen[0], "the loop stands still");
     demand(seen.at(-1) - seen[0] < 0.5 * wall, `in ${wall.toFixed(1)} s it shows ${(seen.at(-1) - seen[0]).toFixed(2)} s: that is not slow`);
     demand(seen.every((time) => time > now.moment.t - 0.6 && time < now.moment.t + 1.2), `the loop leaves its moment: ${seen}`);
-    // Space, with nothing focused, plays from shortly before the strong motion.
+    // Space, with nothing focused, pauses the loop, and then plays from shortly before the strong motion.
+    const label = () => page.locator('[data-act="play"]').first().getAttribute("aria-label");
+    demand((await label()) === "Pause", `while it loops, the button says ${await label()}`);
+    await page.keyboard.press("Space");
+    const paused = await facts(page);
+    await page.waitForTimeout(400);
+    now = await facts(page);
+    demand(!now.looping && !now.playing && now.time === paused.time && (await label()) === "Play", "the first press of space does not pause");
     await page.keyboard.press("Space");
     // A busy machine may draw a frame late.
     for (let k = 0; k < 20; k++) {
