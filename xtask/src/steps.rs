@@ -37,7 +37,7 @@ const STEPS: [Step; 5] = [
             "--workspace",
             "--all-targets",
             "--features",
-            "barrelstack/xlsx",
+            "xlsx",
             "--",
             "-D",
             "warnings",
@@ -51,7 +51,7 @@ const STEPS: [Step; 5] = [
         remedy: "see the warning of rustdoc above",
     },
     Step {
-        arguments: &["test", "--workspace", "--features", "barrelstack/xlsx", "--no-fail-fast"],
+        arguments: &["test", "--workspace", "--features", "xlsx", "--no-fail-fast"],
         strict_docs: false,
         remedy: "see the failed tests above; they are listed again at the end of the step",
     },

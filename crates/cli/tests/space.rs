@@ -169,7 +169,9 @@ fn a_free_scene_in_space_leaves_its_files() {
     for view in ["From the front", "From the side", "From above"] {
         assert!(page.contains(view), "{view}");
     }
-    let text = page.split("<script").next().unwrap();
+    // The list of inputs mentions seats, whose meaning is that of stacks.
+    let seat = "the place that holds a barrel in its rack, or a rack on the barrels below";
+    let text = page.split("<script").next().unwrap().replace(seat, "");
     assert!(!text.contains("the barrels"), "there are none");
 }
 
