@@ -164,7 +164,7 @@ impl Template {
         found
     }
 
-    /// Gives `use_it` each way to read a text as this template, as the texts in the places of the
+    /// Gives `use_it` each reading of a text as this template: the texts in the places of the
     /// placeholders, until it returns `false`.
     pub(super) fn readings<'a>(&self, text: &'a str, use_it: &mut dyn FnMut(&[&'a str]) -> bool) {
         let slots = self.source.iter().filter_map(|part| match part {
