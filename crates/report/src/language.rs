@@ -37,15 +37,13 @@ impl Language {
 
     fn catalog(self) -> Option<&'static Catalog> {
         static SPANISH: OnceLock<Catalog> = OnceLock::new();
-        // The page that holds the program is in English, and does not carry the half megabyte of the catalog.
-        const TEXT: &str = if cfg!(target_arch = "wasm32") {
-            ""
-        } else {
-            include_str!("../assets/languages/es.toml")
-        };
         match self {
             Self::English => None,
-            Self::Spanish => Some(SPANISH.get_or_init(|| Catalog::of(TEXT))),
+            // The page that holds the program is in English, and does not carry the half megabyte of the catalog.
+            Self::Spanish if cfg!(target_arch = "wasm32") => None,
+            Self::Spanish => Some(
+                SPANISH.get_or_init(|| Catalog::of(include_str!("../assets/languages/es.toml"))),
+            ),
         }
     }
 
