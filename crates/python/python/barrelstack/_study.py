@@ -109,7 +109,7 @@ class Fragility(Page):
     ... }).run(folder)
     >>> fragility = Study.fragility(folder)
     >>> fragility.headline
-    '2 of 4 cases collapse.'
+    '2 of 4 cases of stacks of 2 levels on candia-2008 racks, shaken across the barrels, collapse.'
     >>> fragility.curves["collapse"].raw.shape[1]
     5
     """
