@@ -9,7 +9,7 @@ class Barrelstack < Formula
   depends_on "rust" => :build
 
   def install
-    system "cargo", "install", *std_cargo_args(path: "crates/cli")
+    system "cargo", "install", *std_cargo_args(path: "crates/cli", features: ["xlsx"])
     generate_completions_from_executable(bin/"barrelstack", "completions")
     system bin/"barrelstack", "man", buildpath/"man"
     man1.install Dir["man/*.1"]

@@ -2,6 +2,7 @@
 
 mod statements;
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -42,6 +43,11 @@ pub struct Height {
     pub scenario: Scenario,
 }
 
+/// Returns the numbers of levels that statements name, for each of which [`shares`] needs a [`Height`].
+pub fn levels(statements: &[&Statement]) -> BTreeSet<usize> {
+    statements.iter().flat_map(|one| one.levels.iter().copied()).collect()
+}
+
 /// Result of one simulated stack.
 struct Shaken {
     /// Parameters, each within −1 and 1; the ends are the ends of the range.
@@ -57,7 +63,7 @@ struct Shaken {
 /// Fitted share of stacks that fall, as a function of the parameters, the motion and the height.
 struct Fit {
     share: Conditional,
-    /// Mean share of the barrels that fall in a stack that falls, by height.
+    /// Mean share of the barrels that fall in a stack that falls, by height; that over all heights where no stack fell.
     fallen: Vec<f64>,
     /// Heights as standard deviates; empty for one height, which needs none.
     heights: Vec<f64>,
@@ -89,8 +95,8 @@ pub fn shares(
     settings: &Settings,
     report: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Calibration, CalibrateError> {
-    let at = |levels: &usize| heights.iter().position(|height| height.levels == *levels);
-    for levels in statements.iter().flat_map(|one| &one.levels) {
+    let at = |levels| heights.iter().position(|height| height.levels == levels);
+    for levels in levels(statements) {
         if at(levels).is_none() {
             return Err(CalibrateError::Scenario(format!(
                 "a statement is about stacks of {levels} levels, of which there is no scenario"
@@ -251,16 +257,15 @@ impl Fit {
             .collect();
         let mut random = Random::new(seed ^ 0x7368_6172_6573);
         let share = conditional(&runs, || random.uniform())?;
-        let fallen = (0..heights.len())
-            .map(|height| {
-                let down: Vec<f64> = shaken
-                    .iter()
-                    .filter(|one| one.height == height)
-                    .filter_map(|one| one.fallen)
-                    .collect();
-                if down.is_empty() { 1.0 } else { down.iter().sum::<f64>() / down.len() as f64 }
-            })
-            .collect();
+        let mean = |of: &dyn Fn(&&Shaken) -> bool| {
+            let down: Vec<f64> = shaken.iter().filter(of).filter_map(|one| one.fallen).collect();
+            (!down.is_empty()).then(|| down.iter().sum::<f64>() / down.len() as f64)
+        };
+        // If no stack falls at all, the share of barrels is at most that of stacks.
+        let any = mean(&|_| true).unwrap_or(1.0);
+        let fallen =
+            (0..heights.len()).map(|height| mean(&|one| one.height == height).unwrap_or(any));
+        let fallen = fallen.collect();
         Some(Self { share, fallen, heights: standard })
     }
 }

@@ -508,9 +508,30 @@ fn a_study_says_its_stacks_and_the_direction_without_what_a_factor_varies() {
     ] {
         assert_eq!(said(name).as_deref(), Some(stacks), "{name}");
     }
-    let turned = study(&format!(
-        "[[factor]]\nname = \"height\"\nfield = \"stack.levels\"\nvalues = [1, 2]\n{PULSE}[design]\nkind = \"full-factorial\"\n"
-    ));
-    let stacks = turned.provenance().unwrap().stacks;
-    assert_eq!(stacks.as_deref(), Some("stacks on two-barrel racks, shaken across the barrels"));
+    for (field, values, stacks) in [
+        ("stack.levels", "[1, 2]", "stacks on two-barrel racks, shaken across the barrels"),
+        // A factor may state a rack by its name alone, or vary one of its dimensions.
+        (
+            "stack.rack",
+            "[\"two-barrel\", \"single-bar\"]",
+            "stacks of 2 levels, shaken across the barrels",
+        ),
+        (
+            "stack.rack.pitch",
+            "[\"0.70 m\", \"0.71 m\"]",
+            "stacks of 2 levels, shaken across the barrels",
+        ),
+    ] {
+        let varied = study(&format!(
+            "[[factor]]\nname = \"varied\"\nfield = \"{field}\"\nvalues = {values}\n{PULSE}[design]\nkind = \"full-factorial\"\n"
+        ));
+        assert_eq!(varied.provenance().unwrap().stacks.as_deref(), Some(stacks), "{field}");
+    }
+    let text = format!("{HEAD}{RUN}{PULSE}[design]\nkind = \"full-factorial\"\n");
+    let one = Study::parse("one.toml", &text.replace("levels = 2", "levels = 1")).unwrap();
+    let stacks = one.provenance().unwrap().stacks;
+    assert_eq!(
+        stacks.as_deref(),
+        Some("stacks of 1 level on two-barrel racks, shaken across the barrels")
+    );
 }

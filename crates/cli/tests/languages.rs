@@ -32,7 +32,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
     Scenario::builtin(name, &changes).unwrap()
 }
 
-/// Returns the report of a run, with remedies if the stack falls and with repeats if asked for.
+/// Returns the report of a run, with remedies if the stack falls, and with repeated runs on request.
 fn report(name: &str, changes: &[&str], verify: bool) -> Document {
     let scenario = scenario(name, changes);
     let mut answer = AnyAnswer::of(&scenario, RunChoice::Typical, &mut go).unwrap();

@@ -128,7 +128,7 @@ fn studies_and_records_have_workbooks() {
     let csv = cells(&read_to_string(place.path().join("a.csv")).unwrap(), ',');
     assert_eq!(sheet.height(), csv.len());
     assert_eq!(sheet.get((5, 2)).unwrap().to_string().parse::<f64>(), csv[5][2].parse::<f64>());
-    // In a set of records, all three tables are written once in the notation that was asked for.
+    // In a set of records, all three tables are written once, in the requested notation.
     let select = [
         "motion",
         "select",

@@ -1,12 +1,11 @@
 //! Contact parameters from tests.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_calibration::collapse::{Errors, Observations, Settings};
 use barrelstack_calibration::drop::{GRAVITY, Striker};
-use barrelstack_calibration::shares::{Height, Statements, shares};
+use barrelstack_calibration::shares::{Height, Statements, levels, shares};
 use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
 };
@@ -157,10 +156,8 @@ pub(crate) fn calibrate_collapse(
     if Path::new(name).extension().is_some_and(|extension| extension == "toml") {
         let read = Statements::read(name, text).map_err(errors::general)?;
         let (earthquake, chosen) = read.chosen(&statements).map_err(errors::general)?;
-        let levels: BTreeSet<usize> =
-            chosen.iter().flat_map(|one| one.levels.iter().copied()).collect();
         let mut heights = Vec::new();
-        for levels in levels {
+        for levels in levels(&chosen) {
             let changed = scenario.changed(vec![format!("stack.levels={levels}")])?;
             heights.push(Height { levels, scenario: (*changed.inner).clone() });
         }

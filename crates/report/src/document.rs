@@ -144,6 +144,12 @@ impl Block {
         Self::OnScreen { what: what.into(), blocks }
     }
 
+    /// Creates a block that is collapsed under a summary line on screen, and left out on paper.
+    pub fn details_on_screen(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
+        let summary = summary.into();
+        Self::on_screen(summary.clone(), vec![Self::details(summary, blocks)])
+    }
+
     /// Creates a block that is collapsed under a summary line.
     pub fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::Details { summary: summary.into(), blocks }

@@ -119,7 +119,7 @@ struct Translator {
 /// Deepest nesting of phrases.
 const DEEPEST: usize = 8;
 
-/// Largest number of ways to read a text as a template that are compared.
+/// Largest number of readings of a text as one template that are compared.
 const READINGS: usize = 24;
 
 impl Translator {

@@ -28,28 +28,30 @@ impl Stamp {
 /// Returns the provenance of a document with the date first, and with the commit beside the
 /// version of the program.
 pub(crate) fn provenance(document: &Document) -> Vec<(String, String)> {
-    let mut pairs = stamped(&document.provenance, STAMP.get());
-    for (name, value) in pairs.iter_mut().filter(|_| document.language != Language::English) {
-        (*name, *value) = (document.language.text(name), document.language.text(value));
-    }
-    pairs
+    stamped(&document.provenance, STAMP.get(), document.language)
 }
 
-fn stamped(pairs: &[(String, String)], stamp: Option<&Stamp>) -> Vec<(String, String)> {
+/// Adds the stamp to pairs in a language.
+fn stamped(
+    pairs: &[(String, String)],
+    stamp: Option<&Stamp>,
+    language: Language,
+) -> Vec<(String, String)> {
     let mut pairs = pairs.to_vec();
     let Some(Stamp { date, commit }) = stamp else { return pairs };
     if !commit.is_empty() {
-        match pairs.iter_mut().find(|(name, _)| name == "program") {
+        let own = language.fixed("program");
+        match pairs.iter_mut().find(|(name, _)| name == own) {
             Some((_, program)) => {
                 program.push_str(", commit ");
                 program.push_str(commit);
             }
-            None => pairs.insert(0, ("commit".to_owned(), commit.clone())),
+            None => pairs.insert(0, (language.fixed("commit").to_owned(), commit.clone())),
         }
     }
     let date = date();
     if !date.is_empty() {
-        pairs.insert(0, ("made on".to_owned(), date));
+        pairs.insert(0, (language.fixed("made on").to_owned(), date));
     }
     pairs
 }
@@ -57,6 +59,7 @@ fn stamped(pairs: &[(String, String)], stamp: Option<&Stamp>) -> Vec<(String, St
 #[cfg(test)]
 mod tests {
     use super::{Stamp, stamped};
+    use crate::Language;
 
     #[test]
     fn the_date_comes_first_and_the_commit_stands_beside_the_version() {
@@ -65,15 +68,23 @@ mod tests {
         let own = [pair("seed", "1"), pair("program", "barrelstack 1.0")];
         let first = pair("made on", "1970-01-01 (UTC)");
         assert_eq!(
-            stamped(&own, Some(&stamp)),
+            stamped(&own, Some(&stamp), Language::English),
             [first.clone(), pair("seed", "1"), pair("program", "barrelstack 1.0, commit 0123abcd")]
         );
         assert_eq!(
-            stamped(&own[..1], Some(&stamp)),
+            stamped(&own[..1], Some(&stamp), Language::English),
             [first, pair("commit", "0123abcd"), pair("seed", "1")]
         );
         let none = Stamp { date: String::new, commit: String::new() };
-        assert_eq!(stamped(&own, Some(&none)), own);
-        assert_eq!(stamped(&own, None), own);
+        assert_eq!(stamped(&own, Some(&none), Language::English), own);
+        assert_eq!(stamped(&own, None, Language::English), own);
+        let spanish = [pair("programa", "barrelstack 1.0")];
+        assert_eq!(
+            stamped(&spanish, Some(&stamp), Language::Spanish),
+            [
+                pair("hecho el", "1970-01-01 (UTC)"),
+                pair("programa", "barrelstack 1.0, commit 0123abcd")
+            ]
+        );
     }
 }

@@ -214,8 +214,9 @@ pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize
         });
         Body { id: name(id, at), items: outlines.chain(hatch).chain(marks).collect() }
     };
-    let seen = |at: usize| shown.iter().any(|frame| scene.frames.pose(*frame, at).is_some());
-    Item::Defined(scene.bodies.iter().enumerate().filter(|(at, _)| seen(*at)).map(define).collect())
+    let drawn = |at: usize| shown.iter().any(|frame| scene.frames.pose(*frame, at).is_some());
+    let bodies = scene.bodies.iter().enumerate().filter(|(at, _)| drawn(*at));
+    Item::Defined(bodies.map(define).collect())
 }
 
 /// Returns the id of a body, which is unique within a page.

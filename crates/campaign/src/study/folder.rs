@@ -413,13 +413,18 @@ impl Study {
     }
 
     /// Describes the stacks of the study by the levels, the rack and the direction of shaking of `base`, each unless a
-    /// factor varies it; `None` for a free scene.
+    /// factor varies it; `None` for a free scene. A rack of which a factor varies a dimension is not named, either.
     fn stacks(&self, base: &Scenario) -> Option<String> {
         let fields = || self.factors.iter().flat_map(|factor| &factor.fields);
-        let varied = |path: &str| fields().any(|field| field == path);
+        let varied = |path: &str| {
+            let inside = |rest: &str| rest.is_empty() || rest.starts_with('.');
+            fields().any(|field| field.strip_prefix(path).is_some_and(inside))
+        };
         let stack = base.stack()?;
-        let levels = (!varied("stack.levels")).then(|| format!(" of {} levels", stack.levels));
-        let rack = (!varied("stack.rack.base")).then(|| format!(" on {} racks", stack.rack.base));
+        let plural = if stack.levels == 1 { "" } else { "s" };
+        let levels =
+            (!varied("stack.levels")).then(|| format!(" of {} level{plural}", stack.levels));
+        let rack = (!varied("stack.rack")).then(|| format!(" on {} racks", stack.rack.base));
         let direction = Direction::of(base).filter(|_| !varied("stack.view"));
         let shaken = direction.map(|direction| format!(", shaken {}", direction.words()));
         let said = [levels, rack, shaken].into_iter().flatten();

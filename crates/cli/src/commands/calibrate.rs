@@ -1,6 +1,5 @@
 //! `barrelstack calibrate`: contact parameters with their uncertainty, from the user's tests.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -10,7 +9,7 @@ use barrelstack::export::Folder;
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_calibration::collapse::{Errors, Observations, Settings};
 use barrelstack_calibration::drop::{GRAVITY, Striker};
-use barrelstack_calibration::shares::{Height, Statements, shares};
+use barrelstack_calibration::shares::{Height, Statements, levels, shares};
 use barrelstack_calibration::{
     CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, sag,
     stiffness, sway,
@@ -80,8 +79,8 @@ enum Test {
     ///
     /// A TOML file states shares instead: how many of the stacks or barrels fell in an earthquake,
     /// with source and uncertainty. The scenario is that of such a stack, with the motion of the
-    /// nearest station; it is simulated at every height that a statement names. The guide on
-    /// scenarios describes the format.
+    /// nearest station; it is simulated at every height that a statement names. The recipe
+    /// "From what fell in an earthquake" of the guide shows such a file.
     Collapse(CollapseArgs),
 }
 
@@ -426,9 +425,7 @@ fn fallen(
 ) -> anyhow::Result<Calibration> {
     let statements = Statements::load(&args.file)?;
     let (earthquake, chosen) = statements.chosen(&args.statement)?;
-    let levels: BTreeSet<usize> =
-        chosen.iter().flat_map(|one| one.levels.iter().copied()).collect();
-    let heights = levels
+    let heights = levels(&chosen)
         .into_iter()
         .map(|levels| {
             let mut changed = args.changes.of(&args.scenario);

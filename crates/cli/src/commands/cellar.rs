@@ -99,6 +99,7 @@ pub(super) fn run(
     }
     let (cellar, choice) = selected(cellar, args.variants)?;
     if let (Some(PartName(part)), Some(keep)) = (args.part, &args.keep) {
+        args.tables.need(false)?;
         return run_part(args, &cellar, part, keep);
     }
     args.tables.need(args.out.is_some())?;

@@ -39,6 +39,9 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
              leave it out"
         );
     }
+    if !args.catalog && args.tables.need(false).is_err() {
+        bail!("--xlsx and --decimal-comma: only --catalog writes tables; leave them out");
+    }
     let (options, progress) = args.page.begin(&args.out)?;
     let protocol = Protocol::rockscore().thinned(args.one_in);
     let report = |done, of| progress.counted(done, of, "runs");

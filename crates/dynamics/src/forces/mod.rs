@@ -504,7 +504,8 @@ fn placed_point<S: Space>(
         + S::rotate(rotation, point)
 }
 
-/// Returns every pair that touches, with its center of pressure (m) in the inertial frame; in a single run.
+/// Returns every pair that touches, with its center of pressure (m) in the inertial frame: the mean of its contact points,
+/// each weighted by its normal force.
 pub fn centers_of_pressure<S: Space<Real = f64>>(
     model: &Model<S>,
     state: &State<S>,

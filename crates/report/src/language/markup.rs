@@ -2,7 +2,7 @@
 
 use super::Language;
 
-/// Attributes whose values a reader sees or hears.
+/// Attributes whose values are texts, shown on screen or read by a screen reader.
 const ATTRIBUTES: [&str; 4] = ["aria-label=\"", "title=\"", "placeholder=\"", "alt=\""];
 
 impl Language {

@@ -1,5 +1,4 @@
 use std::collections::{BTreeMap, HashSet};
-use std::time::Instant;
 
 use super::{Language, Translator, catalog, flipped, is_phrase, is_prose, markup, sentences};
 use crate::document::{FINE, SCOPE, SIGNATURE};
@@ -210,13 +209,10 @@ fn the_frame_of_pages_is_translated() {
 }
 
 #[test]
-fn a_long_text_is_translated_in_a_moment() {
-    let text =
-        "Shaken along the barrels, 53 of 64 variants fall (83 %, 95 % interval 72 to 90 %). ";
-    let texts: Vec<String> = (0..2000).map(|at| format!("{text}{at} barrels fall.")).collect();
-    let start = Instant::now();
-    let translator = Translator::new(Language::Spanish.catalog().unwrap());
-    let letters: usize = texts.iter().map(|text| translator.text(text).len()).sum();
-    assert!(letters > 100_000);
-    assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
+fn a_text_is_compared_with_few_templates() {
+    let catalog = Language::Spanish.catalog().unwrap();
+    let text = "Shaken along the barrels, 53 of 64 variants fall (83 %, 95 % interval 72 to 90 %).";
+    let compared = catalog.candidates(text).len();
+    // Measured: 93 of some 2,000 templates.
+    assert!(compared < 150, "{compared}");
 }

@@ -118,12 +118,8 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
             compared.on_page("The target spectrum, and the spectra before and after matching."),
             measured.on_page("Measures of the motion before and after matching."),
         ];
-        page::write(
-            figure,
-            &drawn,
-            &after,
-            PageText { headline, tables, language: args.language },
-        )?;
+        let text = PageText { headline, tables, language: args.language };
+        page::write(figure, &drawn, &after, text)?;
     }
     match missed {
         None => Ok(ExitCode::SUCCESS),

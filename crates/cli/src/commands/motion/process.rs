@@ -252,12 +252,8 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         let drawn = panels::before_after(&before, &after)?;
         let headline = "The record before and after processing.".to_owned();
         let tables = vec![table.on_page("Measures of the motion before and after processing.")];
-        page::write(
-            figure,
-            &drawn,
-            &after,
-            PageText { headline, tables, language: args.language },
-        )?;
+        let text = PageText { headline, tables, language: args.language };
+        page::write(figure, &drawn, &after, text)?;
     }
     Ok(ExitCode::SUCCESS)
 }
