@@ -47,12 +47,17 @@ pub fn workbook(tables: &[(&str, &str)]) -> Result<Vec<u8>, XlsxError> {
 
 /// Returns the table of the provenance: the given facts, then the members of the documents, by name and value.
 ///
-/// A document is the text of a JSON file; only its member `provenance` is listed, if it has one.
+/// A document is the text of a JSON file; only its member `provenance` is listed, if it has one. Columns are left out, since
+/// the tables state theirs.
 pub fn provenance(facts: &[(String, String)], documents: &[&str]) -> String {
     let mut rows = facts.to_vec();
     for text in documents {
         let document: Value = serde_json::from_str(text).unwrap_or_default();
-        listed("", document.get("provenance").unwrap_or(&document), &mut rows);
+        let mut document = document.get("provenance").unwrap_or(&document).clone();
+        if let Value::Object(members) = &mut document {
+            members.remove("columns");
+        }
+        listed("", &document, &mut rows);
     }
     let row =
         |(name, value): (String, String)| format!("{},{}\n", csv_field(&name), csv_field(&value));
@@ -83,6 +88,8 @@ fn listed(path: &str, value: &Value, rows: &mut Vec<(String, String)>) {
 /// ```
 /// let csv = barrelstack::spreadsheet::with_decimal_commas("rack,pga (m/s2)\n\"4,5-bar\",0.5\n");
 /// assert_eq!(csv, "rack;pga (m/s2)\n4,5-bar;0,5\n");
+/// let lists = barrelstack::spreadsheet::with_decimal_commas("fall_heights\n1.5;2.25\n");
+/// assert_eq!(lists, "fall_heights\n\"1,5;2,25\"\n");
 /// ```
 pub fn with_decimal_commas(csv: &str) -> String {
     let mut text = String::with_capacity(csv.len());
@@ -91,13 +98,14 @@ pub fn with_decimal_commas(csv: &str) -> String {
             if at > 0 {
                 text.push(';');
             }
-            if is_number(cell) {
-                text.push_str(&cell.replace('.', ","));
-            } else if cell.contains([';', '"', '\n', '\r']) {
+            // A cell may hold a list of numbers.
+            let is_list = cell.split(';').all(is_number);
+            let cell = if is_list { cell.replace('.', ",") } else { cell.clone() };
+            if cell.contains([';', '"', '\n', '\r']) {
                 // Writing to a String cannot fail.
                 let _ = write!(text, "\"{}\"", cell.replace('"', "\"\""));
             } else {
-                text.push_str(cell);
+                text.push_str(&cell);
             }
         }
         text.push('\n');

@@ -235,6 +235,7 @@ pub fn collapse(
         figures: picture::pictures(&tests, &courses, &posterior),
         facts,
         warnings,
+        ..Calibration::default()
     })
 }
 

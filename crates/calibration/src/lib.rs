@@ -42,7 +42,7 @@ pub use barrelstack_input::measured::{Table, TableError};
 pub use error::CalibrateError;
 pub use impact::{Impact, impact};
 pub use parameters::Parameter;
-pub use result::{Calibration, CalibrationDocument, Estimate};
+pub use result::{Calibration, CalibrationDocument, Estimate, ModelShare};
 
 /// The example of the README, which is compiled and run with the tests of the documentation.
 #[cfg(doctest)]

@@ -4,6 +4,10 @@ use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, signifi
 
 use super::{Calibration, Estimate};
 
+/// What the intervals of a fit to tests cover.
+const COVERS: &str = "The 95 % intervals cover the scatter of the test. They do not cover errors of the model, or of values that \
+                      were given as exact.";
+
 impl Calibration {
     /// Builds the report page of a calibration.
     pub fn document(&self) -> Document {
@@ -20,7 +24,7 @@ impl Calibration {
         }
         if !self.facts.is_empty() {
             blocks.push(Block::Table(Table::of(
-                "Data of the test and of the fit.",
+                "Data and settings of the fit.",
                 &self.facts,
                 &[
                     ("fact", "", &|(name, _)| Cell::text(name)),
@@ -33,18 +37,14 @@ impl Calibration {
             blocks.push(Block::Table(Table::of(
                 "Lines to paste into a scenario.",
                 self.scenario.lines(),
-                &[("scenario", "", &|line| Cell::text(*line))],
+                &[("scenario", "", &|line| Cell::verbatim(*line))],
             )));
         }
         Document {
             title: self.title.clone(),
             verdict: Verdict {
                 headline: self.headline(),
-                sentences: vec![
-                    "The 95 % intervals cover the scatter of the test. They do not cover errors of the model, or of \
-                     values that were given as exact."
-                        .to_owned(),
-                ],
+                sentences: vec![self.covers.unwrap_or(COVERS).to_owned()],
                 ..Verdict::default()
             },
             blocks,
@@ -72,7 +72,7 @@ impl Calibration {
     fn parameters(&self) -> Table {
         let bound = |value: f64| Cell::number(Some(value).filter(|value| value.is_finite()), 4);
         Table::of(
-            "Parameters from the test, with 95 % intervals.",
+            "Parameters, with 95 % intervals.",
             &self.estimates,
             &[
                 ("parameter", "", &|of| Cell::text(&of.name)),

@@ -162,6 +162,7 @@ pub fn response(
         figures: pictures(&measured, &found.residuals, &scatter),
         facts,
         warnings,
+        ..Calibration::default()
     })
 }
 

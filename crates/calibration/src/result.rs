@@ -20,6 +20,17 @@ pub struct Estimate {
     pub dimension: Dimension,
 }
 
+/// Share of stacks or barrels by the model, for one statement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelShare {
+    /// Name of the statement.
+    pub statement: String,
+    /// Central 90 % over the ranges of the parameters, the motion and the proportions of the heights.
+    pub before: [f64; 2],
+    /// Central 90 % given all statements.
+    pub given: [f64; 2],
+}
+
 /// Result of a calibration from one test or several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
@@ -35,6 +46,10 @@ pub struct Calibration {
     pub condition: Option<f64>,
     /// Measurements compared with the fit.
     pub figures: Vec<Figure>,
+    /// Shares of the statements by the model; empty for a fit to tests.
+    pub shares: Vec<ModelShare>,
+    /// What the intervals cover and what they do not, if they are not those of a test: sentences.
+    pub covers: Option<&'static str>,
     /// Further results for display, as pairs of name and value.
     pub facts: Vec<(String, String)>,
     /// Lines to paste into a scenario.
@@ -150,12 +165,24 @@ described! {
         /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the normalized
         /// information matrix.
         pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
+        /// Shares of stacks or barrels by the model, for each statement on an earthquake; empty for a fit to tests.
+        pub shares: Vec<ShareRow> = found.shares.iter().map(ShareRow::of).collect(),
         /// Further results for display: text by name.
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
         /// Lines to paste into a scenario.
         pub scenario: String = found.scenario.clone(),
         /// Warnings.
         pub warnings: Vec<String> = found.warnings.clone(),
+    }
+
+    /// Share of stacks or barrels by the model, for one statement.
+    pub struct ShareRow of share: &ModelShare {
+        /// Name of the statement.
+        pub statement: String = share.statement.clone(),
+        /// Central 90 % before the statements are used.
+        pub before: [f64; 2] as "1" = share.before,
+        /// Central 90 % given all statements.
+        pub given: [f64; 2] as "1" = share.given,
     }
 
     /// One estimated parameter.

@@ -21,12 +21,17 @@ use super::collapse::sampler::{Draw, Posterior, hypercube};
 use super::collapse::{Settings, barrels, estimates, identifiability};
 use super::least_squares::normalized;
 use super::parameters::Tunable;
-use super::result::short;
+use super::result::{ModelShare, short};
 use super::{CalibrateError, Calibration, Parameter};
 
 pub use statements::{
     Earthquake, Kind, Likelihood, MODEL_ERROR, Statement, Statements, StatementsError,
 };
+
+/// What the intervals cover.
+const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements, of the motion in the cellar and of the \
+                      proportions of the heights, and an error of 10 % of the model in each share. They do not cover values \
+                      of the scenario that were not fitted.";
 
 /// Number of parameter sets at which the statements are weighed.
 const DRAWS: usize = 20_000;
@@ -147,6 +152,7 @@ pub fn shares(
     let motion = [0.5, 0.025, 0.975]
         .map(|q| math::exp(earthquake.motion * posterior.quantile(parameters.len(), q)));
     let mut facts = vec![
+        ("scenario".to_owned(), first.scenario.title.clone()),
         ("statements".to_owned(), statements.len().to_string()),
         ("simulations".to_owned(), shaken.len().to_string()),
         ("draws in effect".to_owned(), short(posterior.effective())),
@@ -157,11 +163,11 @@ pub fn shares(
         ),
         ("seed".to_owned(), settings.seed.to_string()),
     ];
+    let mut shares = Vec::new();
     for (at, one) in statements.iter().enumerate() {
-        let [before, after] = weighed.predicted(at);
-        let text = |[low, high]: [f64; 2]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high);
-        let value = format!("{} before, {} given the statements", text(before), text(after));
-        facts.push((format!("share of {} by the model, {}", subject(one), one.id), value));
+        let [before, given] = weighed.predicted(at);
+        facts.extend(stated(one, before, given));
+        shares.push(ModelShare { statement: one.id.clone(), before, given });
     }
     Ok(Calibration {
         title: format!("collapse {}: shares that fell, from simulated stacks", earthquake.name),
@@ -169,15 +175,38 @@ pub fn shares(
         estimates,
         correlation,
         condition: None,
+        shares,
+        covers: Some(COVERS),
         figures: weighed.figure(statements).into_iter().collect(),
         facts,
         warnings,
     })
 }
 
-/// Returns what a statement counts.
-fn subject(one: &Statement) -> &'static str {
-    if one.kind == Kind::Barrels { "barrels on the floor" } else { "stacks that fall" }
+/// Returns a statement as facts: its text, source and uncertainty, how it is used, and the shares by the model.
+fn stated(one: &Statement, before: [f64; 2], given: [f64; 2]) -> Vec<(String, String)> {
+    let range = |[low, high]: [f64; 2]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high);
+    let error = match (one.low.zip(one.high), one.error) {
+        (Some((low, high)), _) => format!(", 95 % interval {}", range([low, high])),
+        (None, Some(error)) => format!(", standard error {:.0} %", 100.0 * error),
+        (None, None) => String::new(),
+    };
+    let levels: Vec<String> = one.levels.iter().map(usize::to_string).collect();
+    let used = format!(
+        "{}: {}{error}; levels: {}, in unknown proportions",
+        one.subject(),
+        one.bound(),
+        levels.join(", ")
+    );
+    let model = format!("{} before, {} given the statements", range(before), range(given));
+    let fact = |name: &str, value: &str| (format!("{}: {name}", one.id), value.to_owned());
+    vec![
+        fact("statement", &one.statement),
+        fact("source", &one.source),
+        fact("uncertainty", one.uncertainty.as_deref().unwrap_or_default()),
+        fact("used as", &used),
+        fact("share by the model, central 90 %", &model),
+    ]
 }
 
 /// Simulates one stack for each parameter set; stacks that fall at rest and runs that fail are left out.

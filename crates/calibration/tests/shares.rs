@@ -47,7 +47,7 @@ fn a_share_that_fell_is_set_beside_that_of_simulated_stacks() {
     // explain that few fell, and says so; the motion was weaker then (0.88 against 1.02 times that of the scenario).
     let before = "60 to 100 % before, ";
     let share = |result: &Calibration| {
-        let text = fact(result, "share of stacks that fall by the model");
+        let text = fact(result, "s: share by the model");
         number(text.strip_prefix(before).unwrap_or_else(|| panic!("{text}")))
     };
     assert!(share(&most) > 80.0 && share(&few) < 10.0);

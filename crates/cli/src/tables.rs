@@ -85,7 +85,9 @@ pub(crate) fn write_one(path: &Path, csv: &str) -> anyhow::Result<()> {
     if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xlsx")) {
         return store(path, csv.as_bytes());
     }
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    // The name of the other sheet is taken.
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = if stem.eq_ignore_ascii_case("provenance") { "table".into() } else { stem };
     let about = spreadsheet::provenance(&facts(), &[]);
     let book = book(&[(&name, csv), ("provenance", &about)]);
     store(path, &book.with_context(|| format!("cannot write {}", path.display()))?)

@@ -153,7 +153,7 @@ pub(crate) fn calibrate_collapse(
         seed,
         lanes: None,
     };
-    if Path::new(name).extension().is_some_and(|extension| extension == "toml") {
+    if Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
         let read = Statements::read(name, text).map_err(errors::general)?;
         let (earthquake, chosen) = read.chosen(&statements).map_err(errors::general)?;
         let mut heights = Vec::new();

@@ -437,12 +437,16 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     context.textBaseline = "middle";
     context.fillStyle = paint.soft;
     context.textAlign = "left";
-    halo(pen, t("grid of {1}", "1\u00a0m"), 14, height - 14);
+    const grid = t("grid of {1}", "1\u00a0m");
+    halo(pen, grid, 14, height - 14);
     // A plane models one barrel of a row.
     if (depth.bodies.some(({ rows }) => rows.length > 1)) halo(pen, t("rows move as one"), 14, height - 31);
     if (!eye.turned && stages()[0] === stage) {
       context.textAlign = "right";
-      halo(pen, width < 420 ? t("drag to turn") : t("drag to turn, two fingers or Ctrl and wheel to zoom"), width - 14, height - 14);
+      const room = width - 48 - context.measureText(grid).width;
+      const hints = [t("drag to turn, two fingers or Ctrl and wheel to zoom"), t("drag to turn")];
+      const hint = hints.find((one) => context.measureText(one).width < room);
+      if (hint) halo(pen, hint, width - 14, height - 14);
     }
     flat.valued = flat.hover ? drawForceValue(pen, arrows, flat.hover, []) : null;
     if (flat.hover && !flat.valued) drawLabel(pen, flat.hover);

@@ -1,6 +1,6 @@
 //! A document: a verdict, blocks in reading order, warnings and provenance.
 
-use crate::{Dots, Figure, Language, Player, Players, Table};
+use crate::{Dots, Figure, Language, Player, Players, Table, figure::Counter};
 
 /// The content of a report or page, independent of the output format.
 ///
@@ -159,9 +159,19 @@ impl Block {
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
 
-/// Returns the sentence that stands on paper in place of content of the page on screen.
-pub(crate) fn elsewhere(what: &str, language: Language) -> String {
-    language.text(&format!("{what}: on the HTML page of this report."))
+/// Returns the sentence that stands on paper in place of content of the page on screen. It names the figures and tables of
+/// the content, which are counted before and after it.
+pub(crate) fn elsewhere(what: &str, [before, after]: [Counter; 2], language: Language) -> String {
+    let numbers =
+        [("figure", before.figures, after.figures), ("table", before.tables, after.tables)];
+    let list = numbers.into_iter().filter_map(|(word, before, after)| match after - before {
+        0 => None,
+        1 => Some(language.text(&format!("{word} {after}"))),
+        _ => Some(language.text(&format!("{word}s {} to {after}", before + 1))),
+    });
+    let list = list.collect::<Vec<_>>().join(", ");
+    let list = if list.is_empty() { list } else { format!(" ({list})") };
+    format!("{what}{list}: {}.", language.fixed("on the HTML page of this report"))
 }
 
 /// One piece of content. All text is plain text, which is escaped and never interpreted as markup.

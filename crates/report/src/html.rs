@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::document::{SCOPE, SIGNATURE};
 use crate::{
-    Block, Document, Figure, FigureKind, Language, Player, Strip, Table, Tone, Verdict,
+    Block, Cell, Document, Figure, FigureKind, Language, Player, Strip, Table, Tone, Verdict,
     document::{FINE, elsewhere},
     drawing::Room,
     escape,
@@ -309,14 +309,12 @@ impl<'a> Writer<'a> {
                     self.put("</div>\n</details>\n");
                 }
                 Block::OnScreen { what, blocks } => {
+                    let before = self.counter;
                     self.put("<div class=\"on-screen\">\n");
                     self.blocks(blocks);
                     self.put("</div>\n");
-                    self.element(
-                        "<p class=\"on-paper\">",
-                        &elsewhere(what, self.document.language),
-                        "</p>",
-                    );
+                    let note = elsewhere(what, [before, self.counter], self.document.language);
+                    self.element("<p class=\"on-paper\">", &note, "</p>");
                 }
             }
         }
@@ -354,8 +352,10 @@ impl<'a> Writer<'a> {
             self.put("<tr>");
             for (at, text) in table.shown(row).enumerate() {
                 let class = match row.get(at) {
-                    Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
-                    Some(crate::Cell::Text(text)) if text.len() > LONG => " class=\"long\"".into(),
+                    Some(Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
+                    Some(Cell::Text(text) | Cell::Verbatim(text)) if text.len() > LONG => {
+                        " class=\"long\"".into()
+                    }
                     _ => class(at).to_owned(),
                 };
                 let mut text = self.glossary.marked(&number::tied(&text));

@@ -182,7 +182,7 @@ impl Writer {
             let time = number::fixed(event.time, 2);
             let who = if pane.is_empty() { String::new() } else { format!("{pane}: ") };
             let text = escape::markdown(&format!("{who}{}", event.text));
-            self.line(&format!("| {time} | {} | {text} |", self.language.fixed(event.kind.word())));
+            self.line(&format!("| {time} | {} | {text} |", event.kind.word_in(self.language)));
         }
         self.line("");
     }

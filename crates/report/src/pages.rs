@@ -232,8 +232,11 @@ impl<'a> Flow<'a> {
         };
         let tone = self.t(verdict.tone.word()).to_uppercase();
         self.tagged(StructRole::P, None, |flow| flow.text(class, 0.0, &tone));
-        let headline = |flow: &mut Self| flow.text("page-headline", 0.0, &verdict.headline);
-        self.tagged(StructRole::H1, None, headline);
+        let (opening, rest) = verdict.opening();
+        self.tagged(StructRole::H1, None, |flow| flow.text("page-headline", 0.0, opening));
+        if !rest.is_empty() {
+            self.paragraph("page-text", rest);
+        }
         self.y += 4.0;
         for dots in &verdict.dots {
             self.dots(dots);
@@ -340,8 +343,10 @@ impl<'a> Flow<'a> {
                     self.counter.skip(blocks);
                 }
                 Block::OnScreen { what, blocks } => {
-                    self.paragraph("page-small", &elsewhere(what, self.document.language));
+                    let before = self.counter;
                     self.counter.skip(blocks);
+                    let note = elsewhere(what, [before, self.counter], self.document.language);
+                    self.paragraph("page-small", &note);
                 }
             }
         }
@@ -419,7 +424,11 @@ impl<'a> Flow<'a> {
         let rows: Vec<Vec<String>> = events
             .map(|event| {
                 let time = format!("{} s", number::fixed(event.time, 2));
-                vec![time, self.t(event.kind.word()).to_owned(), event.text.clone()]
+                vec![
+                    time,
+                    event.kind.word_in(self.document.language).to_owned(),
+                    event.text.clone(),
+                ]
             })
             .collect();
         if !rows.is_empty() {

@@ -118,7 +118,7 @@ impl Writer<'_> {
                 event.time,
                 event.kind.class(),
                 number::fixed(event.time, 2),
-                escape::html(self.t(event.kind.word()))
+                escape::html(event.kind.word_in(self.document.language))
             ));
             self.put("<span class=\"text\">");
             if !pane.is_empty() {

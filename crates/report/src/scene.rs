@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::Depth;
+use crate::{Depth, Language};
 
 /// A point or vector `[x, z]` (m): x to the right, z up.
 pub type Point = [f64; 2];
@@ -193,6 +193,15 @@ impl EventKind {
             Self::LossOfSeat => "gives way",
             Self::Fall => "fall",
             Self::Note => "note",
+        }
+    }
+
+    /// Returns the word in a language. Headings of tables have the plural "fall", which is another word in other languages.
+    pub(crate) fn word_in(self, language: Language) -> &'static str {
+        match (self, language) {
+            (_, Language::English) => self.word(),
+            (Self::Fall, _) => language.fixed("falls"),
+            _ => language.fixed(self.word()),
         }
     }
 

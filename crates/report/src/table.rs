@@ -60,6 +60,8 @@ impl Rating {
 pub enum Cell {
     /// Plain text.
     Text(String),
+    /// Text that is the same in all languages: a key or a value of an input file, or a name that a user gave.
+    Verbatim(String),
     /// Text with a rating; the text must state the rating too, because the color only repeats the
     /// rating.
     Rated(Rating, String),
@@ -76,6 +78,11 @@ impl Cell {
     /// Creates a cell of text.
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
+    }
+
+    /// Creates a cell of text that is the same in all languages.
+    pub fn verbatim(text: impl Into<String>) -> Self {
+        Self::Verbatim(text.into())
     }
 
     /// Creates a cell of text; `None` gives a missing cell.
@@ -97,7 +104,7 @@ impl Cell {
 
     pub(crate) fn shown(&self) -> String {
         match self {
-            Self::Text(text) | Self::Rated(_, text) => text.clone(),
+            Self::Text(text) | Self::Verbatim(text) | Self::Rated(_, text) => text.clone(),
             Self::Number(value, digits) => number::significant(*value, *digits),
             Self::Measured(value, decimals) => number::measured(*value, *decimals),
             Self::Missing => number::MISSING.into(),
@@ -154,7 +161,9 @@ impl Table {
         for row in &self.rows {
             let cells: Vec<_> = (0..self.columns.len())
                 .map(|at| match row.get(at) {
-                    Some(Cell::Text(text) | Cell::Rated(_, text)) => csv_field(text),
+                    Some(Cell::Text(text) | Cell::Verbatim(text) | Cell::Rated(_, text)) => {
+                        csv_field(text)
+                    }
                     Some(Cell::Number(value, _) | Cell::Measured(value, _)) => {
                         number::csv_number(*value)
                     }
@@ -178,7 +187,8 @@ impl Table {
         let numeric = |column: usize| {
             let cells = || self.rows.iter().filter_map(|row| row.get(column));
             cells().any(|cell| matches!(cell, Cell::Number(..) | Cell::Measured(..)))
-                && !cells().any(|cell| matches!(cell, Cell::Text(_) | Cell::Rated(..)))
+                && !cells()
+                    .any(|cell| matches!(cell, Cell::Text(_) | Cell::Verbatim(_) | Cell::Rated(..)))
         };
         (0..self.columns.len()).map(numeric).collect()
     }

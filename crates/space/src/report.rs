@@ -265,7 +265,7 @@ fn fates(run: &Run) -> Table {
          seat. All other displacements are those at the end.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
-            ("body", "", &|(part, _)| Cell::text(&part.name)),
+            ("body", "", &|(part, _)| Cell::verbatim(&part.name)),
             ("leaves its seat", "s", &|(_, fate)| time(fate.left_seat.map(|(at, ..)| at))),
             ("toward", "", &|(_, fate)| {
                 Cell::maybe(fate.left_seat.map(|(.., heading): (_, _, Heading)| heading.name()))
@@ -289,7 +289,7 @@ fn ends(summary: &Summary) -> Table {
         "Displacements are relative to the ground, measured from the initial position.",
         &summary.bodies,
         &[
-            ("body", "", &|body| Cell::text(&body.name)),
+            ("body", "", &|body| Cell::verbatim(&body.name)),
             ("moved along x", "m", &|body| measured(body.moved[0])),
             ("y", "m", &|body| measured(body.moved[1])),
             ("z", "m", &|body| measured(body.moved[2])),

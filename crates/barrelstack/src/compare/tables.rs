@@ -23,9 +23,12 @@ pub fn inputs(names: &[String], differing: &[Difference]) -> Table {
     table.columns.extend(names.iter().map(|name| Column::new(name, "")));
     table.columns.push(Column::new("meaning", ""));
     for one in differing {
-        let mut row = vec![Cell::text(&one.path)];
+        let mut row = vec![Cell::verbatim(&one.path)];
         let shown = |value: &String| report::shown(&one.path, value);
-        row.extend(one.values.iter().map(|value| Cell::maybe(value.as_ref().map(shown))));
+        let cell = |value: &Option<String>| {
+            value.as_ref().map_or(Cell::Missing, |value| Cell::verbatim(shown(value)))
+        };
+        row.extend(one.values.iter().map(cell));
         row.push(Cell::text(one.help));
         table.rows.push(row);
     }

@@ -29,8 +29,8 @@ pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
         caption,
         settings,
         &[
-            ("input", "", &|one| Cell::text(&one.path)),
-            ("value", "", &|one| Cell::text(shown(&one.path, &one.value))),
+            ("input", "", &|one| Cell::verbatim(&one.path)),
+            ("value", "", &|one| Cell::verbatim(shown(&one.path, &one.value))),
             ("source", "", &|one| Cell::text(one.source.words())),
             ("meaning", "", &|one| Cell::text(one.help)),
         ],
@@ -80,8 +80,8 @@ pub fn inputs(stated: &Scenario) -> Vec<Block> {
         "Inputs that differ from their defaults, as given and in SI units.",
         settings.iter().filter(|one| one.source == Source::Given),
         &[
-            ("input", "", &|one| Cell::text(&one.path)),
-            ("value", "", &|one| Cell::text(given(stated, one))),
+            ("input", "", &|one| Cell::verbatim(&one.path)),
+            ("value", "", &|one| Cell::verbatim(given(stated, one))),
             ("meaning", "", &|one| Cell::text(one.help)),
         ],
     );

@@ -1,5 +1,6 @@
 //! Statements on how many stacks fell in an earthquake, with source and uncertainty.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use barrelstack_input::system;
@@ -10,6 +11,9 @@ const SIZE_LIMIT: usize = 1 << 20;
 
 /// Standard deviation of the error of the model itself in a share: neighbors, walls, empty barrels.
 pub const MODEL_ERROR: f64 = 0.10;
+
+/// Largest standard deviation of ln of the motion in a cellar over that at the station: a factor of 7 either way.
+const MOST_MOTION: f64 = 2.0;
 
 /// Error of a file of statements.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -86,6 +90,8 @@ pub struct Statement {
 pub enum Kind {
     /// Share of the barrels on the floor.
     Barrels,
+    /// Share of the stacks that fell.
+    Stacks,
     /// Share of the stacks that fell, at least about a value.
     Most,
     /// Share of the stacks that fell, at most about a value.
@@ -101,7 +107,7 @@ pub enum Kind {
 /// Likelihood of a statement as a function of a share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Likelihood {
-    /// Normal about a share of barrels.
+    /// Normal about a share.
     Near {
         /// The observed share.
         value: f64,
@@ -185,11 +191,28 @@ impl Statements {
     /// Reads the text of a file of statements (TOML); `file` is its name in errors.
     ///
     /// # Errors
-    /// If it is not one, if a statement has no source, or if one that is used lacks a number.
+    /// If it is not one, if a statement has no source, if one that is used lacks a number, if two have the same name, or if
+    /// the spread of the motion is out of range.
     pub fn read(file: &str, text: &str) -> Result<Self, StatementsError> {
         let read: Self =
             toml::from_str(text).map_err(|error| StatementsError(format!("{file}: {error}")))?;
+        for quake in &read.earthquake {
+            if !(0.0..=MOST_MOTION).contains(&quake.motion) {
+                return Err(StatementsError(format!(
+                    "{file}: earthquake `{}`: `motion`, a standard deviation of a logarithm, must lie between 0 and \
+                     {MOST_MOTION}, found {}",
+                    quake.name, quake.motion
+                )));
+            }
+        }
+        let mut names = BTreeSet::new();
         for statement in read.statements() {
+            if !names.insert(&statement.id) {
+                return Err(StatementsError(format!(
+                    "{file}: two statements are named `{}`; give each its own `id`",
+                    statement.id
+                )));
+            }
             if let Some(fault) = statement.fault() {
                 return Err(StatementsError(format!(
                     "{file}: statement `{}`: {fault}",
@@ -276,7 +299,7 @@ impl Statement {
         } else if self.kind != Kind::Along
             && (self.likelihood().is_none() || self.levels.is_empty())
         {
-            "a likelihood needs levels and its numbers: `low`, `value` and `high` of `barrels`, `value` and `error` of \
+            "a likelihood needs levels and its numbers: `low`, `value` and `high` of `barrels` and `stacks`, `value` and `error` of \
              `most` and `few`, `stacks` of `some`"
         } else if self.levels.contains(&0) {
             "a stack has at least one level"
@@ -289,10 +312,27 @@ impl Statement {
         })
     }
 
+    /// Returns what the statement counts.
+    pub fn subject(&self) -> &'static str {
+        if self.kind == Kind::Barrels { "barrels on the floor" } else { "stacks that fall" }
+    }
+
+    /// Returns the stated share in words, such as "at least about 90 %".
+    pub fn bound(&self) -> String {
+        let value = format!("{:.0} %", 100.0 * self.value.unwrap_or(f64::NAN));
+        match self.kind {
+            Kind::Barrels | Kind::Stacks => value,
+            Kind::Most => format!("at least about {value}"),
+            Kind::Few => format!("at most about {value}"),
+            Kind::Some => format!("one of {} or more", self.stacks.unwrap_or(f64::NAN)),
+            Kind::Along | Kind::Unusable => "–".to_owned(),
+        }
+    }
+
     /// Returns the likelihood; `None` of a statement without one.
     pub fn likelihood(&self) -> Option<Likelihood> {
         Some(match self.kind {
-            Kind::Barrels => Likelihood::Near {
+            Kind::Barrels | Kind::Stacks => Likelihood::Near {
                 value: self.value?,
                 error: (self.high? - self.low?)
                     / (2.0 * barrelstack_fragility::normal_quantile(0.975)),

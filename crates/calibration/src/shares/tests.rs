@@ -72,6 +72,28 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
 }
 
 #[test]
+fn a_spread_of_the_motion_and_a_name_are_checked() {
+    let file = |motion: &str, ids: &[&str]| {
+        let one = |id: &&str| {
+            format!(
+                "[[earthquake.observation]]\nid = \"{id}\"\nstatement = \"S.\"\nsource = \"here\"\n\
+                 uncertainty = \"counted\"\nkind = \"stacks\"\nlevels = [4]\nvalue = 0.4\nlow = 0.3\nhigh = 0.5\n"
+            )
+        };
+        let all: String = ids.iter().map(one).collect();
+        let text = format!("[[earthquake]]\nname = \"E\"\nmotion = {motion}\n{all}");
+        Statements::read("s.toml", &text).map_err(|error| error.to_string())
+    };
+    assert!(file("0.3", &["a", "b"]).is_ok());
+    for motion in ["nan", "-0.3", "30", "inf"] {
+        let error = file(motion, &["a"]).unwrap_err();
+        assert!(error.contains("`E`: `motion`") && error.contains("between 0 and 2"), "{error}");
+    }
+    let error = file("0.3", &["a", "a"]).unwrap_err();
+    assert!(error.contains("two statements are named `a`"), "{error}");
+}
+
+#[test]
 fn a_file_names_what_is_wrong_in_it() {
     let of = |kind: &str, numbers: &str| {
         let text = format!(

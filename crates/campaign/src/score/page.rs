@@ -261,8 +261,8 @@ fn inputs(sheet: &Sheet) -> Table {
         "Inputs that differ from their defaults. Quantities are in SI units.",
         settings.filter(|setting| setting.source == Source::Given),
         &[
-            ("input", "", &|setting| Cell::text(&setting.path)),
-            ("value", "", &|setting| Cell::text(&setting.value)),
+            ("input", "", &|setting| Cell::verbatim(&setting.path)),
+            ("value", "", &|setting| Cell::verbatim(&setting.value)),
             ("meaning", "", &|setting| Cell::text(setting.help)),
         ],
     )

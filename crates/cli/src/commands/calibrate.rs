@@ -395,7 +395,7 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         seed: args.seed,
         lanes: args.lanes.lanes,
     };
-    if args.file.extension().is_some_and(|extension| extension == "toml") {
+    if args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
         return fallen(args, &parameters, &settings);
     }
     anyhow::ensure!(
@@ -425,6 +425,12 @@ fn fallen(
 ) -> anyhow::Result<Calibration> {
     let statements = Statements::load(&args.file)?;
     let (earthquake, chosen) = statements.chosen(&args.statement)?;
+    let levels_set =
+        args.changes.set.iter().any(|change| change.trim_start().starts_with("stack.levels"));
+    anyhow::ensure!(
+        !levels_set,
+        "--set stack.levels: the statements name the levels of the stacks; leave it out"
+    );
     let heights = levels(&chosen)
         .into_iter()
         .map(|levels| {

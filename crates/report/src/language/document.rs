@@ -149,7 +149,7 @@ impl<F: FnMut(&mut String)> Visit<F> {
         for cell in table.rows.iter_mut().flatten() {
             match cell {
                 Cell::Text(text) | Cell::Rated(_, text) => self.text(text),
-                Cell::Number(..) | Cell::Measured(..) | Cell::Missing => {}
+                Cell::Verbatim(_) | Cell::Number(..) | Cell::Measured(..) | Cell::Missing => {}
             }
         }
     }
@@ -203,7 +203,6 @@ impl<F: FnMut(&mut String)> Visit<F> {
             return;
         }
         let mut own = Scene::clone(scene);
-        self.texts(own.bodies.iter_mut().map(|body| &mut body.name));
         self.events(&mut own.events);
         self.histories(&mut own.ground);
         self.moment(own.moment.as_mut());
@@ -212,7 +211,6 @@ impl<F: FnMut(&mut String)> Visit<F> {
         }
         self.texts(own.ghosts.iter_mut().map(|ghosts| &mut ghosts.label));
         if let Some(depth) = &mut own.depth {
-            self.texts(depth.bodies.iter_mut().map(|body| &mut body.name));
             self.events(&mut depth.events);
             self.moment(depth.moment.as_mut());
         }

@@ -7,7 +7,7 @@ use barrelstack_fragility::wilson;
 use super::cases::FieldCases;
 use super::results::{Bin, FRICTION, GROUND, Posterior, Results, STIFFNESS, Share};
 use super::weigh::{DRAWS, Range};
-use barrelstack_calibration::shares::{Earthquake, Kind, MODEL_ERROR, Statement, Statements};
+use barrelstack_calibration::shares::{Earthquake, MODEL_ERROR, Statements};
 
 const HEAD: &str = "\
 # Hindcasts: real earthquakes beside the model
@@ -224,31 +224,12 @@ fn predictions(text: &mut String, observations: &Statements, results: &Results) 
         let likelihood = results.given(id).map_or(f64::NAN, |one| one.evidence);
         let _ = writeln!(
             text,
-            "| “{id}”: {} | {} | {} | {} | {likelihood:.2} |",
-            subject(one),
-            bound(one),
+            "| “{id}”: share of {} | {} | {} | {} | {likelihood:.2} |",
+            one.subject(),
+            one.bound(),
             of_share(prior),
             of_share(posterior),
         );
-    }
-}
-
-fn subject(one: &Statement) -> &'static str {
-    if one.kind == Kind::Barrels {
-        "share of barrels on the floor"
-    } else {
-        "share of stacks that fall"
-    }
-}
-
-fn bound(one: &Statement) -> String {
-    let value = percent(one.value.unwrap_or(f64::NAN));
-    match one.kind {
-        Kind::Barrels => value,
-        Kind::Most => format!("at least about {value}"),
-        Kind::Few => format!("at most about {value}"),
-        Kind::Some => format!("one of {} or more", one.stacks.unwrap_or(f64::NAN)),
-        Kind::Along | Kind::Unusable => "–".to_owned(),
     }
 }
 

@@ -261,7 +261,10 @@ impl Measurements {
             lines.push(format!("  and {} more in refused.csv", self.refused.len() - NAMED));
         }
         let out = self.out.display();
-        lines.push(format!("written: {out}, with records.csv, records.parquet and refused.csv"));
+        let book = if self.tables.xlsx { ", tables.xlsx" } else { "" };
+        lines.push(format!(
+            "written: {out}, with records.csv, records.parquet{book} and refused.csv"
+        ));
         printer::lines(lines)?;
         if self.stopped {
             printer::note("stopped; the same command continues from here");
