@@ -84,7 +84,7 @@ impl SpatialBody {
         let free = !body.fixed_to_ground;
         if free && body.solid == Solid::HalfSpace {
             let message = format!(
-                "a half-space has no mass that could move; write `{} = true`, or take another solid",
+                "a half-space has no mass, so it cannot move; write `{} = true`, or choose another solid",
                 reader.path_of("fixed_to_ground")
             );
             return wrong("solid", message);

@@ -134,7 +134,8 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         Solid::Block { sides, rounding } if sides.iter().any(|side| 2.0 * rounding >= *side) => {
             let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
             let message = format!(
-                "`{}` of {rounding} m is not below half of the shortest side, {least} m; state a smaller radius",
+                "`{}` of {rounding} m must be less than half of the shortest side, which is {least} m; state a smaller \
+                 radius",
                 reader.path_of("rounding")
             );
             return Err(reader.inconsistent("rounding", message));

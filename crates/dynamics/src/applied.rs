@@ -1,4 +1,4 @@
-//! Forces from outside of the model, such as those of a controller.
+//! Forces from outside the model, such as those of a controller.
 
 use crate::body::{BodyId, Motion};
 use crate::model::Model;
@@ -61,7 +61,8 @@ impl<S: Space> Applied<S> {
 }
 
 impl<S: Space<Real = f64>> Applied<S> {
-    /// Replaces the force on a body in a list with at most one force for each body; a force of zero is removed.
+    /// Sets the force on its body in the list `all`, which contains at most one force for each body, in place of an
+    /// earlier one. If force and moment are zero, the entry of the body is removed.
     ///
     /// Returns the index of the body's force in the old list and in the new list.
     pub(crate) fn replace(

@@ -69,11 +69,13 @@ pub struct Round<S: Space> {
     pub tributary_length: S::Real,
 }
 
-/// A flat piece of boundary that carries nodes, as a plane in the body frame.
+/// A flat piece of boundary with nodes, stored as a plane in the frame of its body.
 ///
-/// Where both the nodes and the exact test would find a contact, the plane decides which of the two applies: the nodes
-/// for a round body whose center is in front of the plane, and the exact test for a round body whose center is behind
-/// the plane. For other bodies, whose edges may extend past the face, the direction of the contact decides as well.
+/// A contact at the face may be found twice: by testing the nodes of the face, and by testing the exact boundary
+/// ([`Round`]). The position of the other body relative to the plane decides which of the two contacts counts. For a
+/// round body, it is the contact of the nodes if the center of the body is in front of the plane, and the exact contact
+/// if the center is behind the plane. For other bodies, whose edges may extend past the face, the direction of the
+/// contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
     /// A point of the face (m), relative to the center of mass.

@@ -1,4 +1,4 @@
-//! List of the contact elements that could touch soon, with their stick memory.
+//! List of the contact elements that could touch soon, with their stick history.
 //!
 //! A contact element is a node of a contactor and the surface of a target. The list contains only the elements within
 //! reach; it is rebuilt before any body can have moved far enough for a missing element to touch. The list affects only
@@ -15,16 +15,16 @@ use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Planar, Pose, Rotation3, Space, Spatial, Twist, Vec3};
 use crate::state::State;
 
-/// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on the list, so
-/// the gap of every element that is missing from the list must exceed the displacements within the lookahead plus this
-/// slack.
+/// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on which elements
+/// are in the list, so the gap of every element that is missing from the list must exceed the displacements within the
+/// lookahead plus this slack.
 const LOOKAHEAD_SLACK: f64 = 1e-3;
 
 /// Minimum allowance (m): every body may move at least this far before the list is rebuilt.
 const LEAST_ALLOWANCE: f64 = 0.015;
 
 /// Time (s) for which the list should remain valid if bodies keep their speeds, so that falling bodies do not require a
-/// new list every other step.
+/// new list every second step.
 const HORIZON: f64 = 0.012;
 
 /// Maximum allowance (m): no body may move farther before the list is rebuilt. A larger allowance would make the list
@@ -61,7 +61,7 @@ pub struct ContactElements<S: Space> {
     /// Factor by which the constants of every element's laws are multiplied: 1 for constants per node, the tributary
     /// length (m) for constants per length.
     pub(crate) weights: Vec<S::Real>,
-    /// Stick memory of every element.
+    /// Stick history of every element.
     pub(crate) sticks: Vec<Stick<S>>,
     /// For every group, the smallest gap (m) of its elements when the list was built.
     apart: Vec<S::Real>,
@@ -119,7 +119,7 @@ impl<S: Space> ContactElements<S> {
         self.travels.fill(S::Real::splat(f64::INFINITY));
     }
 
-    /// Returns the stick memory of the element with an index as in
+    /// Returns the stick history of an element, given its index as in
     /// [`Contact::element`](crate::forces::Contact::element).
     pub fn stick(&self, element: usize) -> Stick<S> {
         self.sticks[element]
@@ -171,7 +171,7 @@ impl<S: Space> ContactElements<S> {
         let (carried, carrier) = ground.map_or_else(Default::default, |g| {
             (poses[g].position - self.built_for[g].position, twists[g].linear)
         });
-        // Includes the current step, half as long again since velocities change within it.
+        // Includes the current step, lengthened by half since velocities change within the step.
         let ahead = S::Real::splat(1.5) * dt;
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
@@ -192,7 +192,7 @@ impl<S: Space> ContactElements<S> {
         stale.any()
     }
 
-    /// Lists the elements within reach and transfers their memory from the old list.
+    /// Lists the elements within reach and copies their stick history from the old list.
     ///
     /// Returns the origins: for every element of the new list, its index in the old list.
     pub(crate) fn rebuild(
@@ -432,7 +432,7 @@ impl<S: Space> ContactElements<S> {
     }
 }
 
-/// A group of elements on its way into another model.
+/// A group of elements that is moved into another model.
 pub(crate) struct Moved {
     /// Number of the pair in the new model.
     pair: usize,
@@ -450,8 +450,8 @@ impl Moved {
 }
 
 impl ContactElements<Spatial> {
-    /// Returns the groups whose pairs are in a new model, where `number_of` returns their numbers, with sticks and slip
-    /// rates rotated.
+    /// Returns the groups whose pairs exist in a new model as well. `number_of` maps the number of a pair to its number
+    /// in the new model, and `turn` rotates sticks and slip rates into the frame of the new model.
     pub(crate) fn moved(
         &self,
         slip_rates: &[Vec3],
@@ -477,8 +477,8 @@ impl ContactElements<Spatial> {
         self.groups.iter().filter_map(moved).collect()
     }
 
-    /// Lists the elements of a model at a state with the memory of moved groups, which must be sorted by their pairs;
-    /// returns the list and the slip rates of its elements.
+    /// Lists the elements of a model at a state. Elements of the moved groups, which must be sorted by their pairs,
+    /// keep their stick history. Returns the list and the slip rates of its elements.
     pub(crate) fn of_moved(
         model: &Model<Spatial>,
         moved: &[Moved],
@@ -503,8 +503,8 @@ impl ContactElements<Spatial> {
 }
 
 impl<R: Real> ContactElements<Planar<R>> {
-    /// Copies the stick memory and the slip rates of a single state into one lane; elements that are missing in the
-    /// single state get an empty memory.
+    /// Copies the stick history and the slip rates of a single state into one lane; elements that the single state does
+    /// not list start with an empty history.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
@@ -526,7 +526,7 @@ impl<R: Real> ContactElements<Planar<R>> {
         }
     }
 
-    /// Returns the stick memory of the elements that touch in one lane. The returned list must be rebuilt before it is
+    /// Returns the stick history of the elements that touch in one lane. The returned list must be rebuilt before it is
     /// used with a single state.
     pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
         let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {

@@ -28,14 +28,14 @@ pub struct EnergySummary {
     pub viscous: f64,
     /// Work of the ground on the bodies.
     pub ground_work: f64,
-    /// Work of forces from outside of the model.
+    /// Work of forces from outside the model.
     pub applied_work: f64,
     /// Stored and lost energy, less the initial energy, the work of the ground and the work of forces from outside; zero
     /// for an exact integration.
     pub residual: f64,
     /// Energy that has passed through the system so far: the absolute work of the ground and of forces from outside,
-    /// plus the energy available at the start (kinetic energy, energy of springs, and potential energy of the deepest drop). The residual is stated
-    /// relative to the throughput.
+    /// plus the energy available at the start (kinetic energy, energy of springs, and potential energy of the deepest
+    /// drop). The residual is stated as a fraction of the throughput.
     pub throughput: f64,
 }
 
@@ -70,9 +70,9 @@ pub struct EnergyLedger<S: Space> {
     viscous: Vec<Wrench<S>>,
     /// Forces of contacts and elements on the bodies at the last accepted step.
     wrenches: Vec<Wrench<S>>,
-    /// Memory of the force elements at the last accepted step.
+    /// Plastic elongation and failure of the force elements at the last accepted step.
     memory: Vec<Memory<S>>,
-    /// Forces from outside of the model at the last accepted step.
+    /// Forces from outside the model at the last accepted step.
     pub(crate) applied: Vec<Wrench<S>>,
     /// Spring forces of the force elements at the last accepted step (N).
     springs: Vec<S::Real>,
@@ -123,7 +123,7 @@ impl<S: Space> EnergyLedger<S> {
         }
     }
 
-    /// Adds an accepted step.
+    /// Adds the works of an accepted step, and updates the stored energies.
     pub fn enter(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -188,7 +188,8 @@ impl<S: Space> EnergyLedger<S> {
         let Stored { kinetic, potential, elastic, stick } = self.stored;
         let now = kinetic + potential + elastic;
         let lost = self.works.damped + self.works.friction + self.works.viscous;
-        // The work of friction is that on sticks and of sliding together, so it includes the energy stored in sticks.
+        // The work of friction is the sum of the work on sticks and the work of sliding, so it includes the energy
+        // stored in sticks.
         let residual = now + lost - self.works.ground - self.works.applied - self.initial;
         let throughput = self.flow + (self.initial - self.deepest);
         EnergySummary {
@@ -244,8 +245,8 @@ mod tests {
     use crate::shape::{HalfPlane, Shape};
     use crate::space::{Planar, Rotation2, Twist, Vec2};
 
-    /// Returns the residual ratio of a disc that falls on a floor and bounces, with an extra downward acceleration
-    /// (m/s²) that has no energy.
+    /// Returns the residual ratio of a disc that falls on a floor and bounces, with an additional downward acceleration
+    /// (m/s²) whose work the balance does not include.
     fn balance_of_a_bounce(unbooked: f64) -> f64 {
         let body = |name: &str, motion, z, surfaces, nodes| Body {
             name: name.to_owned(),

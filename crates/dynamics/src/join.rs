@@ -1,8 +1,9 @@
-//! Runs in space that continue as one, because bodies of different runs may meet.
+//! Joins runs in space whose bodies may touch each other, so that they continue as one run.
 //!
 //! Each run is a party with a model of its own. A joined model has the bodies, laws and elements of all parties, and
 //! contact pairs between bodies of different parties. The pairs within a party are summed in the same order as in its
-//! own model, and before all pairs between parties, so a party that meets nobody moves as alone.
+//! own model, and before all pairs between parties, so a party whose bodies touch no other party moves exactly as it
+//! would alone.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Returns this frame as it is placed within another one.
+    /// Returns the placement of this frame relative to `outer`, given both placements in the same frame.
     #[must_use]
     pub fn within(self, outer: Self) -> Self {
         let back = Self { at: Vec3::default(), azimuth: -outer.azimuth };
@@ -46,12 +47,12 @@ impl Frame {
         Quaternion::turn(Vec3::new(0.0, 0.0, self.azimuth))
     }
 
-    /// Transforms a direction out of the frame.
+    /// Transforms a direction from this frame to the outer frame.
     pub fn vector(self, vector: Vec3) -> Vec3 {
         self.turn().matrix().apply(vector)
     }
 
-    /// Transforms a pose out of the frame.
+    /// Transforms a pose from this frame to the outer frame.
     pub fn pose(self, pose: Pose<Spatial>) -> Pose<Spatial> {
         Pose {
             position: self.vector(pose.position) + self.at,
@@ -59,7 +60,7 @@ impl Frame {
         }
     }
 
-    /// Transforms a twist out of the frame.
+    /// Transforms a twist from this frame to the outer frame.
     pub fn twist(self, twist: Twist<Spatial>) -> Twist<Spatial> {
         Twist { linear: self.vector(twist.linear), angular: self.vector(twist.angular) }
     }
@@ -69,7 +70,8 @@ impl Frame {
     }
 }
 
-/// Contact kind of a body: how many of its solids meet bodies of other parties. These come first in its lists.
+/// Contact kind of a body: the numbers of its node sets and surfaces that may touch bodies of other parties. These node
+/// sets and surfaces come first in the lists of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContactKind {
     /// Number of node sets.
@@ -83,8 +85,8 @@ pub struct ContactKind {
 pub struct Rule {
     /// `true` if the body of the second contact kind is the contactor.
     pub reversed: bool,
-    /// Index of the law among the interfaces of the party of the first body, if it supplies the law, and of that of the
-    /// second body, if that one does.
+    /// Indices of the contact law among the interfaces of the first body's party and of the second body's party. The
+    /// index that applies is that of the party that supplies the law ([`Party::rank`]).
     pub laws: [InterfaceId; 2],
 }
 
@@ -93,34 +95,35 @@ pub struct Rule {
 pub struct Crossing {
     /// The contact kinds.
     pub kinds: Vec<ContactKind>,
-    /// For every two contact kinds, given by the contact kind of the body that comes first, the rule; `None` if they never touch.
+    /// Rule for every two contact kinds, indexed first by the contact kind of the body that comes first in the joined
+    /// model; `None` if bodies of these kinds never touch.
     pub rules: Vec<Vec<Option<Rule>>>,
 }
 
-/// A party of a joined model.
+/// A party of a joined model: one of the runs that are joined.
 #[derive(Clone, Copy, Debug)]
 pub struct Party<'a> {
-    /// Name that precedes the names of its bodies.
+    /// Name that precedes the names of the party's bodies in the joined model.
     pub name: &'a str,
-    /// Its own model.
+    /// Model of the party before it is joined.
     pub model: &'a Model<Spatial>,
     /// Contact kind of every body.
     pub kinds: &'a [usize],
-    /// Rank: of two parties that meet, that of the lower rank supplies the law.
+    /// Rank of the party: where bodies of two parties touch, the party of lower rank supplies the contact law.
     pub rank: usize,
     /// Placement in the joined model.
     pub frame: Frame,
-    /// Its time step (s).
+    /// Time step (s) of the party.
     pub step: f64,
 }
 
 /// Joins the models of several parties. Returns the model and its time step (s), the shortest step of all parties.
 ///
 /// # Errors
-/// If names of bodies repeat.
+/// If two bodies have the same name.
 ///
 /// # Panics
-/// If a party has not one contact kind for each body, or there is no party.
+/// If the number of contact kinds of a party differs from the number of its bodies, or if there is no party.
 pub fn joined(
     parties: &[Party<'_>],
     crossing: &Arc<Crossing>,
@@ -191,7 +194,7 @@ pub struct Source<'a> {
     pub scratch: &'a Scratch<Spatial>,
     /// The run.
     pub stepper: &'a Stepper<Spatial>,
-    /// Placement of its frame in that of the new model.
+    /// Placement of the frame of this run in the frame of the new model.
     pub frame: Frame,
 }
 
@@ -202,7 +205,7 @@ pub struct Carry {
     pub source: usize,
     /// The bodies in the source.
     pub bodies: Range<BodyId>,
-    /// ID of the first of them in the new model.
+    /// ID that the first of these bodies has in the new model.
     pub to: BodyId,
     /// The elements in the source, which keep their order.
     pub elements: Range<usize>,
@@ -219,10 +222,12 @@ pub struct Running {
     pub stepper: Stepper<Spatial>,
 }
 
-/// Continues runs that have reached the same time as one run of a new model, with their motion and the memory of their
-/// contacts and elements. No force is evaluated anew, so the next step is that of the sources.
+/// Continues several runs, which must be at the same time, as one run of a new model. Motion, forces, stick history and
+/// the state of elements are copied from the sources. At times above zero, no force is evaluated again, so the next
+/// step of every body is the same as in its source.
 ///
-/// Bodies that no source has must be prescribed. Sources must have no forces from outside.
+/// Bodies of the new model that no source contains must be prescribed. No force from outside the model may act in a
+/// source.
 ///
 /// # Panics
 /// If there is no source.
@@ -292,7 +297,7 @@ pub fn carry(
         return Running { state, scratch, stepper };
     }
     if !whole {
-        // The energy of the contacts that were carried over is not known by itself.
+        // Only the energy of all contacts of a source is known, not that of the contacts that were carried over.
         let mut anew = scratch.clone();
         evaluate(model, &state, &mut anew);
         scratch.totals = anew.totals;
@@ -303,8 +308,8 @@ pub fn carry(
     Running { state, scratch, stepper }
 }
 
-/// Returns the gap (m) between the solids of two bodies that meet, or a lower bound of it if the gap exceeds `enough`
-/// (m).
+/// Returns the gap (m) between the first `nodes` node sets of the contactor and the first `surfaces` surfaces of the
+/// target. If the gap exceeds `enough` (m), the result may be a lower bound of the gap.
 pub fn gap_between(
     (contactor, pose, nodes): (&Body<Spatial>, Pose<Spatial>, usize),
     (target, base, surfaces): (&Body<Spatial>, Pose<Spatial>, usize),

@@ -131,7 +131,7 @@ pub enum ModelError {
         inertia: f64,
     },
     /// A free body has an unbounded surface.
-    #[error("body \"{name}\" carries an unbounded surface: only bodies fixed to the ground may")]
+    #[error("body \"{name}\" has an unbounded surface but is free: fix the body to the ground")]
     Unbounded {
         /// The body.
         name: String,

@@ -54,8 +54,9 @@ pub(crate) struct Foreign {
 }
 
 impl Foreign {
-    /// Returns the pairs of two bodies, given with the lower ID first: contactor, target, law, and the numbers of node
-    /// sets and surfaces; `None` if they are of one party or never touch.
+    /// Returns the data from which the pairs of two bodies follow, given with the lower ID first: contactor, target,
+    /// interface, and the numbers of node sets and surfaces that may touch. Returns `None` if the bodies belong to one
+    /// party or never touch.
     #[inline(always)]
     fn of(&self, [a, b]: [BodyId; 2]) -> Option<(BodyId, BodyId, InterfaceId, [usize; 2])> {
         let ((first, one), (second, other)) = (self.bodies[a], self.bodies[b]);

@@ -31,7 +31,7 @@ pub trait Real:
     /// Result of a comparison, lane by lane.
     type Mask: Mask;
 
-    /// Returns the same number in every lane.
+    /// Creates a number that has the same value in every lane.
     fn splat(value: f64) -> Self;
     /// Returns the correctly rounded square root.
     #[must_use]
@@ -72,13 +72,13 @@ pub trait Real:
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
-    /// Returns the smaller one of the two numbers; `other` if they are equal or not comparable.
+    /// Returns the smaller of the two numbers; `other` if they are equal or not comparable.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// Returns the larger one of the two numbers; `other` if they are equal or not comparable.
+    /// Returns the larger of the two numbers; `other` if they are equal or not comparable.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
@@ -101,7 +101,7 @@ pub trait Real:
     fn with_lane(self, lane: usize, value: f64) -> Self {
         Self::from_lanes(|l| if l == lane { value } else { self.lane(l) })
     }
-    /// Returns the largest number in any lane.
+    /// Returns the largest of the numbers in all lanes.
     fn largest_lane(self) -> f64 {
         (0..Self::LANES).map(|lane| self.lane(lane)).fold(f64::NEG_INFINITY, f64::max)
     }
@@ -109,8 +109,8 @@ pub trait Real:
 
 /// Applies a function to both elements of an array.
 ///
-/// `array::map` is not inlined into functions for wide vector units, so that every operation in its closure would be a
-/// call; it took a sixth of the time of a study.
+/// `array::map` is not inlined into functions for wide vector units, so every operation in its closure would be a call;
+/// these calls took a sixth of the time of a study.
 #[inline(always)]
 pub(crate) fn both<T, U>([first, second]: [T; 2], apply: impl Fn(T) -> U) -> [U; 2] {
     [apply(first), apply(second)]

@@ -146,8 +146,8 @@ pub fn simulate<S: Space<Real = f64>>(
 
 /// A run that advances one accepted step at a time; [`simulate`] steps until the end.
 ///
-/// Together with the state and the working memory, a copy of the stepper is the complete state of a run: it continues
-/// with the same bits.
+/// Together with the state and the working memory, a copy of the stepper is the complete state of a run: a run that
+/// continues from these copies has the same bits.
 ///
 /// ```
 /// use barrelstack_dynamics::{
@@ -220,8 +220,8 @@ impl<S: Space<Real = f64>> Stepper<S> {
         }
     }
 
-    /// Continues runs that have reached the state of a joined model. If their steps are at the same times, the steps go
-    /// on at these times.
+    /// Creates the stepper of a joined model, which continues the runs `sources` from `state`. If the sources took
+    /// their steps at the same times, the new run continues this sequence of times.
     pub(crate) fn after(
         sources: &[&Self],
         model: &Model<S>,
@@ -275,14 +275,15 @@ impl<S: Space<Real = f64>> Stepper<S> {
         self.simulation.end_time = end_time.min(until);
         let result = self.step(model, drive, state, scratch);
         self.simulation.end_time = end_time;
-        // A step that was cut short does not count, so that the next one ends where it would have ended.
+        // A shortened step does not count, so the next step ends at the time at which the shortened one would have
+        // ended.
         if state.time < self.start + self.times.count * self.times.shortest {
             self.times.count = times.count;
         }
         result
     }
 
-    /// Returns the time (s) below which a remainder is due to rounding and is not a step.
+    /// Returns the duration (s) below which the time that remains is due to rounding and is not a step.
     #[inline]
     fn sliver(&self) -> f64 {
         1e-9 * self.simulation.time_step
@@ -322,10 +323,11 @@ impl<S: Space<Real = f64>> Stepper<S> {
         Ok(())
     }
 
-    /// Sets the force from outside on a body, in place of an earlier one; it is held during the next steps. A force and a
-    /// moment of zero remove it.
+    /// Sets the force from outside on a body, in place of an earlier one. The force is held during the next steps;
+    /// setting force and moment to zero removes it.
     ///
-    /// The forces of the current state change by the difference alone, so that equal forces leave equal bits.
+    /// Only the difference from the earlier force is added to the forces of the current state, so an unchanged force
+    /// leaves every bit unchanged.
     ///
     /// # Errors
     /// If there is no such body, it follows the ground, or a number is not finite.

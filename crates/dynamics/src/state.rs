@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Pose, Space, Twist};
 
-/// Poses, twists, and the memory of contacts and force elements.
+/// Time, poses, twists, contact history, and the plastic elongation and failure of force elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State<S: Space> {
     /// Time (s); lanes may be at different times.
@@ -16,12 +16,11 @@ pub struct State<S: Space> {
     pub poses: Vec<Pose<S>>,
     /// Twist of every body.
     pub twists: Vec<Twist<S>>,
-    /// The contact elements within reach, with their stick memory.
+    /// The contact elements within reach, with their stick history.
     pub contact_elements: ContactElements<S>,
-    /// Memory of the force elements.
+    /// Plastic elongation and failure of every force element.
     pub memory: Vec<Memory<S>>,
-    /// Forces from outside of the model, at most one for each body; changed by
-    /// [`Stepper::apply`](crate::Stepper::apply).
+    /// Forces from outside the model, at most one for each body; changed by [`Stepper::apply`](crate::Stepper::apply).
     pub applied: Vec<Applied<S>>,
 }
 

@@ -1,4 +1,4 @@
-//! Forces from outside of the model: closed forms, energy balance, and steps that can be continued.
+//! Forces from outside the model: closed forms, energy balance, and steps that can be continued.
 
 use std::f64::consts::TAU;
 

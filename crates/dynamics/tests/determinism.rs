@@ -57,7 +57,7 @@ fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
     let mut resumed = Scene::of(parts.model.clone());
     resumed.state = parts.state.clone();
     resumed.by(Method::RungeKutta4).run(&drive, step, end).unwrap();
-    // Time, positions and velocities of all bodies; the memory of sticks affects them at the next step.
+    // Time, positions and velocities of all bodies; the stick history affects them at the next step.
     let all = 1 + 6 * whole.state.poses.len();
     assert_eq!(bits(&whole.state)[..all], bits(&resumed.state)[..all]);
 }

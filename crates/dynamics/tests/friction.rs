@@ -11,7 +11,7 @@ use proptest::prelude::*;
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 1e6;
 
-/// Returns a law that is nearly rigid, damped both ways so that transients decay.
+/// Returns a law that is nearly rigid, damped on approach and on separation so that transients decay.
 fn firm() -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 1e4 }
 }

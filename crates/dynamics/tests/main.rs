@@ -1,6 +1,6 @@
 //! Tests of the dynamics: symmetries, bit-identity, energy balance, limits of laws, and errors.
 //!
-//! One program, since each would compile the physics anew.
+//! All tests form one program, since each further program would compile the physics again.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

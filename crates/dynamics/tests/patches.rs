@@ -84,7 +84,7 @@ impl Couple {
 
 impl Seen {
     /// Returns the difference (m) of two contacts: of forces and moments as depths, and of the positions of sticks.
-    /// Positions are weighted by load, since an unloaded stick has no memory.
+    /// Positions are weighted by load, since an unloaded stick has no history.
     fn jump(&self, other: &Self) -> f64 {
         let mut jump =
             (self.force - other.force).length().max((self.moment - other.moment).length());

@@ -60,7 +60,7 @@ fn start(s: f64, beta: f64, friction: f64) -> Start {
 
 #[test]
 fn a_block_starts_to_move_as_friction_and_slenderness_say() {
-    // Tests one percent to either side of every border between regimes.
+    // Tests one percent to either side of every boundary between regimes.
     for s in [0.2, 0.25, 1.0] {
         for share in [0.5, 0.9, 1.25, 1.5, 2.0, 3.0] {
             let beta = share * s;

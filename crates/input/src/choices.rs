@@ -41,11 +41,11 @@ pub trait Chosen: Sized {
 /// use barrelstack_input::named;
 ///
 /// named! {
-///     /// On which side.
+///     /// Side of a body.
 ///     pub enum Side {
-///         /// On the left.
+///         /// The left side.
 ///         Left = "left",
-///         /// On the right.
+///         /// The right side.
 ///         Right = "right",
 ///     }
 /// }
@@ -83,10 +83,10 @@ macro_rules! named {
 /// use barrelstack_input::{Dimension, choices};
 ///
 /// choices! {
-///     /// What bodies roll on.
+///     /// A path on which bodies roll.
 ///     #[derive(Clone, Debug, PartialEq)]
 ///     pub enum Path;
-///     /// What they are.
+///     /// The kinds of path.
 ///     static PATHS;
 ///     /// A level path.
 ///     Flat = "flat";

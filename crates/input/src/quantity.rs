@@ -54,7 +54,7 @@ pub enum QuantityError {
         /// Reason, in words.
         reason: &'static str,
     },
-    /// The unit `gal` has two meanings, and neither has an expected dimension.
+    /// The unit `gal` has two meanings, and no expected dimension selects one of them.
     #[error("the unit `gal` in `{text}` may be a US gallon or cm/s^2; write `gallon` or `Gal`")]
     Ambiguous {
         /// Text as given, shortened.

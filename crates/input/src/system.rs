@@ -36,8 +36,8 @@ pub fn words(error: &io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// Returns the time (s since the start of 1970, UTC): that of the variable `SOURCE_DATE_EPOCH`, so
-/// that files can be written again bit for bit, and without it that of the clock.
+/// Returns the current time (s since the start of 1970, UTC), or the time in the variable `SOURCE_DATE_EPOCH` if the
+/// variable is set, so that files can be reproduced bit for bit.
 ///
 /// # Errors
 /// A message if the variable is not a whole number.

@@ -40,7 +40,8 @@ pub enum Shake {
         /// Angular frequency ω (rad/s).
         omega: f64,
     },
-    /// Acceleration `a sin ωt` for all times, with the initial velocity that keeps the motion about a fixed position.
+    /// Acceleration `a sin ωt` for all times, with an initial velocity such that the motion oscillates about a fixed
+    /// position.
     Harmonic {
         /// Acceleration amplitude `a` (m/s²).
         acceleration: f64,

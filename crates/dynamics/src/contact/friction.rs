@@ -1,4 +1,4 @@
-//! Friction force as a function of normal force, slip rate and stick memory.
+//! Friction force as a function of normal force, slip rate and stick history.
 
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Space};
@@ -23,9 +23,9 @@ pub enum FrictionLaw<R = f64> {
     /// static coefficient until the force exceeds the static limit, and then the kinetic coefficient until the slip
     /// reverses.
     Coulomb {
-        /// `μ_s` (1), not smaller than the kinetic coefficient.
+        /// Static coefficient `μ_s`, not smaller than the kinetic coefficient.
         static_coefficient: R,
-        /// `μ_k` (1).
+        /// Kinetic coefficient `μ_k`.
         kinetic_coefficient: R,
         /// `k_t` (N/m).
         tangential_stiffness: R,
@@ -35,17 +35,17 @@ pub enum FrictionLaw<R = f64> {
     },
     /// Smoothed Coulomb friction: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
     ///
-    /// The law has no memory and cannot hold a body at rest: under a steady tangential force `T < μ fₙ` the body creeps
-    /// at `v_r T / √((μ fₙ)² − T²)`, see [`FrictionLaw::creep_speed`].
+    /// The law has no history and cannot hold a body at rest: under a steady tangential force `T < μ fₙ` the body
+    /// creeps at `v_r T / √((μ fₙ)² − T²)`, see [`FrictionLaw::creep_speed`].
     Regularized {
-        /// `μ` (1).
+        /// Friction coefficient `μ`.
         coefficient: R,
         /// `v_r` (m/s): the speed at which 71 % of the friction is reached.
         velocity: R,
     },
 }
 
-/// Stick memory of a node.
+/// Stick history of a node: the state of the tangential spring of its friction law, kept from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stick<S: Space> {
     /// Elastic tangential displacement of the contactor relative to the target (m), in the inertial frame.
@@ -136,8 +136,8 @@ impl<S: Space> Stick<S> {
         Self { displacement, tangent_plane: to, ..self }
     }
 
-    /// Returns the stick memory after an accepted step: the displacement, limited to the friction capacity, and whether
-    /// the node slips. `self` contains the displacement at the end of the step; `weight` is as in
+    /// Returns the stick history after an accepted step: the displacement, limited to the friction capacity, and
+    /// whether the node slips. `self` contains the displacement at the end of the step; `weight` is as in
     /// [`FrictionLaw::force`].
     #[inline(always)]
     #[must_use]

@@ -13,9 +13,10 @@ pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 /// Basis of the stiffness and damping constants of an interface: per node, per length or per seat.
 ///
 /// With constants per node, a boundary with more nodes makes the interface stiffer, so the number of nodes is part of
-/// the physics. The paper states constants per node. With constants per length, each node acts for its tributary length
-/// and refinement converges. With constants per seat, the touching nodes of a row share one set of constants, so their
-/// number affects the location of the force but not the stiffness.
+/// the physics. Candia, de la Llera and Almazán (2008) state constants per node. With constants per length, each node
+/// acts for its tributary length, so results converge as the number of nodes grows. With constants per seat, the
+/// touching nodes of a row share one set of constants, so their number affects the location of the force but not the
+/// stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
     /// Constants per node (N/m, N·s/m).
@@ -31,8 +32,8 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Returns the factor by which the constants are multiplied for a node with a tributary length (m) or, if the basis
-    /// is a seat, for a whole row of nodes.
+    /// Returns the factor by which the constants of the laws are multiplied: the tributary length (m) for constants per
+    /// length, and 1 for constants per node or per seat.
     #[inline(always)]
     pub fn weight<R: Real>(self, tributary_length: R) -> R {
         match self {

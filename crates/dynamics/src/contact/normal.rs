@@ -47,7 +47,7 @@ pub enum NormalLaw<R = f64> {
     ///
     /// On approach the force is that of the spring. On separation the force is e² times that of the spring, so the
     /// fraction e² of the energy is returned. These are the loading and unloading branches of Walton and Braun (1986),
-    /// with a smooth transition at penetration rates of about `v` that needs no memory. At lower speeds the force is
+    /// with a smooth transition at penetration rates of about `v` that needs no history. At lower speeds the force is
     /// that of a spring and a damper, so bodies come to rest. The spring stiffens as between round bodies (Hertz), so
     /// the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
     Rebound {
@@ -55,7 +55,7 @@ pub enum NormalLaw<R = f64> {
         stiffness: R,
         /// `e`: speed after the impact divided by speed before the impact.
         restitution: R,
-        /// `v` (m/s).
+        /// `v` (m/s): penetration rate below which the law acts like a spring and a damper.
         speed: R,
     },
     /// `fₙ = k δ^(3/2)`, elastic (Hertz 1882; for spheres `k = 4/3 E* √r`).

@@ -79,7 +79,7 @@ impl<S: Space> Guide<S> {
         Self { place: along, reach: self.reach + away.dot(away).sqrt(), ..self }
     }
 
-    /// Adds the constant of the stops to that of the guide, if the point can reach the stops.
+    /// Returns a constant of the guide, stiffness or damping, plus that of the stops if the guide has stops.
     fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
         free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
     }

@@ -1,8 +1,8 @@
 //! Force elements: forces between points of two bodies, without contact.
 //!
 //! Each kind of element has a file of its own, which defines its forces and its failure at a state ([`Load`]). This
-//! module contains the parts common to all kinds: the memory of plastic elongation and failure, the contributions to
-//! the forces and to the energy balance, and the support for lanes.
+//! module contains the parts common to all kinds: the plastic elongation and failure kept from step to step, the
+//! contributions to the forces and to the energy balance, and the support for lanes.
 
 mod guide;
 mod link;
@@ -20,7 +20,7 @@ pub use link::Link;
 pub use rod::Rod;
 pub use strap::Strap;
 
-/// Memory of an element; changed only when a step is accepted.
+/// State of a force element that is kept from step to step; changed only when a step is accepted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<S: Space> {
     /// Plastic elongation (m).

@@ -72,8 +72,9 @@ impl<S: Space> Default for Losses<S> {
 
 /// Total contact force of one pair.
 ///
-/// Where two corners share one contact, the total includes an additional force along the side, which closes the energy
-/// balance as the shares of the corners change. So the total may differ from the sum of the contact forces.
+/// Where one contact is divided between two corners, its stored energy changes as the shares of the corners change. To
+/// close the energy balance, the total includes an additional force along the side. So the total may differ from the
+/// sum of the contact forces.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
     /// Index of the pair in the model.
@@ -100,10 +101,11 @@ pub struct Scratch<S: Space> {
     pub totals: ContactTotals<S::Real>,
     /// Loads of the force elements, in their order.
     pub loads: Vec<Load<S::Real>>,
-    /// Force and moment about the center of mass of every force from outside of the model, in the order of
+    /// Force and moment about the center of mass of every force from outside the model, in the order of
     /// [`State::applied`].
     pub applied: Vec<Wrench<S>>,
-    /// Forces of contacts and elements, and forces from outside, on every body, and their moments about its center of mass.
+    /// Total force on every body from contacts, elements and outside the model, and its moment about the center of
+    /// mass.
     pub wrenches: Vec<Wrench<S>>,
     /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,
@@ -200,7 +202,7 @@ impl<S: Space> Scratch<S> {
     /// Renumbers the elements for a new list; `origins` contains, for every element of the new list, its index in the
     /// old list.
     ///
-    /// No contact is lost, since touching elements are within the margin of every list.
+    /// No contact is lost, since every list contains all touching elements.
     pub(crate) fn renumber(&mut self, origins: &[Option<usize>]) {
         let mut numbers = vec![None; self.slip_rates.len()];
         let mut slip_rates = vec![S::Tangent::default(); origins.len()];
@@ -279,7 +281,7 @@ fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut V
     }
 }
 
-/// Adds the forces of the force elements, and the forces from outside of the model.
+/// Adds the forces of the force elements, and the forces from outside the model.
 #[inline(always)]
 fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     let Scratch { wrenches, losses, rotations, loads, applied, .. } = scratch;
@@ -423,7 +425,8 @@ fn commit_all<S: Space>(
     sticks[next..].fill(Stick::default());
 }
 
-/// Commits the sticks of a pair, and resets all sticks without contact from `next` up to the last contact of the pair.
+/// Commits the sticks of the touching elements of a pair, and resets the sticks of the elements between them, which do
+/// not touch. `next` is the first element that is neither committed nor reset yet.
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,
@@ -487,7 +490,7 @@ pub fn contact_force<S: Space>(
     (S::rotate(rotation, force), placed_point(model, state, scratch, contact.pair, contact.point))
 }
 
-/// Returns a point (m) in the inertial frame, given in the frame of the target's surface of a pair.
+/// Transforms a point (m) from the frame of the target's surface of a pair to the inertial frame.
 fn placed_point<S: Space>(
     model: &Model<S>,
     state: &State<S>,
@@ -504,8 +507,8 @@ fn placed_point<S: Space>(
         + S::rotate(rotation, point)
 }
 
-/// Returns every pair that touches, with its center of pressure (m) in the inertial frame: the mean of its contact points,
-/// each weighted by its normal force.
+/// Returns every pair that touches, with its center of pressure (m) in the inertial frame: the mean of its contact
+/// points, weighted by their normal forces.
 pub fn centers_of_pressure<S: Space<Real = f64>>(
     model: &Model<S>,
     state: &State<S>,

@@ -24,7 +24,7 @@ use row::{Row, counting};
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
 /// For bundles of lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact.
-/// For single numbers, such a loop would not be faster.
+/// For scalars, such a loop would not be faster.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,

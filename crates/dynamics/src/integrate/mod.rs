@@ -1,7 +1,7 @@
 //! Time integration: from one accepted state to the next.
 //!
 //! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
-//! there. Stick displacements are advanced by their rates like every other coordinate; the stick memory is committed
+//! there. Stick displacements are advanced by their rates like every other coordinate; the stick history is committed
 //! only when a state is accepted.
 
 mod runge_kutta;

@@ -97,8 +97,8 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
     }
 }
 
-/// Ends a step: accepts the state that `scratch` was evaluated at, after replacing a share (s) of the old slip rates
-/// by the new ones.
+/// Ends a step: accepts the state that `scratch` was evaluated at, after correcting every stick displacement by the
+/// change of its slip rate, multiplied by `share` (s).
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     let (new, old) = (&scratch.slip_rates, &scratch.old_slip_rates);
     commit_corrected(

@@ -245,7 +245,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         integrator: &mut Integrator<Planar<R>>,
         batch: &mut impl Batch<'a, R, Drive = D>,
     ) -> R::Mask {
-        // As in `simulate`: whole multiples of the step, the last one shortened.
+        // As in `simulate`, times are whole multiples of the step, and the last step is shortened.
         let sliver = R::splat(1e-9) * self.time_step;
         let target =
             self.start + self.times.next(self.scratch.needs_substeps, self.scratch.is_hard);

@@ -16,11 +16,11 @@ pub(super) trait Unit: Simd + fmt::Debug + Send + Sync + 'static {
     const TOKEN: Self;
 }
 
-/// Eight numbers in lockstep.
+/// Eight numbers, one for each lane, on which every operation acts at once.
 #[derive(Clone, Copy)]
 pub(super) struct Bundle<U: Unit>(f64x8<U>);
 
-/// Eight truth values.
+/// Eight truth values, one for each lane.
 #[derive(Clone, Copy)]
 pub(super) struct BundleMask<U: Unit>(mask64x8<U>);
 
@@ -74,8 +74,9 @@ impl<U: Unit> Real for Bundle<U> {
         U::TOKEN.vectorize(
             #[inline(always)]
             || {
-                // Forces a bundle into memory. The compiler aligns a stack frame for bundles only if it has one before
-                // register allocation; bundles that are spilled later would straddle cache lines.
+                // Puts a bundle on the stack. The compiler aligns a stack frame for bundles only if the frame contains
+                // a bundle before register allocation; otherwise bundles that are spilled later would straddle cache
+                // lines.
                 std::hint::black_box(&Self::splat(0.0));
                 work()
             },
@@ -280,7 +281,7 @@ mod tests {
 
     #[test]
     fn every_operation_has_in_each_lane_the_bits_of_a_single_number() {
-        // Under Miri, which runs with the instructions of this unit, the test must not pass without it.
+        // Under Miri, which is compiled for AVX2, the test must not pass merely because AVX2 was not detected.
         assert!(!cfg!(target_feature = "avx2") || Width::Avx2.is_here());
         let numbers = [0.0, -0.0, 1.0, -2.5, 1e-310, 0.1, f64::INFINITY, f64::MAX];
         for shift in 0..numbers.len() {

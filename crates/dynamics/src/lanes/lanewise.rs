@@ -1,4 +1,4 @@
-//! Conversion, lane by lane, between values made of single numbers and values made of bundles.
+//! Conversion, lane by lane, between values made of scalars and values made of bundles.
 
 use crate::body::{Body, Face, Inert, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
@@ -8,13 +8,13 @@ use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, NoWhole, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
 
-/// A value made of bundles; each of its lanes is the corresponding value made of single numbers.
+/// A value made of bundles; each of its lanes is a value of the corresponding type made of scalars.
 ///
 /// Everything that determines memory layout and control flow, such as the number of nodes or the kind of a law, must be
 /// equal in all lanes; [`Topology`](super::Topology) compares these properties beforehand.
 /// [`lanewise!`](crate::lanewise) implements this trait for structs and enums from the names of their fields.
 pub trait Lanewise {
-    /// The value made of single numbers.
+    /// The corresponding type made of scalars: the value in one lane.
     type Single;
     /// Returns the same value in every lane.
     fn in_all(single: &Self::Single) -> Self;

@@ -26,11 +26,11 @@ pub use topology::Topology;
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
-/// Kind of vector unit used for the computation: single numbers are computed without a vector unit, bundles of numbers
-/// with one.
+/// Kind of vector unit used for the computation: without a vector unit, scalars are computed; with a vector unit,
+/// bundles of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
-    /// No vector unit: single numbers.
+    /// No vector unit: scalars.
     Scalar,
     /// AVX2.
     Avx2,
@@ -143,7 +143,7 @@ pub(crate) mod units {
     }
 }
 
-/// Fallback for other architectures, and without the feature `vector-units`: single numbers.
+/// Scalar fallback for other architectures, and for builds without the feature `vector-units`.
 #[cfg(not(all(target_arch = "x86_64", feature = "vector-units")))]
 pub(crate) mod units {
     use super::{Task, Width};

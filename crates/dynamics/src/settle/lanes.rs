@@ -24,12 +24,13 @@ pub struct Stack<'a> {
     pub scratch: &'a mut Scratch<Planar>,
 }
 
-/// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes; returns
-/// the result of [`settle`] for each, in their order, or `None` when stopped.
+/// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes; returns the
+/// result of [`settle`] for each, in their order; `None` for stacks that were not settled before `stop` returned
+/// `true`.
 ///
 /// A lane gets the next stack as soon as its current stack is at rest. The lanes share only the list of contact
-/// elements, so every stack takes the same steps as if it were settled alone. A stack that does not come to rest on the
-/// first try is settled alone, where the cause is diagnosed.
+/// elements, so every stack takes the same steps as if it were settled alone. A stack that does not come to rest at the
+/// first attempt is settled alone, where the cause is diagnosed.
 pub fn settle_all<R: Real>(
     stacks: &mut [Stack<'_>],
     tolerance: f64,
@@ -76,11 +77,11 @@ struct Lanes<R: Real> {
     state: State<Planar<R>>,
     scratch: Scratch<Planar<R>>,
     relaxation: Relaxation<Planar<R>>,
-    /// The current try of every lane; `None` without a stack.
+    /// The current attempt in every lane; `None` in lanes without a stack.
     tries: Vec<Option<Try>>,
 }
 
-/// A first try to settle a stack.
+/// First attempt to settle a stack.
 struct Try {
     /// Index of the stack.
     stack: usize,
@@ -131,8 +132,8 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// Rebuilds the list of contact elements of all lanes; in lanes where a new stack begins, the elements get the
-    /// memory of that stack.
+    /// Rebuilds the list of contact elements of all lanes; in lanes where a new stack begins, the elements take over
+    /// the stick history of that stack.
     fn list(&mut self, begin: &[usize], stacks: &[Stack<'_>]) {
         let State { contact_elements, poses, twists, .. } = &mut self.state;
         let origins = contact_elements.rebuild(&self.model, poses, twists);

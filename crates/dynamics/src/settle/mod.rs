@@ -23,7 +23,7 @@ use relax::Relaxation;
 /// Result of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Number of steps of the successful try; each step has one force evaluation.
+    /// Number of steps of the successful attempt; each step has one force evaluation.
     pub steps: u64,
     /// Largest residual acceleration, as a fraction of gravity.
     pub unbalanced: f64,
@@ -43,11 +43,11 @@ pub struct Locked {
     pub friction: f64,
 }
 
-/// Maximum number of steps of a try.
+/// Maximum number of steps in one attempt.
 const MOST_STEPS: u64 = 40_000;
 
-/// Retry schedule: for each try, the factor of the fictitious masses and the number of initial steps without momentum.
-/// With heavier masses, convergence is slower and overshoots less.
+/// Retry schedule: for each attempt, the factor of the fictitious masses and the number of initial steps without
+/// momentum. With heavier masses, convergence is slower and overshoots less.
 const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
 /// Number of steps between two checks for bodies that have moved out of place.
@@ -85,7 +85,7 @@ pub fn settle<S: Space>(
     let start = state.clone();
     let mut result = sink(model, state, scratch, tolerance, TRIES[0]);
     for attempt in &TRIES[1..] {
-        // With momentum bodies overshoot, and may leave their supports. If every try fails, the first error is
+        // With momentum, bodies overshoot and may leave their supports. If every attempt fails, the first error is
         // returned.
         if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
             state.clone_from(&start);

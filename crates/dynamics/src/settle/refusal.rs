@@ -136,8 +136,8 @@ impl<S: Space> Departure<S> {
         strayed
     }
 
-    /// Detects bodies that move out of place. Diagnoses the first body that moves farther than bodies do while they
-    /// settle, and returns the error as soon as a body is out of place.
+    /// Detects bodies that move out of place. Diagnoses the first body that moves farther than a settling body does,
+    /// and returns the error as soon as a body is out of place.
     ///
     /// The diagnosis is made early, since a body that is out of place may already have pushed other bodies away.
     pub(super) fn watch(

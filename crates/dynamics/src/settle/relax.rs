@@ -19,8 +19,8 @@ const FIRST_FALL: f64 = 1e-4;
 /// small penetrations.
 const LONGEST_WAY: f64 = 2e-3;
 
-/// Factor from displacements per step of relaxation to the velocities in the force laws. The factor is a power of two,
-/// so that no bits are lost. It is so small that damping forces vanish and smoothed friction laws keep only their
+/// Factor that converts displacements per relaxation step to the velocities in the force laws. The factor is a power of
+/// two, so that no bits are lost. It is so small that damping forces vanish and smoothed friction laws keep only their
 /// static part.
 const SLOWLY: f64 = 1.0 / (1_u128 << 100) as f64;
 
@@ -273,7 +273,7 @@ impl<S: Space> Relaxation<S> {
         self.touched = origins.iter().map(touched).collect();
     }
 
-    /// Restores the memory of sticks and elements in lanes at rest.
+    /// Restores the stick history and the state of the force elements in lanes at rest.
     #[inline(always)]
     fn keep(&self, state: &mut State<S>, sticks: &[Stick<S>], memory: &[Memory<S>]) {
         let rests = self.resting;

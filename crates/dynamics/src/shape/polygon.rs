@@ -9,9 +9,9 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// Distance (m) from the outside of a side within which a node of a flush body still touches: about a nanometer. The
-/// value is not a round decimal number: scenes may place nodes at exactly a round distance, where rounding errors
-/// would decide whether they touch.
+/// Distance (m) outside a side up to which a node still counts as touching, for bodies that are flush: about a
+/// nanometer. The value is not a round decimal number: scenes may place nodes at exactly a round distance, where
+/// rounding errors would decide whether they touch.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Maximum angle (rad) of one part of a rounded corner that is divided into parts.
@@ -77,7 +77,7 @@ pub enum PolygonError {
         corner: usize,
     },
     /// The corner radius is too large for the polygon.
-    #[error("the corner radius {radius} m leaves nothing of the polygon: make it smaller")]
+    #[error("a corner radius of {radius} m is too large for the polygon: choose a smaller radius")]
     RadiusTooLarge {
         /// The radius given (m).
         radius: f64,
@@ -108,7 +108,7 @@ impl<R: Real> Polygon<R> {
             deepest = R::select(higher, height, deepest);
             deepest_normal = Vec2::select(higher, side.outward, deepest_normal);
 
-            // Beside the side, its start is a candidate; its end is the start of the next side.
+            // Beside the side, its start may be the nearest point. Its end is tested as the start of the next side.
             let along = offset.dot(side.along);
             let above = along.abs().le(side.half_length + slack);
             let apart = Vec2::select(above, side.outward * height, point - side.start);
@@ -197,8 +197,8 @@ impl Polygon {
     /// corner radius (m).
     ///
     /// # Errors
-    /// If there are fewer than three corners, if they do not all turn left or go around twice, or if the radius leaves
-    /// no core.
+    /// If there are fewer than three corners, if a corner does not turn left, if the corners go around more than once,
+    /// or if the radius is too large for the polygon.
     pub fn new(corners: &[Vec2], corner_radius: f64) -> Result<Self, PolygonError> {
         let count = corners.len();
         if count < 3 {

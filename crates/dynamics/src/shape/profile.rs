@@ -45,7 +45,7 @@ impl<R: Real> BarrelProfile<R> {
         let (left, below) = (point.x.lt(zero), point.z.lt(zero));
         let p = Vec2::new(point.x.abs(), point.z.abs());
         let arc_center = Vec2::new(zero, self.bilge_radius - self.stave_radius);
-        // Distances are measured from the core, which lies inside by the radius of the edges.
+        // Distances are measured from the core, which lies inside the boundary by the radius of the edges.
         let core_length = self.half_length - self.rounding;
         let corner = Vec2::new(core_length, self.corner_height);
 
@@ -65,7 +65,7 @@ impl<R: Real> BarrelProfile<R> {
         let corner_distance = from_corner.length();
         let safe = R::select(corner_distance.le(zero), one, corner_distance);
 
-        // Inside, the nearer of stave and head; outside, the one in front of which the point lies.
+        // Inside, the stave or the head, whichever is nearer; outside, that in front of which the point lies.
         let inside_by_head = arc_distance.lt(head_distance);
         let by_head = (outside & beyond_arc) | (!outside & inside_by_head);
         let flat = Vec2::new(one, zero);

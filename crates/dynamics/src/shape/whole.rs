@@ -6,8 +6,8 @@ use crate::space::{Planar, Rotation2, Space, Vec2, Wrench};
 
 /// A convex solid that touches at its deepest point or, where it lies flat on a surface, along a whole line or face.
 pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Visits the contact patches with a surface, in the order of their sticks and in the frame of the surface. Some of
-    /// the patches may be open.
+    /// Visits the contact patches with a surface, in the order of their sticks and in the frame of the surface. Patches
+    /// without contact may be included; their distance is positive.
     ///
     /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to the
     /// frame of the surface.
@@ -96,17 +96,18 @@ pub struct Bearing<S: Space> {
 
 /// Extent of a patch, whose pressure depends on the depth δ of its deepest point and the depth δ₀ of its middle.
 ///
-/// A line acts like two springs, at its deepest point and at the mirror image of that point beyond the middle, which
-/// has the depth `2 δ₀ − δ`. A face has two more springs in the middle. The energy
+/// A line acts like two springs: one at its deepest point, and one at the mirror image of that point on the other side
+/// of the middle, at the depth `2 δ₀ − δ`. A face has two more springs in the middle. The energy
 ///
 /// ```text
 /// E = a U(δ) + b (U(2 δ₀ − δ) + n U(δ₀))      n = 0 for a line, 2 for a face
 /// ```
 ///
 /// with `a = b = 1` equals, at any rotation, the energy of a tube supported at its two ends, or of a disc supported at
-/// four points of its rim. As bodies that lie flat rock, the deepest point moves from end to end. At that moment the
-/// part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`, so neither force nor moment
-/// jumps. A patch that shrinks to a point has the stiffness of one spring, so `a = b = 1/(2 + n)` there.
+/// four points of its rim. When bodies that lie flat on each other rock, the deepest point moves from one end to the
+/// other. At that moment the part of the force at the deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`,
+/// so neither force nor moment jumps. A patch that shrinks to a point has the stiffness of one spring, so there
+/// `a = b = 1/(2 + n)`.
 ///
 /// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and so does the energy. The
 /// corresponding forces close the energy balance, for example for a tube that slides off a head.

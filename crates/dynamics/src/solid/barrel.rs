@@ -29,7 +29,7 @@ pub struct Barrel<R = f64> {
     "a barrel {length} m long, with heads of {head_radius} m and a bilge of {bilge_radius} m in radius and a \
      chime rounded by {rounding} m: lengths must be positive, the bilge wider than the heads, the staves \
      curved along the barrel with at least the radius of the bilge, and the rounding smaller than half the length and \
-     the heads"
+     than the radius of the heads"
 )]
 pub struct BarrelError {
     length: f64,

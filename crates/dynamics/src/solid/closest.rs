@@ -32,7 +32,7 @@ const MOST_ALONG: u32 = 180;
 /// this position; the number of evaluations; and `true` if the gap is the minimum.
 type Along = (f64, Gap<Spatial>, u32, bool);
 
-/// Tolerance (1) of the slope of a gap along a segment at the minimum of the gap, relative to the terms that add up to
+/// Tolerance of the slope of a gap along a segment, at the minimum of the gap; a fraction of the terms that add up to
 /// the slope.
 const FLAT: f64 = 1e-14;
 /// Maximum number of steps of Halley's method along a segment before the slower search takes over.

@@ -155,7 +155,7 @@ pub(super) fn slopes(
         force: Vec3::new(x[value], y[value], z[value]),
         moment: Vec3::new(yz[value], zx[value], xy[value]),
     });
-    // Without the contribution of the material points: depth decreases as the contactor leaves along the normal.
+    // Removes the contribution of the material points: the depth decreases as the contactor moves along the normal.
     middle.force += flat.gap.normal;
     middle.moment += (flat.point - at).cross(flat.gap.normal);
     Slopes { middle, deepest, others }

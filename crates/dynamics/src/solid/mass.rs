@@ -220,7 +220,8 @@ impl Cask {
             Fill::Empty => wood,
             Fill::Frozen => Bulk::sum([wood, room.of_density(self.density)]),
             Fill::Fluid => {
-                // The wine adds no moment about the axis, and that of the spheroid about transverse axes.
+                // The wine adds no moment of inertia about the axis; about transverse axes it adds that of the
+                // spheroid.
                 let (across, along) = (room.across, room.along);
                 let turning = (along - across) * (along - across) / (along + across);
                 let wine = Revolved { volume: room.volume, along: turning, across: 0.0 };

@@ -58,7 +58,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
     type Tangent: Linear<Self::Real>;
     /// Data stored with a tangent, so that it can be transported along a curved surface: the normal in three
-    /// dimensions, and nothing in the plane, where a tangent is a single number.
+    /// dimensions, and nothing in the plane, where a tangent is a scalar.
     type TangentPlane: Copy + Debug + Default + PartialEq + Send + Sync + 'static;
     /// Viscous damping matrix of a body.
     type Damping: Copy + Debug + PartialEq + Send + Sync + 'static;
@@ -74,7 +74,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate(rotation: Self::Rotation, vector: Self::Vector) -> Self::Vector;
     /// Transforms a vector from the outer frame to the rotated frame.
     fn unrotate(rotation: Self::Rotation, vector: Self::Vector) -> Self::Vector;
-    /// Returns `inner` followed by `outer`.
+    /// Returns the rotation that applies `inner` first and then `outer`.
     fn compose(outer: Self::Rotation, inner: Self::Rotation) -> Self::Rotation;
     /// Returns the rotation from the frame of `inner` to the frame of `outer`.
     fn relative(outer: Self::Rotation, inner: Self::Rotation) -> Self::Rotation;

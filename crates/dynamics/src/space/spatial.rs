@@ -131,9 +131,9 @@ impl<R: Real> Space for Spatial<R> {
     ///
     /// is the sum of the kinetic energy of a body of revolution, whose motion has an exact solution (rotation about
     /// **L** at `L/I₂` and about its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates the body about
-    /// its third axis. A step applies half of the remainder, the body of revolution, and the other half of the
-    /// remainder. This splitting is symplectic, reversible, of second order, and exact for a body of revolution (after
-    /// Touma and Wisdom 1994, and Fassò 2003).
+    /// its third axis. A step applies half of the remainder, the motion of the body of revolution, and the other half
+    /// of the remainder. This splitting is symplectic, reversible, of second order, and exact for a body of revolution
+    /// (after Touma and Wisdom 1994, and Fassò 2003).
     #[inline(always)]
     fn coast(
         inertia: Vec3<R>,

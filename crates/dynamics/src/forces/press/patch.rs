@@ -1,4 +1,4 @@
-//! Forces of a patch: normal forces, which need no memory, and friction, with sticks placed around the center of
+//! Forces of a patch: normal forces, which need no history, and friction, with sticks placed around the center of
 //! pressure.
 
 use super::{Contact, Laws, Press, Pressed};
@@ -69,7 +69,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         ];
         let weight = S::Real::select(touching, self.elements.weights[first], zero);
         let (mut forces, mut stiffness) = ([(zero, zero); 3], zero);
-        // Energies at a share of 1.
+        // Energies that the springs would store if their shares were 1.
         let mut energies = [zero; 3];
         for (((depth, rate, count), (total, damped)), energy) in
             springs.into_iter().zip(&mut forces).zip(&mut energies)
@@ -84,7 +84,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             self.totals.elastic += normal.energy * weight;
             stiffness += depth * weight;
         }
-        // Number of springs, weighted by their load.
+        // Number of springs, each weighted by its depth relative to the depth of the deepest point.
         let stiffness = stiffness / S::Real::select(touching, depth, one);
         let [deep, mirrored, between] = forces;
         let at_deepest = (deep.0 - mirrored.0, deep.1 - mirrored.1);

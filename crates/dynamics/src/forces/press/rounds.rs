@@ -10,17 +10,17 @@ use crate::space::{Linear, Space, Wrench};
 /// This way, exactly one contact is counted where two corners coincide.
 const SLACK: f64 = 1e-9;
 
-/// Distance (m) from the end of a side. A corner that is farther from the end than this counts in full, even if the
-/// corner at that end bears on a side of the corner's own body.
+/// Distance (m) from the end of a side of the other body beyond which a corner always counts in full. A corner nearer
+/// to the end may share its contact with the other body's corner at that end.
 const COMPANION: f64 = 0.01;
 
 /// Sine of the largest angle, 45°, by which a side may lie outside the limits of a round piece and still be faced by
 /// the piece.
 const FACES: f64 = 0.7;
 
-/// Distance (m) up to which the center of a round piece may lie outside of the other body's core and still bear on the
-/// sides that the piece faces. Where two bodies are flush, one of two nearly coincident corners lies within this
-/// distance.
+/// Maximum distance (m) of the center of a round piece outside the other body's core at which the piece can still bear
+/// on any side that it faces, and not only on the nearest one. Where two bodies are flush, one of two nearly coincident
+/// corners lies within this distance.
 const NEARLY_INSIDE: f64 = 1e-5;
 
 /// Tolerance by which the direction toward another round piece may lie outside the limits of a round piece.
@@ -29,9 +29,10 @@ const LIMIT: f64 = 2e-7;
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the contacts of the round pieces of a convex boundary, each with its deepest point.
     ///
-    /// A round piece touches a straight side wherever the deepest point of the piece lies within its limits, or beyond
-    /// a limit at which the boundary continues straight. Two round pieces touch if each lies within the limits of the
-    /// other; this contact belongs to the pair whose contactor [leads](Press::leads).
+    /// A round piece touches a straight side if the normal of the contact lies within the [limits](Round::limits) of
+    /// the piece; limits at which the boundary of the body continues straight do not apply. Two round pieces touch if
+    /// the normal lies within the limits of both; this contact belongs to the pair whose contactor
+    /// [leads](Press::leads).
     #[inline(always)]
     pub(super) fn rounds(&mut self, rounds: &[Round<S>], group: &Group, surface: &S::Surface) {
         let zero = S::Real::zero();
@@ -66,7 +67,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             }
             let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
             for (outward, distance) in round.sides.iter().flatten() {
-                // Compare the other's round, about its center, with the side and with the arc.
+                // If the other body's round piece is nearer to the adjacent side than to the arc, the contact belongs
+                // to the side.
                 let center = round.center + toward * nearest.core;
                 let rounding = nearest.core - nearest.gap.distance;
                 let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
