@@ -24,8 +24,8 @@ const WITH_IT: f64 = 0.25;
 /// Ratio of penetration to displacement above which a body is classed as sinking.
 const SINKS: f64 = 0.5;
 
-/// Ratio of boundary rotation to center-of-mass displacement above which a body is classed as tipping: the ratio is 1
-/// if the body rolls, or tips over its corner.
+/// Ratio of the displacement of the boundary that is due to rotation to the displacement of the center of mass, above
+/// which a body is classed as tipping: the ratio is 1 if the body rolls, or tips over its corner.
 const TURNS: f64 = 0.7;
 
 /// A body that does not come to rest under gravity.

@@ -126,8 +126,8 @@ pub struct Spread<S: Space> {
 }
 
 /// Derivatives of the quantities of a patch with respect to the motion of the contactor relative to the target: with
-/// respect to its displacement (1/m), stored as forces, and to its rotation about the center of mass of the contactor
-/// (1/rad), stored as moments.
+/// respect to its displacement (1/m), stored in [`Wrench::force`], and with respect to its rotation about its center of
+/// mass (1/rad), stored in [`Wrench::moment`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slopes<S: Space> {
     /// Derivative of δ₀ (m), without the part that is due to the motion of the two bodies at the middle of the patch.

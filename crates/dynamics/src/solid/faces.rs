@@ -32,8 +32,8 @@ pub(super) struct Vertex {
 /// The shared polygon of two blocks.
 pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     pub(super) vertices: [Option<Vertex>; CORNERS],
-    /// Share of the contact that the polygon carries: 1 where a face of either block meets the other, 0 where an edge
-    /// crosses an edge.
+    /// Share of the contact that the polygon carries: 1 where a face of either block meets the other block, 0 where an
+    /// edge of one block crosses an edge of the other.
     pub(super) flat: f64,
     /// Unit vectors along the face of the target, or along the faces of both blocks.
     pub(super) axes: [Vec3; AXES],
@@ -82,8 +82,8 @@ impl Chain {
     }
 }
 
-/// The sides of a rectangle in counterclockwise order, starting at the corner with the smallest coordinates. For each
-/// side, the unit vectors along the side and out of the rectangle.
+/// The sides of a rectangle in counterclockwise order, starting at the corner with the smallest coordinates. Each side
+/// is given by the unit vectors along the side and out of the rectangle.
 const SIDES: [(Vec2, Vec2); 4] = [
     (Vec2::new(1.0, 0.0), Vec2::new(0.0, -1.0)),
     (Vec2::new(0.0, 1.0), Vec2::new(1.0, 0.0)),

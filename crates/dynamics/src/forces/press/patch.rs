@@ -283,7 +283,7 @@ struct Pressure<S: Space> {
     center: S::Vector,
     normal: S::Vector,
     normal_force: S::Real,
-    /// Factor of the constants of the sticks.
+    /// Factor by which the constants of the sticks are multiplied.
     stiffness: S::Real,
     depth: S::Real,
     rate: S::Real,
