@@ -150,7 +150,7 @@ impl<R: Real> Quaternion<R> {
         Self { w: cos, v: turn * (share * R::splat(0.5)) }
     }
 
-    /// Returns `inner` followed by this rotation.
+    /// Returns the rotation that applies `inner` first and then this rotation.
     #[inline(always)]
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
@@ -239,7 +239,7 @@ impl<R: Real> Rotation3<R> {
             rows: [Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z)],
         }
     }
-    /// Returns `inner` followed by this rotation.
+    /// Returns the rotation that applies `inner` first and then this rotation.
     #[inline(always)]
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
