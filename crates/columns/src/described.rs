@@ -15,7 +15,7 @@ pub type Objects = Map<String, Value>;
 
 /// A type that has a JSON Schema.
 pub trait Described {
-    /// Returns the schema of the type, and adds the schemas that it refers to to `objects`. The
+    /// Returns the schema of the type, and adds to `objects` all schemas to which it refers. The
     /// unit of a number is stated under the key `unit`.
     fn schema(objects: &mut Objects) -> Value;
 }
@@ -85,7 +85,7 @@ impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
 /// For maps with keys other than text.
 pub fn to_json(document: &impl Serialize) -> serde_json::Result<String> {
     let text = serde_json::to_string_pretty(document)?;
-    // A number is at the end of its line, whereas a text ends with a quote.
+    // Only a number can end a line with `-0.0`, because a text ends with a quotation mark.
     let plain = |line: &str| match line.strip_suffix("-0.0").or_else(|| line.strip_suffix("-0.0,"))
     {
         Some(before) if before.is_empty() || before.ends_with(' ') => {
@@ -232,8 +232,9 @@ impl<'a> Walk<'a> {
 /// Declares an object of a document: a struct that is serialized as JSON and has a JSON Schema.
 ///
 /// The doc comment of a field states the meaning of the field. The type may be followed by the unit
-/// (`as "m/s"`, or `as "1"` for a ratio) and by the permitted values (`["a", "b"]`). In a struct
-/// built `of` one or more arguments, the expression of the value comes last.
+/// (`as "m/s"`, or `as "1"` for a ratio) and by the permitted values (`["a", "b"]`). A struct that is
+/// declared with `of` and one or more arguments gets a function `of`, which builds the struct from these
+/// arguments; each field then ends with the expression of its value.
 ///
 /// ```
 /// barrelstack_columns::described! {
@@ -297,7 +298,7 @@ macro_rules! described {
     (@of $vis:vis $name:ident { $($field:ident),* }) => {};
     (@of $vis:vis $name:ident, $($from:ident: $of:ty),+ { $($field:ident = $value:expr),* }) => {
         impl $name {
-            /// Builds the document from its source.
+            /// Builds the object from its arguments.
             $vis fn of($($from: $of),+) -> Self {
                 Self { $($field: $value),* }
             }

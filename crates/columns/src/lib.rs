@@ -1,10 +1,10 @@
 //! Tables and documents for programs: columns, fields with unit and meaning, JSON Schema, and numbers as text.
 //!
-//! A [`column::Column`] has a name, a unit, a role and values; CSV is written from it, and other formats can be.
-//! [`described!`] declares a document: each field once, with its unit and meaning. JSON, JSON Schema and the data
-//! dictionary are generated from this declaration.
+//! A [`column::Column`] has a name, a unit, a role and values. This crate writes columns as CSV; other crates can write
+//! them in other formats. [`described!`] declares a document: each field once, with its unit and meaning. JSON, JSON
+//! Schema and the data dictionary are generated from this declaration.
 //!
-//! Conventions: a number that is not finite has no value in a file and is a dash for readers.
+//! Convention: a number that is not finite is a missing value in a file, and a dash in a text for readers.
 
 pub mod column;
 pub mod described;

@@ -67,7 +67,7 @@ pub fn measured(value: f64, decimals: usize) -> String {
     if fine.chars().count() < coarse.chars().count() { fine } else { coarse }
 }
 
-/// Formats `value` with a fixed number of decimals and a true minus sign; returns "–" if `value` is
+/// Formats `value` with a fixed number of decimals. The minus sign is U+2212. Returns "–" if `value` is
 /// not finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {

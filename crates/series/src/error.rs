@@ -16,7 +16,7 @@ pub enum MotionError {
         found: String,
     },
     /// A measure that does not grow with the amplitude of the motion cannot be a scaling target.
-    #[error("{measure} cannot be scaled to: {reason}; choose a measure such as PGV or Sa")]
+    #[error("a motion cannot be scaled to {measure}: {reason}; choose a measure such as PGV or Sa")]
     NotScalable {
         /// Name of the measure.
         measure: String,

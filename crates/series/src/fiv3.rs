@@ -1,5 +1,5 @@
-//! Filtered incremental velocity: the sum of the three largest increments of velocity over 0.7
-//! times the period of an oscillator.
+//! Filtered incremental velocity: the sum of the three largest increments of velocity, each over a
+//! time window of 0.7 times the period of an oscillator.
 
 use crate::math::{self, PI};
 
@@ -12,7 +12,8 @@ const CORNER: f64 = 0.85;
 ///
 /// ```text
 /// V(t) = ∫ a dt from t to t + 0.7 T,   a low-passed at 0.85/T
-/// FIV3 = the larger of: the sum of the three highest peaks of V, minus that of the three lowest
+/// FIV3 = max(sum of the three highest positive peaks of V,
+///            −(sum of the three lowest negative peaks of V))
 /// ```
 ///
 /// (Dávalos and Miranda 2019, Earthquake Engineering and Structural Dynamics 48:1300-1316).

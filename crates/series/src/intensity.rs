@@ -72,8 +72,8 @@ pub enum IntensityMeasure {
         /// Damping ratio.
         damping: f64,
     },
-    /// Filtered incremental velocity (m/s): the sum of the three largest increments of velocity
-    /// over 0.7 times a period (Dávalos and Miranda 2019).
+    /// Filtered incremental velocity (m/s): the sum of the three largest increments of velocity,
+    /// each over 0.7 times a period (Dávalos and Miranda 2019).
     Fiv3 {
         /// Period (s).
         period: f64,

@@ -55,8 +55,8 @@ impl Layers {
             let (w, q) = (TAU / period, (1.0 - damping * damping).sqrt());
             let (s, c) = math::sin_cos(w * q * step);
             let decay = math::exp(-damping * w * step);
-            // Compensates the attenuation of a sine at the oscillator's frequency by linear
-            // interpolation.
+            // Linear interpolation between the samples attenuates a sine at the oscillator's
+            // frequency; the division by `taken` compensates for this attenuation.
             let half = 0.5 * w * step;
             let taken = math::powi(math::sin(half) / half, 2);
             [2.0 * decay * c, decay * decay, -step * decay * s * w / q / taken]

@@ -122,7 +122,8 @@ pub enum Pulse {
     },
 }
 
-/// Kind of amplitude of a pulse, which determines how the pulse is scaled with length.
+/// Quantity of the amplitude parameter of a pulse; determines how the parameter changes if the pulse
+/// is stretched in time.
 #[derive(Clone, Copy)]
 enum Amplitude {
     Displacement,

@@ -41,7 +41,8 @@ const PER_E_FOLD: f64 = 14.0;
 /// pulse. The best trial is refined by coordinate search.
 ///
 /// # Errors
-/// If the range is empty, the shortest period is below eight steps, or the motion does not move.
+/// If the range of periods is empty, the shortest period is below eight time steps, or the velocity is
+/// zero throughout.
 pub fn dominant_pulse(
     motion: &Sampled,
     shortest: f64,

@@ -181,8 +181,8 @@ impl Sampled {
     /// Returns the largest absolute displacement (m), integrated from the sampled velocities by the
     /// trapezoidal rule like published values and the displacement files of PEER.
     ///
-    /// The exact displacement, [`Sampled::pgd`], differs: it is 0.4 % larger for a record with a
-    /// step of 0.02 s and a period of 0.3 s at its peak.
+    /// The peak of the exact displacement, [`Sampled::pgd`], is different: for a record with a step
+    /// of 0.02 s whose period is 0.3 s at the peak, it is 0.4 % larger.
     pub fn pgd_by_trapezoid(&self) -> f64 {
         math::peak(&running_trapezoid(self.time_step, &self.velocity))
     }
@@ -206,7 +206,8 @@ impl Sampled {
     }
 }
 
-/// Integrates sampled values up to every sample, by the trapezoidal rule from 0.
+/// Returns the integral of sampled values from the first sample to every sample, by the trapezoidal
+/// rule.
 pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let after = values.windows(2).map(|pair| {

@@ -137,11 +137,11 @@ pub fn scaled(
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
         Scale::Measure { measure, value, of } => match (horizontals(of), &spec.source) {
             (None, _) => motion = motion.scale_to(measure, value)?,
-            // A record was scaled when it was read, with both horizontals available.
+            // A record has already been scaled by `scaled_by_both`, where both horizontals were available.
             (Some(_), MotionSource::Record(_)) => {}
             (Some(over), MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_)) => {
                 return Err(MotionError::NotScalable {
-                    measure: format!("{measure}, {over} of both horizontals,"),
+                    measure: format!("{measure} ({over} of both horizontals)"),
                     reason: "only a record has two horizontals".to_owned(),
                 });
             }
@@ -179,7 +179,7 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
             let vertical = component_of(record, Some(name))?;
             match record.component(&vertical) {
                 Ok(_) => record.ground_motion(&horizontal, Some(&vertical), &processing)?,
-                // The file of a user in place of the record of the scenario.
+                // A user may replace the record of the scenario by a file without a vertical component.
                 Err(_) if !record.channels.iter().any(Channel::is_vertical) => {
                     let file = &record.file;
                     let warning = format!(
@@ -212,8 +212,9 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
     Ok(Ground { motion: Some(motion), warnings })
 }
 
-/// Aligns a horizontal component in time with the first channel of a separate vertical file, if both state their start
-/// times. Returns both records, with a warning if combining them is questionable.
+/// Aligns a horizontal component in time with the first channel of a separate file with the vertical component, if both
+/// files state their start times. Returns both records, with a warning if their headers suggest that they do not belong
+/// together.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,
@@ -269,16 +270,18 @@ fn scaled_by_both(
     let factor = over.scale_factor(measure, &first, &second, value)?;
     let mut scaled = motion.scaled(factor);
     scaled.provenance.push(format!(
-        "this factor scales {measure}, {over} of both horizontals, to {value} {}",
+        "this factor scales {measure} ({over} of both horizontals) to {value} {}",
         measure.unit()
     ));
     Ok(scaled)
 }
 
-/// Returns the requested processing; by default, the processing that suits the stage of the record, without pads.
+/// Returns the requested processing; by default, [`Processing::compact`] for a raw record, and no processing for any
+/// other record.
 ///
-/// Pads are half a minute of rest before the first arrival, which a settled stack does not need. Once they are removed,
-/// the ends are corrected so that velocity and displacement end at zero.
+/// [`Processing::compact`] removes the pads of the filter, which are about half a minute of rest before the first
+/// arrival; a settled stack does not need this rest. Velocity and displacement are then corrected so that they end at
+/// zero.
 fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     match (spec.processing, record.stage) {
         (ProcessingSpec::Default, Stage::Raw) => Processing::compact(),

@@ -568,8 +568,8 @@ class MotionFields(TypedDict, total=False):
     sensitivity: Union[float, Quantity]
     """Counts per m/s², only for a file that contains counts (miniSEED, SAC)."""
     sequence: list["ShockFields"]
-    """Shocks of a cellar, one after the other, each with all other fields of `[motion]`, which it replaces: every
-    shock starts from the places in which the one before has left the bodies at rest.
+    """Shocks of a cellar, one after the other, in place of all other fields of `[motion]`: each shock has these
+    fields itself, and starts with the bodies at rest where the previous shock left them.
     """
     similitude: Union[float, Quantity]
     """Length scale of Froude similitude applied to the motion alone. Default: 1.0."""

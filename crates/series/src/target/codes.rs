@@ -133,8 +133,8 @@ pub(super) fn nzs1170(
 /// Returns the spectral shape factor `Ch(T)` of table 3.1, with the short-period values for modal
 /// and time-history analysis.
 fn nzs_shape(site: SiteClass, t: f64) -> f64 {
-    // Value at T = 0 and its slope up to 0.1 s; plateau and its end (s); then a (b/T)^0.75; from
-    // 1.5 s on c/T; from 3 s on d/T².
+    // Ch(T) is `start + slope T/0.1` below 0.1 s, `plateau` up to `end` (s), `a (b/T)^0.75` up to
+    // 1.5 s, `c/T` up to 3 s, and `d/T²` for longer periods.
     let (start, slope, plateau, end, (a, b), c, d) = match site {
         SiteClass::A | SiteClass::B => (1.0, 1.35, 2.35, 0.3, (1.6, 0.5), 1.05, 3.15),
         SiteClass::C => (1.33, 1.6, 2.93, 0.3, (2.0, 0.5), 1.32, 3.96),

@@ -30,7 +30,7 @@ pub enum GroundError {
         error: MotionError,
     },
     /// There is no bundled record of this name.
-    #[error("there is no bundled record \"{name}\"; the bundled ones are: {known}")]
+    #[error("there is no bundled record \"{name}\"; the bundled records are: {known}")]
     UnknownBundled {
         /// The requested name.
         name: String,

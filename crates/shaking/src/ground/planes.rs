@@ -1,11 +1,11 @@
-//! The other horizontal component of a record, for the other plane of a stack.
+//! The other horizontal component of a record, which shakes a stack in its other vertical plane.
 
 use super::record::read;
 use super::{GroundError, component_of, of_spec};
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
 
-/// Returns the specification of the motion in the other horizontal component of the record, with the same scale factor;
-/// `None` if there is no such component.
+/// Returns the specification of a motion with the other horizontal component of the record in place of its own, and
+/// with the same scale factor; `None` if there is no such component.
 ///
 /// # Errors
 /// If the record cannot be read, or cannot be scaled as specified.
@@ -46,8 +46,8 @@ pub fn turn_to_other(spec: &MotionSpec) -> Result<Option<f64>, GroundError> {
 
 /// Returns the name of the other horizontal component; `None` if there is none.
 ///
-/// The other component is the first other channel that is not vertical or, if the motion is rotated from two channels,
-/// the perpendicular direction.
+/// If the component of `spec` is a channel of the record, the result is the first other channel that is not vertical.
+/// If the component is computed from two channels by rotation, the result is the perpendicular direction.
 fn other(spec: &RecordMotion) -> Result<Option<String>, GroundError> {
     let record = read(spec)?;
     let own = record.component(&component_of(&record, spec.component.as_deref())?)?;

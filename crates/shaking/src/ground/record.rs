@@ -16,7 +16,7 @@ pub const RECORD_LIMIT: usize = 256 << 20;
 /// Returns a reference to a file in memory that contains a record.
 ///
 /// # Errors
-/// If the record has no channel, or channels of different steps.
+/// If the record has no channel, or its channels have different time steps.
 pub fn held(record: &Record) -> Result<FileRef, MotionError> {
     let mut file = FileRef::new(&record.file, PathBuf::new());
     file.hold(barrelstack_motion::write::npz(record)?);
@@ -132,7 +132,7 @@ pub(super) fn read_file(
             "other text, which is not shown, since the file lies outside the folder of the scenario"
                 .clone_into(&mut failure.found);
         }
-        // The reader reports what is missing; the scenario is the place to state it.
+        // The reader reports which information is missing; add where the scenario can state this information.
         if let Refusal::Missing(given) = failure.refusal {
             failure.remedy += match given {
                 Given::UnitOrSensitivity => {

@@ -198,10 +198,10 @@ table! {
 /// Number of fields of a shock.
 const OF_SHOCK: usize = SHOCK.fields.len();
 
-/// The fields of a shock, and the sequence.
+/// The fields of a shock, followed by the field `sequence`.
 static FIELDS: [Field; OF_SHOCK + 1] = {
-    let help = "Shocks of a cellar, one after the other, each with all other fields of `[motion]`, which it replaces: every \
-                shock starts from the places in which the one before has left the bodies at rest.";
+    let help = "Shocks of a cellar, one after the other, in place of all other fields of `[motion]`: each shock has these \
+                fields itself, and starts with the bodies at rest where the previous shock left them.";
     let sequence = Field::new("sequence", Kind::Tables(&SHOCK), Default::Nothing, help);
     let mut all = [sequence; OF_SHOCK + 1];
     let mut at = 0;
@@ -212,10 +212,11 @@ static FIELDS: [Field; OF_SHOCK + 1] = {
     all
 };
 
-/// Number of exclusions of a shock.
+/// Number of groups of fields of a shock of which at most one field may be given.
 const EXCLUDED: usize = SHOCK.exclusive.len();
 
-/// The exclusions of a shock, and of a sequence with every field of a shock.
+/// Groups of fields of which at most one may be given: those of a shock, and `sequence` paired with each field of a
+/// shock.
 static EXCLUSIVE: [&[&str]; EXCLUDED + OF_SHOCK] = {
     const PAIRS: [[&str; 2]; OF_SHOCK] = {
         let mut all = [["sequence"; 2]; OF_SHOCK];

@@ -20,11 +20,12 @@ pub fn rest() -> MotionSpec {
 /// Reads the ground motion of a single stack or scene, which is one shock.
 ///
 /// # Errors
-/// Returns the first invalid field, with its place in the file; also for a sequence.
+/// If a field is invalid, or if the motion is a sequence. The error names the first such field, with its place in the
+/// file.
 pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     if reader.has("sequence") {
-        let message = "a sequence of shocks is run in a room only: set `kind = \"cellar\"`, and state [room] and one \
-                       [[block]], whose single stack is this one; or state one shock in [motion]";
+        let message = "only a cellar can run a sequence of shocks: set `kind = \"cellar\"`, and state [room] and one \
+                       [[block]] that consists of this stack; or state one shock in [motion]";
         return Err(reader.inconsistent("sequence", message.to_owned()));
     }
     reader.skip("sequence");
@@ -34,7 +35,7 @@ pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
 /// Reads one shock: the ground motion without a sequence.
 ///
 /// # Errors
-/// Returns the first invalid field, with its place in the file.
+/// If a field is invalid. The error names the first such field, with its place in the file.
 pub fn read_shock(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let record = reader.file("record")?.map(RecordSource::File);
     let bundled = reader.optional_catalog_name("bundled")?.map(RecordSource::Bundled);
