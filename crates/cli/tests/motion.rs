@@ -211,7 +211,7 @@ fn parts_of_a_record_are_joined_where_they_overlap() {
     let (one, two) = (part("one.txt", &body[..4000]), part("two.txt", &body[3000..]));
     let joined = folder.path().join("joined.txt");
     let printed = motion(&["convert", "--join", text(&one), text(&two), "-o", text(&joined)]);
-    assert!(printed.contains("repeat the end of the part before"), "{printed}");
+    assert!(printed.contains("repeat the end of the previous part"), "{printed}");
     assert_eq!(rows(&joined).len(), body.len());
     for (old, new) in channels(&first).iter().zip(&channels(&joined)) {
         assert!(close(measure(new, "arias"), measure(old, "arias"), 1e-12));

@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_shift_by_part_of_a_step_is_exact_below_the_nyquist_frequency() {
-        // Measured just below each limit.
+        // The measured errors are just below these limits.
         for (share, limit) in [(0.1, 2e-5), (0.5, 2e-5), (0.8, 1e-4), (0.9, 3e-3)] {
             let wave = |t: f64| (PI * share * t + 0.4).sin();
             let values: Vec<f64> = (0..400).map(|k| wave(f64::from(k))).collect();

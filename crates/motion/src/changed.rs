@@ -72,8 +72,9 @@ impl Record {
         out
     }
 
-    /// Matches one channel (counted from 0) to a target spectrum, which the notes call `named`. All
-    /// other channels are only multiplied by the first scale factor.
+    /// Matches one channel (counted from 0) to a target spectrum; `named` is the name of the target in
+    /// the notes. All other channels are only multiplied by the factor that scales the matched channel
+    /// to the target on average.
     ///
     /// If `nearly` is `true`, the best motion is accepted even if the tolerance is not reached.
     ///
@@ -93,8 +94,9 @@ impl Record {
             available: self.channels.len().to_string(),
         })?;
         let horizontal = History::Sampled(channel.sampled()?);
-        // A vertical component is multiplied only by the first scale factor. A probe of height 1
-        // therefore returns this factor, which is then applied to all other channels.
+        // Matching multiplies a vertical component only by the factor that scales the motion to the
+        // target on average. A vertical component of constant acceleration 1 therefore returns this
+        // factor, which is then applied to all other channels.
         let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
         let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
         let matched = if nearly {
@@ -121,8 +123,8 @@ impl Record {
         }
         after.stage = Stage::Corrected;
         after.notes.push(format!(
-            "{}: scaled by {factor:.4} and matched in {} to {named} from {} to {} s: misfit at most \
-             {:.2} % after {} rounds, ends closed",
+            "{}: scaled by {factor:.4} and matched in {} to {named} at periods from {} to {} s: misfit at \
+             most {:.2} % after {} rounds, with the final velocity and displacement brought to zero",
             channel.name,
             matched.domain(),
             settings.shortest,
@@ -142,8 +144,8 @@ impl Record {
     }
 
     /// Matches the response of both horizontal components over all directions (`RotD50` or
-    /// `RotD100`) to a target spectrum, which the notes call `named`. All other channels are only
-    /// multiplied by the first scale factor.
+    /// `RotD100`) to a target spectrum; `named` is the name of the target in the notes. All other
+    /// channels are only multiplied by the factor that scales this response to the target on average.
     ///
     /// The amplitudes of both components are multiplied by one gain, which keeps their
     /// polarization. Then wavelets are added along the directions of the measured response;
@@ -152,7 +154,7 @@ impl Record {
     ///
     /// # Errors
     /// The same as for [`Record::horizontal_pair`], and if a setting is out of range, the measure
-    /// is not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
+    /// is not `RotD50` or `RotD100`, the motion is zero, or the tolerance is not reached.
     pub fn matched_pair(
         &self,
         measure: Horizontals,
@@ -204,8 +206,8 @@ impl Record {
         }
         after.stage = Stage::Corrected;
         after.notes.push(format!(
-            "{} and {}: scaled by {factor:.4} and matched together, {measure} to {named} from {} to {} s: misfit at most \
-             {:.2} % after {} rounds, ends closed",
+            "{} and {}: scaled by {factor:.4} and matched together, {measure} to {named} at periods from {} to {} s: \
+             misfit at most {:.2} % after {} rounds, with the final velocity and displacement brought to zero",
             names[0],
             names[1],
             settings.shortest,

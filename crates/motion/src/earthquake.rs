@@ -78,8 +78,8 @@ mod tests {
 
     #[test]
     fn distances_are_those_of_the_sphere() {
-        // A quarter of the equator, a degree of a meridian, and Reston from Mineral, which its own
-        // header puts at 121.44 km on an ellipsoid.
+        // A quarter of the equator, a degree of a meridian, and the distance from Mineral to Reston,
+        // for which the header of the record states 121.44 km (on an ellipsoid).
         assert!((great_circle((0.0, 0.0), (0.0, 90.0)) - 0.5 * math::PI * EARTH).abs() < 1e-6);
         assert!((great_circle((10.0, 5.0), (11.0, 5.0)) - 111.195).abs() < 1e-3);
         let reston = great_circle((37.963, -77.933), (38.9511, -77.3359));

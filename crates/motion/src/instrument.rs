@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_wave_is_differentiated() {
-        // Thirty samples per wave: measured 1.3e-4 of its largest rate.
+        // With thirty samples per wave, the measured error is 1.3e-4 of the largest rate.
         let w = 2.0;
         let step = std::f64::consts::TAU / w / 30.0;
         let values: Vec<f64> = (0..200).map(|k| sin(w * step * f64::from(k))).collect();

@@ -20,11 +20,11 @@ const MOST_LISTED: usize = 5;
 /// A motion matched to a target spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
-    /// The motion. The horizontal component is matched; the vertical component is multiplied only
-    /// by the first scale factor.
+    /// The motion. The horizontal component is matched; the vertical component is only multiplied by
+    /// the factor that scales the horizontal component to the target on average.
     pub motion: GroundMotion,
-    /// Largest relative misfit between the shortest and the longest matched period, on a grid of
-    /// 1080 periods per decade.
+    /// Largest relative misfit at the periods from the shortest to the longest matched period, on a
+    /// grid of 1080 periods per decade.
     pub misfit: f64,
     /// Ranges of periods with a misfit beyond the tolerance; empty if the tolerance is met.
     pub missed: Vec<Missed>,
@@ -82,7 +82,7 @@ pub fn missed_in_words(all: &[Missed]) -> String {
     let mut ranges: Vec<String> = worst.map(words).collect();
     let others = all.len() - ranges.len();
     if others > 0 {
-        ranges.push(format!("by less at {others} other ranges"));
+        ranges.push(format!("by less in {others} other ranges"));
     }
     ranges.join(", ")
 }

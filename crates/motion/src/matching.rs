@@ -74,10 +74,10 @@ const MOST_SAMPLES: usize = 14_000_000;
 pub(crate) const STEPS_A_PERIOD: f64 = 20.0;
 /// Number of matched periods per decade.
 const PER_DECADE: f64 = 60.0;
-/// Number of periods per matched period at which the misfit is judged, so that a misfit between
-/// matched periods is noticed.
+/// Number of judged periods per matched period. The misfit is judged on this finer grid, so that a
+/// misfit between matched periods is noticed.
 const JUDGED: usize = 3;
-/// Number of periods per judged period in the final check.
+/// Number of checked periods per judged period. The final check uses this even finer grid.
 const CHECKED: usize = 6;
 /// If the misfit is at most this fraction of the tolerance, no further method is tried.
 const CLEAR: f64 = 0.98;
@@ -94,7 +94,7 @@ impl GroundMotion {
     /// that the result does not drift.
     ///
     /// # Errors
-    /// If a setting is out of range, the motion does not move, or the tolerance is not reached.
+    /// If a setting is out of range, the motion is zero, or the tolerance is not reached.
     ///
     /// ```
     /// use barrelstack_motion::{CloughPenzien, Envelope, Matching, TargetSpectrum};
@@ -124,7 +124,7 @@ impl GroundMotion {
     /// target.
     ///
     /// # Errors
-    /// If a setting is out of range or the motion does not move.
+    /// If a setting is out of range or the motion is zero.
     pub fn match_spectrum_nearly(
         &self,
         target: &TargetSpectrum,
@@ -153,8 +153,8 @@ impl GroundMotion {
         let chosen = settings.method;
         let mut matched = Matched { motion, misfit, missed, rounds, chosen, first };
         matched.motion.provenance.push(format!(
-            "scaled by {factor:.4} and matched in {} to {target} from {} to {} s: misfit at most \
-             {:.2} % after {rounds} rounds, ends closed",
+            "scaled by {factor:.4} and matched in {} to {target} at periods from {} to {} s: misfit at \
+             most {:.2} % after {rounds} rounds, with the final velocity and displacement brought to zero",
             matched.domain(),
             settings.shortest,
             settings.longest,
@@ -191,7 +191,7 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     MotionError::require(
         shortest >= least && shortest < longest,
         "shortest matched period (s)",
-        format!("from four steps, {least} s, to {longest} s"),
+        format!("at least four steps, {least} s, and below {longest} s"),
         shortest,
     )?;
     MotionError::require_positive("matching tolerance", tolerance)?;

@@ -162,7 +162,7 @@ impl Channel {
     pub fn implausible(&self) -> Option<String> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
         let what = if !(1e-4..=0.1).contains(&step) {
-            format!("a step of {step} s, but strong-motion records have 0.0001 to 0.1 s")
+            format!("a step of {step} s, but strong-motion records have steps of 0.0001 to 0.1 s")
         } else if count < 50 {
             format!("{count} samples, but strong-motion records have at least 50")
         } else if length < 1.0 {

@@ -308,7 +308,7 @@ fn cut_to_shorter(
         if extra > 0 {
             channel.acceleration.truncate(shorter);
             provenance.push(format!(
-                "last {extra} samples of channel {} cut to match the other",
+                "last {extra} samples of channel {} cut to match the length of the other channel",
                 channel.name
             ));
         }

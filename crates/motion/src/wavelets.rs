@@ -102,8 +102,8 @@ pub(crate) fn polish(
     // Below this misfit, the exact misfit is computed, which is expensive.
     let mut promising = target;
     for round in 1..=settings.rounds {
-        // Every third round makes demands on all peaks, so that the others do not drift to the edge
-        // of the band.
+        // Every third round makes demands on all peaks, so that the peaks that are within the band,
+        // which other rounds do not correct, do not drift to its edge.
         let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
         let mut periods = matched_periods(settings, round);
         periods.extend(

@@ -196,12 +196,12 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
         "\"Time (s)\",\"Acceleration (m/s2)\"\n{}",
         rows(|_, t, a| format!("\"{t:.3}\",\"{a:.6}\"\n"))
     );
-    obeyed(&quoted, "other characters next to them", &whole);
+    obeyed(&quoted, "other characters next to the numbers", &whole);
     let drawn = format!(
         "| Time (s) | Acceleration (m/s2) |\n|---|---|\n{}",
         rows(|_, t, a| format!("| {t:.3} | {a:.6} |\n"))
     );
-    obeyed(&drawn, "other characters next to them", &whole);
+    obeyed(&drawn, "other characters next to the numbers", &whole);
 }
 
 #[test]

@@ -167,9 +167,9 @@ fn azimuth(channel: &Channel) -> String {
 /// Formats the results of the readers for every file as a page.
 fn table_of_results(folder: &Path) -> String {
     let mut text = String::from(
-        "# Formats read\n\nEvery file of the shared folder `ground-motions`, as read by this crate.\n\
-         PGV and PGD are by plain integration, trapezoids throughout; of a raw record they are drift.\n\
-         A peak stated in the header stands behind the measured one, with its largest difference.\n\
+        "# Formats read\n\nThis page lists every file of the shared folder `ground-motions` with the result of reading it.\n\
+         PGV and PGD result from integration by the trapezoidal rule without filtering; for a raw record, they are mostly drift.\n\
+         The last column gives the number of peaks that the header states and the samples meet, and the largest relative difference.\n\
          Regenerate with `cargo test -p barrelstack-motion --test all shared_folder -- --ignored`.\n\n\
          | file | format | stage | channel | azimuth (°) | start (UTC) | step (s) | samples | PGA (g) | PGV (cm/s) | PGD (cm) | stated peaks |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",

@@ -89,15 +89,16 @@ struct Spectra {
 /// Returns the filter corners of one channel whose noise ends at `arrival` (s).
 ///
 /// The spectrum of the noise is multiplied by the square root of the length of the shaking divided
-/// by the length of the noise. The product is the spectrum of the noise within the shaking, and the
-/// excess of the spectrum of the shaking is the signal. The signal-to-noise ratio is divided by the
-/// same square root, so that the criterion is stricter if the noise is short.
+/// by the length of the noise. The product is the spectrum of the noise within the shaking. The
+/// signal is the difference between the spectrum of the shaking and this product. The
+/// signal-to-noise ratio is divided by the same square root, so that the criterion is stricter if
+/// the noise is short.
 ///
-/// The band between the corners is the first band in which the ratio satisfies the criterion over
-/// its whole frequency range. The high-pass corner is not below one over the duration, nor below
-/// the frequency at which the ratio, to the left of its peak, has its minimum. The low-pass corner
-/// is at most 0.75 of the Nyquist frequency and 40 Hz. This is the rule of the automatic processing
-/// of the USGS (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
+/// The band between the corners is the first band of sufficient ratio that covers the frequency
+/// range of the criterion. The high-pass corner is raised, if necessary, to one over the duration,
+/// and to the frequency of the smallest ratio below the frequency of the peak ratio. The low-pass
+/// corner is lowered, if necessary, to 0.75 of the Nyquist frequency, and to 40 Hz. This is the rule
+/// of the automatic processing of the USGS (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
 /// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.

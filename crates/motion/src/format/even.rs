@@ -9,7 +9,7 @@ use crate::record::Record;
 pub(crate) struct Timed {
     /// Line of the first row, counted from 0.
     pub(crate) first_line: usize,
-    /// Number of rows per line.
+    /// Number of times on each line of the file, each with its values.
     pub(crate) per_line: usize,
     /// Times (s).
     pub(crate) time: Vec<f64>,
@@ -72,7 +72,7 @@ pub(crate) fn even_steps(
         record.warn(
             first_line + 1,
             format!(
-                "channel {label}: the times deviate from an even step of {step} s by their last \
+                "channel {label}: the times deviate from an even step of {step} s only in their last \
                  digits; the even step is used"
             ),
         );

@@ -1,4 +1,4 @@
-//! Options of the caller, with a record of those that the reader has used.
+//! Options of the caller. The module also tracks which options the reader has used.
 
 use std::cell::{Cell, RefCell};
 

@@ -426,7 +426,7 @@ fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64
     if differences.len() < samples || samples == 0 {
         return None;
     }
-    // The first difference leads from the previous data record and is not used.
+    // The first difference is relative to the last sample of the previous data record; it is not used.
     let mut value = first;
     let mut values = Vec::with_capacity(samples);
     values.push(value as f64);

@@ -236,8 +236,8 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
             return Err(source.error(
                 line,
                 Refusal::Unrecognized,
-                "numbers between blanks, commas, semicolons or tabs",
-                format!("other characters next to them, {}", quoted(&utf8(source.raw(line)))),
+                "numbers separated by blanks, commas, semicolons or tabs",
+                format!("other characters next to the numbers, {}", quoted(&utf8(source.raw(line)))),
                 "write only the numbers, with hyphens for minus signs, and times in seconds",
             ));
         }
@@ -415,7 +415,7 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
             (),
             "channels of one station and sensor that were recorded at the same time",
             error.to_string(),
-            "split the file into separate times",
+            "split the file, so that each part contains only channels recorded at the same time",
         )
     })
 }
@@ -574,7 +574,7 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
     if !left_out.is_empty() && record.channels.is_empty() {
         return Err(source.not_acceleration(
             (),
-            "a channel that moves",
+            "a channel whose values vary",
             "one value throughout",
             "give the file that holds the accelerations",
         ));

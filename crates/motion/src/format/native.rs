@@ -86,7 +86,7 @@ pub(super) fn described(
                 .and_then(|azimuth| azimuth.parse::<f64>().ok())
                 .filter(|azimuth| azimuth.is_finite())
                 .map(Direction::horizontal),
-            None => return Err(refuse(line, "channel names between commas", &text)),
+            None => return Err(refuse(line, "channel names separated by commas", &text)),
         };
         if direction.is_some() && words.len() > 1 {
             words.pop();
@@ -145,7 +145,7 @@ fn places(
         found.push(place(words).ok_or_else(|| {
             source.damaged(
                 line,
-                "start, latitude, longitude, elevation, vs30, sensor or station between commas",
+                "start, latitude, longitude, elevation, vs30, sensor or station, separated by commas",
                 quoted(words),
                 "correct the header line",
             )

@@ -12,12 +12,14 @@ use crate::record::Record;
 pub(crate) const FORMAT: Format =
     Format { name: "sac-text", title: "SAC text (alphanumeric)", sniff, read };
 
-/// The header has 14 lines of 5 reals, 8 lines of 5 integers, and 8 lines of 24 characters.
+/// Number of reals in the header, which has 14 lines of 5 reals, 8 lines of 5 integers, and 8 lines of
+/// 24 characters.
 const REALS: usize = 70;
 const INTEGERS: usize = 40;
 const WORD_LINES: usize = 8;
 const HEADER_LINES: usize = REALS / 5 + INTEGERS / 5 + WORD_LINES;
-/// Integer 6 (word 76) is the header version, integer 9 the number of samples.
+/// Index of the header version (word 76) among the integers of the header. The integer at index 9 is the
+/// number of samples.
 const VERSION: usize = 6;
 const POINTS: usize = 9;
 
@@ -37,7 +39,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         source.fixed(line, INTEGERS, Columns::new(5, 10), f64::from(i32::MAX))?;
     let points = super::whole(source, REALS / 5 + 1, "a number of points", integers[POINTS])?;
     let data = line + WORD_LINES;
-    // There are five values per line; some programs write the last ones one per line.
+    // There are five values per line; some programs write the last few values on a line each.
     let values = source.all_tokens(data, source.lines.len(), f64::from(f32::MAX))?;
     if values.len() != points {
         let stated = format!("{points} values as the header states");

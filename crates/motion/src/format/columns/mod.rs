@@ -96,7 +96,7 @@ fn read_table(
     let table = table(source, first, end)?;
     rows::require_rows(source, first, &table)?;
     let (width, rows) = (table.len(), table[0].len());
-    // In files written by this crate, comments are free text about the history.
+    // In files written by this crate, comments are free text about the source and the processing.
     let own = header > 0 && source.text(0) == FIRST_LINE;
     let mut named = names::find(source, header, width)?;
     if let Some((_, names)) = named.as_mut().filter(|_| own) {
@@ -276,7 +276,7 @@ fn accelerations(
         let mut table = table;
         if let Some(at) = lengths.iter().position(|length| *length) {
             table.remove(at);
-            record.warn(line + 1, "a column is the vector length of the others and was ignored");
+            record.warn(line + 1, "a column is the length of the vector of the others and was ignored");
         }
         return Ok((Vec::new(), table));
     };
@@ -292,7 +292,7 @@ fn accelerations(
     };
     let all: Vec<String> = names.iter().map(Name::shown).collect();
     let several = names.iter().filter(|name| taken(name)).count() > 1;
-    // The vector length next to the components, as written by phones.
+    // Phones write the length of the acceleration vector in a column next to the components.
     let length = |name: &Name, values: &[f64]| {
         several && name.says_length() && values.iter().all(|value| *value >= 0.0)
     };
