@@ -225,8 +225,8 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         // The stated peaks apply to the parts, not to the joined record.
         mine.peaks.clear();
         joined.notes.push(format!(
-            "channel {name}: {} joined where its first {seconds:.2} s repeat the end of the previous \
-             part, baseline shifted by {offset:.3e} m/s2",
+            "channel {name}: {} joined where its first {seconds:.2} s repeat the end of the \
+             previous part, baseline shifted by {offset:.3e} m/s2",
             part.file
         ));
     }

@@ -153,8 +153,9 @@ impl GroundMotion {
         let chosen = settings.method;
         let mut matched = Matched { motion, misfit, missed, rounds, chosen, first };
         matched.motion.provenance.push(format!(
-            "scaled by {factor:.4} and matched in {} to {target} at periods from {} to {} s: misfit at \
-             most {:.2} % after {rounds} rounds, with the final velocity and displacement brought to zero",
+            "scaled by {factor:.4} and matched in {} to {target} at periods from {} to {} s: \
+             misfit at most {:.2} % after {rounds} rounds, with the final velocity and displacement \
+             brought to zero",
             matched.domain(),
             settings.shortest,
             settings.longest,

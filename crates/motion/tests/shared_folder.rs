@@ -167,9 +167,9 @@ fn azimuth(channel: &Channel) -> String {
 /// Formats the results of the readers for every file as a page.
 fn table_of_results(folder: &Path) -> String {
     let mut text = String::from(
-        "# Formats read\n\nThis page lists every file of the shared folder `ground-motions` with the result of reading it.\n\
-         PGV and PGD result from integration by the trapezoidal rule without filtering; for a raw record, they are mostly drift.\n\
-         The last column gives the number of peaks that the header states and the samples meet, and the largest relative difference.\n\
+        "# Formats read\n\nThis page lists how every file of the shared folder `ground-motions` is read.\n\
+         PGV and PGD result from trapezoidal integration without filtering; for a raw record, they are mostly drift.\n\
+         The last column counts the stated peaks that the samples meet, and gives the largest relative difference.\n\
          Regenerate with `cargo test -p barrelstack-motion --test all shared_folder -- --ignored`.\n\n\
          | file | format | stage | channel | azimuth (°) | start (UTC) | step (s) | samples | PGA (g) | PGV (cm/s) | PGD (cm) | stated peaks |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",

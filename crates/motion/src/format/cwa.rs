@@ -57,7 +57,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         return Err(source.header(
             sequence_line,
             format!(
-                "{} components, because {format} has one column for the time and one for each component",
+                "{} components, because {format} has one column for the time and one for each \
+                 component",
                 columns.per_line - 1
             ),
             quoted(&sequence),
@@ -105,7 +106,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         let plain = name.split('(').next().unwrap_or("").trim().to_owned();
         let mut direction = Direction::parse(&plain);
         if name.contains("(-)") && direction.orientation.is_some() {
-            record.notes.push(format!("channel {plain} is marked (-) in the header and was reversed"));
+            record.notes.push(format!("channel {plain} is marked (-) and was reversed"));
             direction.downward = true;
         }
         let mut channel = Channel::new(plain.clone(), direction, time_step, values);

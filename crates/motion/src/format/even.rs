@@ -72,8 +72,8 @@ pub(crate) fn even_steps(
         record.warn(
             first_line + 1,
             format!(
-                "channel {label}: the times deviate from an even step of {step} s only in their last \
-                 digits; the even step is used"
+                "channel {label}: the times deviate from an even step of {step} s only in their \
+                 last digits; the even step is used"
             ),
         );
         return Ok((step, values));

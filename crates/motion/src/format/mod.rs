@@ -237,7 +237,10 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
                 line,
                 Refusal::Unrecognized,
                 "numbers separated by blanks, commas, semicolons or tabs",
-                format!("other characters next to the numbers, {}", quoted(&utf8(source.raw(line)))),
+                format!(
+                    "other characters next to the numbers, {}",
+                    quoted(&utf8(source.raw(line)))
+                ),
                 "write only the numbers, with hyphens for minus signs, and times in seconds",
             ));
         }

@@ -145,7 +145,8 @@ fn places(
         found.push(place(words).ok_or_else(|| {
             source.damaged(
                 line,
-                "start, latitude, longitude, elevation, vs30, sensor or station, separated by commas",
+                "start, latitude, longitude, elevation, vs30, sensor or station, separated by \
+                 commas",
                 quoted(words),
                 "correct the header line",
             )

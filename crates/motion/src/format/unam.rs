@@ -100,7 +100,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         record.warn(
             count_line + 1,
             format!(
-                "the header states {count} samples, the file contains {found}; the excess samples are ignored"
+                "the header states {count} samples, the file contains {found}; the excess samples \
+                 are ignored"
             ),
         );
     } else {

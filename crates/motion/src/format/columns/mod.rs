@@ -276,7 +276,10 @@ fn accelerations(
         let mut table = table;
         if let Some(at) = lengths.iter().position(|length| *length) {
             table.remove(at);
-            record.warn(line + 1, "a column is the length of the vector of the others and was ignored");
+            record.warn(
+                line + 1,
+                "a column contains the vector length of the other columns and was ignored",
+            );
         }
         return Ok((Vec::new(), table));
     };

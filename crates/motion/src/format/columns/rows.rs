@@ -226,7 +226,7 @@ pub(super) fn without_time(
             first,
             Refusal::Unrecognized,
             "names above the columns, or one value per line",
-            format!("{width} columns without names, which do not form a single series written row by row"),
+            format!("{width} unnamed columns, which do not form a single series row by row"),
             "name the columns in a line above them, such as \"EW NS UD\", or give a file of one component",
         ));
     }
