@@ -208,8 +208,8 @@ impl Record {
         after.stage = Stage::Corrected;
         after.notes.push(format!(
             "{} and {}: scaled by {factor:.4} and matched together, {measure} to {named} at \
-             periods from {} to {} s: misfit at most {:.2} % after {} rounds, with the final velocity and \
-             displacement brought to zero",
+             periods from {} to {} s: misfit at most {:.2} % after {} rounds, with the final \
+             velocity and displacement brought to zero",
             names[0],
             names[1],
             settings.shortest,

@@ -78,8 +78,8 @@ impl Direction {
     }
 
     /// Parses a direction from a name, or else from the direction code in headers of CSMIP and
-    /// COSMOS. The code is an azimuth or a number of at least 400; codes of at least 700 are
-    /// relative to a structure.
+    /// COSMOS. The code is an azimuth from 1 to 360, or 400 to 600 for a vertical direction, or 700
+    /// and more for a horizontal direction relative to a structure.
     pub(crate) fn of_name_or_code(name: &str, code: Option<f64>) -> Self {
         let stated = Self::parse(name);
         if stated != Self::default() {

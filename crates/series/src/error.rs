@@ -54,7 +54,7 @@ pub enum MotionError {
         remedy: String,
     },
     /// An iteration did not reach its tolerance.
-    #[error("{what} reached {reached} after {rounds} rounds, wanted {wanted}; {remedy}")]
+    #[error("{what} reached {reached} after {rounds} rounds, but {wanted} is required; {remedy}")]
     NotConverged {
         /// Name of the iteration.
         what: String,

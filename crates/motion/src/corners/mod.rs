@@ -18,7 +18,7 @@ const SHORTEST_NOISE: f64 = 1.0;
 /// Shortest shaking (s) from which corners can be determined.
 const SHORTEST_SHAKING: f64 = 5.0;
 /// Length of the taper at each end of the noise and of the shaking, as a fraction of the length of
-/// this part.
+/// the noise or of the shaking, respectively.
 const TAPER: f64 = 0.05;
 /// Upper limits of the low-pass corner: as a fraction of the Nyquist frequency, and in Hz.
 const HIGHEST: (f64, f64) = (0.75, 40.0);

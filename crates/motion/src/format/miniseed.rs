@@ -57,8 +57,8 @@ struct Trace {
     values: Vec<f64>,
 }
 
-/// Largest difference, in samples, between the stated times and the sample count that is not
-/// considered a gap.
+/// Largest difference, in samples, between the stated start of a data record and the start that
+/// follows from the number of samples before it; larger differences are gaps or overlaps.
 const LARGEST_OFFSET: f64 = 0.6;
 /// Largest relative error of the sampling rate caused by the recorder's clock.
 const LARGEST_CLOCK_ERROR: f64 = 2e-4;
@@ -316,8 +316,9 @@ fn joined(
         record.warn(
             None,
             format!(
-                "channel {channel}: the times of its data records differ by up to {drift:.4} s from its \
-                 samples at {rate} Hz, because the recorder's clock is inexact; the stated rate is used"
+                "channel {channel}: the times of its data records differ by up to {drift:.4} s from \
+                 those of its samples at {rate} Hz, because the recorder's clock is inexact; the \
+                 stated rate is used"
             ),
         );
     }
