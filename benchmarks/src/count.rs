@@ -119,7 +119,7 @@ impl Task for Many<'_> {
         let Self { scene, step, end_time } = self;
         let before = memory::in_use();
         let mut batch = Repeated { scene, step, end_time, left: MANY, before, held: 0 };
-        run_batch::<R, _>(Method::VelocityVerlet, &mut batch);
+        run_batch::<Planar<R>, _>(Method::VelocityVerlet, &mut batch);
         batch.held
     }
 }
@@ -133,10 +133,10 @@ struct Repeated<'a> {
     held: usize,
 }
 
-impl<'a, R: Real> Batch<'a, R> for Repeated<'a> {
+impl<'a, R: Real> Batch<'a, Planar<R>> for Repeated<'a> {
     type Drive = Shake;
 
-    fn next(&mut self, _: usize) -> Option<Case<'a, Shake>> {
+    fn next(&mut self, _: usize) -> Option<Case<'a, Planar, Shake>> {
         self.left = self.left.checked_sub(1)?;
         Some(case(self.scene, self.step, self.end_time))
     }
@@ -150,7 +150,7 @@ impl<'a, R: Real> Batch<'a, R> for Repeated<'a> {
     fn end(&mut self, _: usize, _: End) {}
 }
 
-fn case(scene: &Scene, time_step: f64, end_time: f64) -> Case<'_, Shake> {
+fn case(scene: &Scene, time_step: f64, end_time: f64) -> Case<'_, Planar, Shake> {
     let drive = Scene::ground(1.0);
     Case { model: &scene.model, state: scene.rest.clone(), drive, time_step, end_time }
 }

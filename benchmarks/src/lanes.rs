@@ -57,7 +57,7 @@ impl Task for InLanes<'_> {
 
     fn run<R: Real>(self) {
         let mut cases = Cases { scene: self.scene, step: self.step, next: 0, ended: 0 };
-        run_batch::<R, _>(Method::VelocityVerlet, &mut cases);
+        run_batch::<Planar<R>, _>(Method::VelocityVerlet, &mut cases);
         assert_eq!(cases.ended, CASES, "every case ends");
     }
 }
@@ -69,10 +69,10 @@ struct Cases<'a> {
     ended: usize,
 }
 
-impl<'a, R: Real> Batch<'a, R> for Cases<'a> {
+impl<'a, R: Real> Batch<'a, Planar<R>> for Cases<'a> {
     type Drive = Shake;
 
-    fn next(&mut self, _lane: usize) -> Option<Case<'a, Shake>> {
+    fn next(&mut self, _lane: usize) -> Option<Case<'a, Planar, Shake>> {
         (self.next < CASES).then(|| {
             let factor = 0.8 + 0.4 * self.next as f64 / CASES as f64;
             self.next += 1;

@@ -12,7 +12,7 @@ use crate::model::{ContactPair, Counts, InterfaceId, Model};
 use crate::pair_frame::PairFrame;
 use crate::real::{Mask, Real};
 use crate::shape::{Surface, Whole};
-use crate::space::{Linear, Planar, Pose, Rotation3, Space, Spatial, Twist, Vec3};
+use crate::space::{Linear, Pose, Rotation3, Space, Spatial, Twist, Vec3};
 use crate::state::State;
 
 /// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on which elements
@@ -105,13 +105,13 @@ impl<S: Space> ContactElements<S> {
         self.nodes.is_empty()
     }
 
-    /// Returns `true` if the gap of every element of a group stays larger than `gap` (m) during the current step in all
-    /// lanes, so that the group need not be tested.
+    /// Returns the lanes in which the gap of every element of a group stays larger than `gap` (m) during the current
+    /// step, so that the group need not be tested.
     #[inline(always)]
-    pub(crate) fn sleeps(&self, group: usize, gap: S::Real) -> bool {
+    pub(crate) fn asleep(&self, group: usize, gap: S::Real) -> <S::Real as Real>::Mask {
         let [a, b] = self.groups[group].bodies;
         let travel = self.travels[a] + self.travels[b];
-        (travel + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group]).all()
+        (travel + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group])
     }
 
     /// Ends the step. Until the next step begins, bodies may be moved anywhere, so no group is skipped.
@@ -412,12 +412,14 @@ impl<S: Space> ContactElements<S> {
             }
             Nodes::Whole(whole) => {
                 let (center, radius) = whole.ball();
-                if self.near(surface, frame.to_surface(center), radius, margin).is_none() {
-                    return least;
-                }
+                let around = self.near(surface, frame.to_surface(center), radius, margin);
+                let Some(around) = around else { return least };
+                let all = S::Real::splat(if self.exhaustive { f64::INFINITY } else { margin });
+                let near = !all.lt(around);
                 // A slender body may be far away although its bounding ball is near.
-                whole.meet(surface, frame.contactor, frame.relative, |patch| {
-                    least = least.min(patch.deepest.gap.distance);
+                whole.meet(surface, frame.contactor, frame.relative, near, |patch| {
+                    let gap = patch.deepest.gap.distance;
+                    least = least.min(S::Real::select(near, gap, around));
                 });
                 if self.exhaustive || !S::Real::splat(margin).lt(least).all() {
                     for index in 0..whole.most_sticks() {
@@ -502,15 +504,15 @@ impl ContactElements<Spatial> {
     }
 }
 
-impl<R: Real> ContactElements<Planar<R>> {
+impl<S: Space> ContactElements<S> {
     /// Copies the stick history and the slip rates of a single state into one lane; elements that the single state does
     /// not list start with an empty history.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
-        slip_rates: &mut [R],
-        single: &ContactElements<Planar>,
-        single_slip_rates: &[f64],
+        slip_rates: &mut [S::Tangent],
+        single: &ContactElements<S::Single>,
+        single_slip_rates: &[<S::Single as Space>::Tangent],
     ) {
         let mut remembered = Remembered { old: single, group: 0 };
         for group in &self.groups {
@@ -521,15 +523,19 @@ impl<R: Real> ContactElements<Planar<R>> {
                 let origin = remembered.origin(group.pair, *node);
                 let memory = origin.map_or_else(Stick::default, |o| single.sticks[o]);
                 stick.put(lane, &memory);
-                rate.put(lane, &origin.map_or(0.0, |o| single_slip_rates[o]));
+                rate.put(lane, &origin.map(|o| single_slip_rates[o]).unwrap_or_default());
             }
         }
     }
 
     /// Returns the stick history of the elements that touch in one lane. The returned list must be rebuilt before it is
     /// used with a single state.
-    pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
-        let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {
+    pub(crate) fn of_lane(
+        &self,
+        lane: usize,
+        touching: &[<S::Real as Real>::Mask],
+    ) -> ContactElements<S::Single> {
+        let stick = |(stick, touching): (&Stick<S>, &<S::Real as Real>::Mask)| {
             if touching.lane(lane) { stick.of_lane(lane) } else { Stick::default() }
         };
         let sticks = self.sticks.iter().zip(touching).map(stick).collect();

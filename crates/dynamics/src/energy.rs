@@ -210,7 +210,7 @@ impl<S: Space> EnergyLedger<S> {
 
 lanewise!(struct Works<R> { damped, friction, viscous, ground, applied });
 lanewise!(struct Stored<R> { kinetic, potential, elastic, stick });
-lanewise!(struct EnergyLedger<Planar<R>> {
+lanewise!(struct EnergyLedger<S> {
     initial, potential_start, stick_start, works, poses, losses, viscous, wrenches, memory, applied, springs, stored,
     flow, deepest
 });

@@ -331,7 +331,7 @@ pub fn gap_between(
                     if bound >= enough.min(least) {
                         least = least.min(bound);
                     } else {
-                        whole.meet(&placed.surface, place, relative, |patch| {
+                        whole.meet(&placed.surface, place, relative, true, |patch| {
                             least = least.min(patch.deepest.gap.distance);
                         });
                     }

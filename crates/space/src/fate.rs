@@ -5,9 +5,7 @@ use std::sync::Arc;
 use barrelstack::assemble::PartKind;
 use barrelstack::watch::{Loss, Thresholds};
 use barrelstack_dynamics::space::Wrench;
-use barrelstack_dynamics::{
-    BodyId, Linear as _, Pose, Rotation3, Scratch, Spatial, State, Vec3, math,
-};
+use barrelstack_dynamics::{BodyId, Linear as _, Pose, Rotation3, Spatial, State, Vec3, math};
 use serde::Serialize;
 
 use crate::stack::Stack;
@@ -186,11 +184,6 @@ impl Fates {
         for (turned, pose) in self.turned.iter_mut().zip(poses) {
             *turned = pose.orientation.matrix();
         }
-    }
-
-    /// Records an accepted state.
-    pub fn observe(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
-        self.observe_bodies(state.time, &state.poses, &scratch.wrenches);
     }
 
     /// Records the poses of all bodies and the forces on them at a time (s).

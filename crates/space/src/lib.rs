@@ -26,6 +26,7 @@ pub mod fate;
 mod free;
 pub mod ground;
 mod known;
+mod lanes;
 pub mod mesh;
 mod part;
 mod rack;

@@ -2,6 +2,7 @@
 
 use barrelstack::demand::Span;
 use barrelstack::watch::{Joint, Joints, leans_on};
+use barrelstack_dynamics::real::Real;
 use barrelstack_dynamics::{BodyId, Scratch, Spatial, Vec2, Vec3};
 
 use crate::stack::Stack;
@@ -65,7 +66,7 @@ impl Seats {
         }
         let forces = vec![Vec3::default(); joints.joints.len()];
         let mut seats = Self { joints, forces, presses: vec![Press::default(); count], pairs };
-        seats.observe(time, true, scratch);
+        seats.observe((0, time), true, scratch);
         for joint in &mut seats.joints.joints {
             joint.at_rest = joint.force.z;
         }
@@ -75,31 +76,37 @@ impl Seats {
         seats
     }
 
-    /// Records an accepted step at a time (s); `stands` is `true` if no seat was lost before this step.
-    pub fn observe(&mut self, time: f64, stands: bool, scratch: &Scratch<Spatial>) {
+    /// Records an accepted step of a lane at a time (s); `stands` is `true` if no seat was lost before this step.
+    pub fn observe<R: Real>(
+        &mut self,
+        (lane, time): (usize, f64),
+        stands: bool,
+        scratch: &Scratch<Spatial<R>>,
+    ) {
         if self.pairs.is_empty() {
             return;
         }
         self.forces.fill(Vec3::default());
-        for pair in &scratch.pair_forces {
-            let known = &mut self.pairs[pair.pair].joint;
-            *known = known.or_else(|| self.joints.meet(pair.contactor, pair.target));
+        for (pair, pressed) in scratch.touching_pairs(lane) {
+            let Pair { joint, first, .. } = &mut self.pairs[pair.pair];
+            *joint = joint.or_else(|| self.joints.meet(pair.contactor, pair.target));
             self.forces.resize(self.joints.joints.len(), Vec3::default());
-            if let Some((at, upper)) = *known {
-                self.forces[at] += if upper { pair.force } else { -pair.force };
+            if let Some((at, upper)) = *joint {
+                let force = pair.force.lane(lane);
+                self.forces[at] += if upper { force } else { -force };
+            }
+            for pressed in pressed {
+                let press = &mut self.presses[*first + pressed.node as usize];
+                let force = pressed.normal_force.lane(lane);
+                press.peak_whole_run = press.peak_whole_run.max(force);
+                if stands {
+                    press.peak = press.peak_whole_run;
+                }
             }
         }
         for (joint, force) in self.joints.joints.iter_mut().zip(&self.forces) {
             joint.force = Vec2::new((force.x * force.x + force.y * force.y).sqrt(), force.z);
             joint.raise(time, stands);
-        }
-        for pressed in &scratch.pressed {
-            let first = self.pairs[pressed.pair].first;
-            let press = &mut self.presses[first + pressed.node as usize];
-            press.peak_whole_run = press.peak_whole_run.max(pressed.normal_force);
-            if stands {
-                press.peak = press.peak_whole_run;
-            }
         }
     }
 

@@ -9,6 +9,8 @@ use barrelstack::scenario::Scenario;
 use barrelstack::step::restitution_warning;
 use barrelstack::watch::{ElementFates, Ending, ForceBetween, PROGRESS, after_collapse, leans_on};
 use barrelstack_dynamics::forces::{PairForce, centers_of_pressure};
+use barrelstack_dynamics::real::Real;
+use barrelstack_dynamics::space::Wrench;
 use barrelstack_dynamics::{
     Applied, ApplyError, BodyId, EnergySummary, Model, Pose, RunError, Scratch, Settled, Spatial,
     State, Stepper, Twist, Vec3,
@@ -52,19 +54,28 @@ pub struct Simulation {
 
 /// Everything that does not change during a simulation.
 #[derive(Clone, Debug)]
-struct Fixed {
-    scenario: Scenario,
-    ground: Ground,
-    stack: Arc<Stack>,
+pub(crate) struct Fixed {
+    pub(crate) scenario: Scenario,
+    pub(crate) ground: Ground,
+    pub(crate) stack: Arc<Stack>,
     settled: Option<Settled>,
-    settings: barrelstack_dynamics::Simulation,
+    pub(crate) settings: barrelstack_dynamics::Simulation,
     /// Numbers of evaluations and of tested contact elements before the run.
     before: (u64, u64),
 }
 
+/// A stack at rest and the observer of its run, before the ground moves.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    pub(crate) fixed: Arc<Fixed>,
+    pub(crate) state: State<Spatial>,
+    scratch: Scratch<Spatial>,
+    pub(crate) watch: Watch,
+}
+
 /// Combined observer of a run.
 #[derive(Clone, Debug)]
-struct Watch {
+pub(crate) struct Watch {
     fates: Fates,
     elements: ElementFates,
     seats: Seats,
@@ -74,22 +85,22 @@ struct Watch {
     every: f64,
     /// Duration (s) of the run after a collapse.
     after_collapse: f64,
-    ending: Option<Ending>,
+    pub(crate) ending: Option<Ending>,
 }
 
 /// Maximum number of steps between two calls of the observer. Steps of many bodies take long, so their number is limited
 /// as well as the simulated time.
 const PATIENCE: u32 = 16;
 
-impl Simulation {
-    /// Builds the stack of a scenario in space, settles it, and prepares its run on a given ground.
+impl Prepared {
+    /// Builds the stack of a scenario in space, settles it, and creates the observer of its run on a given ground.
     ///
     /// # Errors
-    /// If the stack cannot be built in space or does not stand, or the run would be too long or need too much memory.
-    pub fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
+    /// As [`Simulation::new`].
+    pub(crate) fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
         let stack = Stack::of(scenario)?;
         let end_time = affordable(scenario, &stack, &ground)?;
-        let Standing { stack, mut state, mut scratch, settled } = at_rest(scenario, stack)?;
+        let Standing { stack, state, scratch, settled } = at_rest(scenario, stack)?;
         let settings = barrelstack_dynamics::Simulation {
             method: method(scenario),
             time_step: stack.step,
@@ -97,7 +108,7 @@ impl Simulation {
         };
         let before = (scratch.evaluations, scratch.contact_evaluations);
         let stack = Arc::new(stack);
-        let mut watch = Watch {
+        let watch = Watch {
             fates: Fates::new(Arc::clone(&stack), &state, thresholds(scenario)),
             elements: ElementFates::default(),
             seats: Seats::new(&stack, state.time, &scratch),
@@ -107,12 +118,35 @@ impl Simulation {
             after_collapse: after_collapse(scenario),
             ending: None,
         };
-        let stepper = Stepper::start(&stack.model, &ground, &mut state, &mut scratch, &settings);
-        watch.observe(&stack.model, &state, &scratch);
-        watch.end(&state);
         let scenario = scenario.clone();
         let fixed = Arc::new(Fixed { scenario, ground, stack, settled, settings, before });
-        Ok(Self { fixed, state, scratch, stepper, watch, failure: None })
+        Ok(Self { fixed, state, scratch, watch })
+    }
+
+    /// Starts the run: the ground moves.
+    pub(crate) fn start(self) -> Simulation {
+        let Self { fixed, mut state, mut scratch, mut watch } = self;
+        let Fixed { ground, stack, settings, .. } = &*fixed;
+        let stepper = Stepper::start(&stack.model, ground, &mut state, &mut scratch, settings);
+        watch.observe(&stack.model, &state, &scratch);
+        watch.end(&state);
+        Simulation { fixed, state, scratch, stepper, watch, failure: None }
+    }
+
+    /// Returns `true` if the run can share its steps with other runs: the method has fixed steps, and the run cannot end
+    /// before its first step.
+    pub(crate) fn can_share_steps(&self) -> bool {
+        !self.fixed.settings.method.is_adaptive() && self.watch.after_collapse > 0.0
+    }
+}
+
+impl Simulation {
+    /// Builds the stack of a scenario in space, settles it, and prepares its run on a given ground.
+    ///
+    /// # Errors
+    /// If the stack cannot be built in space or does not stand, or the run would be too long or need too much memory.
+    pub fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
+        Ok(Prepared::new(scenario, ground)?.start())
     }
 
     /// Advances by up to `most` steps, less if the run ends before. Impacts divide a step into several.
@@ -182,49 +216,17 @@ impl Simulation {
     pub fn finish(self) -> Run {
         let ending = self.ending().unwrap_or(Ending::Interrupted);
         let Self { fixed, state, scratch, stepper, watch, failure } = self;
-        // Other simulations may share the stack.
-        let Fixed { scenario, ground, stack, settled, settings, before } =
-            Arc::unwrap_or_clone(fixed);
-        let Watch { fates, elements, seats, frames, .. } = watch;
         let ended = match failure {
             Some(error) => Err(error),
             None => Ok(Ended { energy: stepper.energy.summary(0), steps: stepper.steps }),
         };
-        let judge = || judge(&stack, &fates);
-        let Verdict { outcome, energy, steps, warnings: warned, ending } =
-            Verdict::of(ended, judge, state.time, ground.end(), ending);
-        let warnings = ground
-            .warnings
-            .iter()
-            .cloned()
-            .chain(warned)
-            .chain(restitution_warning(&scenario))
-            .collect();
-        let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
-        Run {
-            outcome,
-            heading: heading.map(|(.., heading)| heading),
-            first_fall: fates.first_fall(),
-            fates: fates.at_end(&state.poses),
-            elements: elements.0,
-            seats,
-            frames,
-            energy,
-            settled,
-            simulation: settings,
-            work: Work {
-                steps,
-                evaluations: scratch.evaluations - before.0,
-                contact_evaluations: scratch.contact_evaluations - before.1,
-            },
-            end_time: state.time,
-            ending,
-            warnings,
-            ground,
-            stack: Arc::unwrap_or_clone(stack),
-            last: state,
-            scenario,
-        }
+        let before = fixed.before;
+        let work = Work {
+            steps: stepper.steps,
+            evaluations: scratch.evaluations - before.0,
+            contact_evaluations: scratch.contact_evaluations - before.1,
+        };
+        watch.conclude(fixed, state, ended, work, ending)
     }
 
     /// Sets the force from outside on a body, in place of an earlier one; it acts until it is changed.
@@ -315,17 +317,13 @@ impl Simulation {
 
 impl Watch {
     /// Observes the initial state or an accepted step.
-    fn observe(
+    pub(crate) fn observe(
         &mut self,
         model: &Model<Spatial>,
         state: &State<Spatial>,
         scratch: &Scratch<Spatial>,
     ) {
-        // The state in which the first loss of seat is found still counts as standing.
-        let standing = self.fates.collapse().is_none();
-        self.fates.observe(state, scratch);
-        self.elements.observe(state, standing, scratch);
-        self.seats.observe(state.time, standing, scratch);
+        self.observe_lane(0, (state, &scratch.wrenches), state, scratch);
         if state.time >= self.frames.times.len() as f64 * self.every {
             self.frames.times.push(state.time);
             let pose = |pose: &Pose<Spatial>| {
@@ -349,8 +347,69 @@ impl Watch {
         }
     }
 
+    /// Observes an accepted step of one lane, without frames. `own` is the state of the lane, of which only time, poses
+    /// and twists are current, with the wrenches on its bodies.
+    pub(crate) fn observe_lane<R: Real>(
+        &mut self,
+        lane: usize,
+        (own, wrenches): (&State<Spatial>, &[Wrench<Spatial>]),
+        state: &State<Spatial<R>>,
+        scratch: &Scratch<Spatial<R>>,
+    ) {
+        // The state in which the first loss of seat is found still counts as standing.
+        let standing = self.fates.collapse().is_none();
+        self.fates.observe_bodies(own.time, &own.poses, wrenches);
+        self.elements.observe_lane(lane, state, standing, scratch);
+        self.seats.observe((lane, own.time), standing, scratch);
+    }
+
+    /// Returns the result of a run that ended in a state.
+    pub(crate) fn conclude(
+        self,
+        fixed: Arc<Fixed>,
+        state: State<Spatial>,
+        ended: Result<Ended, RunError>,
+        work: Work,
+        ending: Ending,
+    ) -> Run {
+        // Other simulations may share the stack.
+        let Fixed { scenario, ground, stack, settled, settings, .. } = Arc::unwrap_or_clone(fixed);
+        let Self { fates, elements, seats, frames, .. } = self;
+        let judge = || judge(&stack, &fates);
+        let Verdict { outcome, energy, steps, warnings: warned, ending } =
+            Verdict::of(ended, judge, state.time, ground.end(), ending);
+        let warnings = ground
+            .warnings
+            .iter()
+            .cloned()
+            .chain(warned)
+            .chain(restitution_warning(&scenario))
+            .collect();
+        let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
+        Run {
+            outcome,
+            heading: heading.map(|(.., heading)| heading),
+            first_fall: fates.first_fall(),
+            fates: fates.at_end(&state.poses),
+            elements: elements.0,
+            seats,
+            frames,
+            energy,
+            settled,
+            simulation: settings,
+            work: Work { steps, ..work },
+            end_time: state.time,
+            ending,
+            warnings,
+            ground,
+            stack: Arc::unwrap_or_clone(stack),
+            last: state,
+            scenario,
+        }
+    }
+
     /// Ends the run if one of its criteria is met in the state that was observed last.
-    fn end(&mut self, state: &State<Spatial>) {
+    pub(crate) fn end(&mut self, state: &State<Spatial>) {
         if self.ending.is_some() {
             return;
         }

@@ -1,6 +1,7 @@
 //! Variants of a stack in space. They are sampled and evaluated as in a plane, and the directions of falls are recorded
 //! in addition.
 
+use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -16,12 +17,14 @@ use barrelstack::variants::{
     Advance, Judged, Observer, Plane, Remedy, RunChoice, Spread, Trial, planes, remedy_by, verdict,
 };
 use barrelstack::watch::Ending;
-use barrelstack::{Progress, RunFailure, Scenario, pool};
+use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::Vec3;
 
 use crate::fate::Heading;
 use crate::ground::Ground;
+use crate::lanes;
 use crate::run::{Run, affordable, run_on};
+use crate::simulation::Prepared;
 use crate::stack::Stack;
 use crate::summary::{self, Summary};
 
@@ -90,6 +93,11 @@ impl Case {
             ..common
         };
         Self { result, first: run.heading, debris: run.debris().collect() }
+    }
+
+    /// Creates the result of a case that was not finished.
+    fn interrupted() -> Self {
+        Self { result: CaseResult::interrupted(), first: None, debris: Vec::new() }
     }
 
     /// Creates the result of a scenario that could not be run: a collapse if the stack falls under its own weight, and
@@ -210,38 +218,60 @@ pub fn run_each<T: Sync>(
             stopped.store(true, Ordering::Relaxed);
         }
     };
-    let work = |item: &T| {
-        let going = |()| {
-            report(done.load(Ordering::Relaxed));
-            let over = stopped.load(Ordering::Relaxed);
-            if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    let stop = || {
+        report(done.load(Ordering::Relaxed));
+        stopped.load(Ordering::Relaxed)
+    };
+    let work = |chunk: &&[T]| {
+        let mut cases: Vec<Case> = chunk.iter().map(|_| Case::interrupted()).collect();
+        let mut finished = |at: usize, case: Case| {
+            cases[at] = case;
+            report(done.fetch_add(1, Ordering::Relaxed) + 1);
         };
-        let interrupted =
-            || Case { result: CaseResult::interrupted(), first: None, debris: Vec::new() };
-        if going(()).is_break() {
-            return interrupted();
+        run_chunk(chunk, build, &mut finished, &stop);
+        cases
+    };
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let size = items.len().div_ceil(threads).clamp(1, BATCH);
+    let chunks: Vec<&[T]> = items.chunks(size).collect();
+    pool::map(&chunks, work, &|_| ()).concat()
+}
+
+/// Largest number of cases that a thread takes at once: enough to fill its lanes for most of the time.
+const BATCH: usize = 32;
+
+/// Runs cases on one core: those that can share their steps in lanes, and all others one after the other.
+fn run_chunk<T>(
+    items: &[T],
+    build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
+    finished: &mut dyn FnMut(usize, Case),
+    stop: &dyn Fn() -> bool,
+) {
+    let mut ready = Vec::new();
+    let mut stage = Stage::settling();
+    for (at, item) in items.iter().enumerate() {
+        if stop() {
+            return;
         }
         let (scenario, ground) = build(item);
-        let (mut share, mut stage) = (Share::default(), Stage::settling());
-        let mut advance = |progress: Progress| {
-            stage.shake(1);
+        match Prepared::new(&scenario, ground) {
+            Ok(prepared) => ready.push((at, prepared)),
+            Err(failure) => finished(at, Case::refused(&scenario, &failure)),
+        }
+    }
+    stage.shake(items.len());
+    for (at, prepared) in lanes::run(ready, finished, stop) {
+        let mut share = Share::default();
+        let run = prepared.start().run_watched(&mut |progress| {
             share.reached(progress.time / progress.end_time);
-            going(())
-        };
-        let case = match run_on(&scenario, ground, &mut advance) {
-            Ok(run) if run.ending == Ending::Interrupted => {
-                return interrupted();
-            }
-            Ok(run) => {
-                share.end(run.end_time / run.simulation.end_time);
-                Case::of(&run)
-            }
-            Err(failure) => Case::refused(&scenario, &failure),
-        };
-        report(done.fetch_add(1, Ordering::Relaxed) + 1);
-        case
-    };
-    pool::map(items, work, &|_| ())
+            if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        if run.ending == Ending::Interrupted {
+            return;
+        }
+        share.end(run.end_time / run.simulation.end_time);
+        finished(at, Case::of(&run));
+    }
 }
 
 /// A stack in space to which a change is applied as a possible remedy, and its variants.

@@ -137,24 +137,24 @@ pub struct Work {
 
 impl Work {
     /// Runs a case with counting numbers.
-    pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, D>) -> Self {
+    pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, Planar, D>) -> Self {
         let mut one = One { case: Some(case), touching: 0, steps: 0 };
-        let operations = Operations::of(|| run_batch::<Counting, _>(method, &mut one));
+        let operations = Operations::of(|| run_batch::<Planar<Counting>, _>(method, &mut one));
         Self { steps: one.steps, touching: one.touching, operations }
     }
 }
 
 /// A batch of one case that counts touching nodes.
 struct One<'a, D> {
-    case: Option<Case<'a, D>>,
+    case: Option<Case<'a, Planar, D>>,
     touching: u64,
     steps: u64,
 }
 
-impl<'a, D: Drive<Planar>> Batch<'a, Counting> for One<'a, D> {
+impl<'a, D: Drive<Planar>> Batch<'a, Planar<Counting>> for One<'a, D> {
     type Drive = D;
 
-    fn next(&mut self, _: usize) -> Option<Case<'a, D>> {
+    fn next(&mut self, _: usize) -> Option<Case<'a, Planar, D>> {
         self.case.take()
     }
     fn start(&mut self, _: usize, _: &State<Planar>, _: &Scratch<Planar>) {}

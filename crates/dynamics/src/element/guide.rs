@@ -46,7 +46,7 @@ pub struct Guide<S: Space> {
     pub free: S::Vector,
 }
 
-lanewise!(struct Guide<Planar<R>> {
+lanewise!(struct Guide<S> {
     link, axis, place, stiffness, damping, gap, stop_stiffness, stop_damping, strength, reach, free
 });
 

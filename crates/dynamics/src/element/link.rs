@@ -17,7 +17,7 @@ pub struct Link<S: Space> {
     pub points: [S::Vector; 2],
 }
 
-lanewise!(struct Link<Planar<R>> { name, bodies, points });
+lanewise!(struct Link<S> { name, bodies, points });
 
 /// Geometry of a link at a state.
 pub(super) struct Line<S: Space> {

@@ -29,7 +29,7 @@ pub struct Memory<S: Space> {
     pub broken: <S::Real as Real>::Mask,
 }
 
-lanewise!(struct Memory<Planar<R>> { plastic } masks { broken });
+lanewise!(struct Memory<S> { plastic } masks { broken });
 
 /// Force and energy of an element at a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,6 +45,8 @@ pub struct Load<R: Real> {
     /// `true` if the element fails at this state.
     pub breaks: R::Mask,
 }
+
+lanewise!(struct Load<R> { force, energy, elastic, plastic } masks { breaks });
 
 /// Load and wrenches of an element at a state.
 pub(crate) struct Action<S: Space> {
@@ -68,7 +70,7 @@ macro_rules! kinds {
             }
         })*
 
-        lanewise!(enum Element<Planar<R>> { $($kind(element)),* });
+        lanewise!(enum Element<S> { $($kind(element)),* });
 
         impl<S: Space> Element<S> {
             /// Returns the name of the element and the points that it joins.

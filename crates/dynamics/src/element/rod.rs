@@ -25,7 +25,7 @@ pub struct Rod<S: Space> {
     pub sway_damping: S::Real,
 }
 
-lanewise!(struct Rod<Planar<R>> { link, length, stiffness, damping, sway_damping });
+lanewise!(struct Rod<S> { link, length, stiffness, damping, sway_damping });
 
 impl<S: Space> Rod<S> {
     pub(super) fn stiffness(&self) -> S::Real {

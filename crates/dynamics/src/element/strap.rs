@@ -28,7 +28,7 @@ pub struct Strap<S: Space> {
     pub strength: S::Real,
 }
 
-lanewise!(struct Strap<Planar<R>> { link, length, stiffness, damping, yields_at, strength });
+lanewise!(struct Strap<S> { link, length, stiffness, damping, yields_at, strength });
 
 impl<S: Space> Strap<S> {
     pub(super) fn stiffness(&self) -> S::Real {

@@ -162,6 +162,18 @@ pub struct Pressed<S: Space> {
     pub weight: S::Real,
 }
 
+impl<S: Space> Pressed<S> {
+    /// Replaces the values in some lanes by those of another entry of the same element.
+    #[inline(always)]
+    fn merge(&mut self, lanes: <S::Real as Real>::Mask, other: &Self) {
+        self.touching = (self.touching & !lanes) | (other.touching & lanes);
+        self.point = S::choose_vector(lanes, other.point, self.point);
+        self.tangent_plane = S::choose_plane(lanes, other.tangent_plane, self.tangent_plane);
+        self.normal_force = S::Real::select(lanes, other.normal_force, self.normal_force);
+        self.weight = S::Real::select(lanes, other.weight, self.weight);
+    }
+}
+
 impl<S: Space> Scratch<S> {
     /// Allocates the working memory for a model.
     pub fn new(model: &Model<S>) -> Self {
@@ -197,6 +209,17 @@ impl<S: Space> Scratch<S> {
     /// Returns the number of elements that touch in at least one lane.
     pub fn touching(&self) -> usize {
         self.pressed.len()
+    }
+
+    /// Returns the forces of the pairs that touch in one lane, each with its touching elements: those of a single run.
+    pub fn touching_pairs(
+        &self,
+        lane: usize,
+    ) -> impl Iterator<Item = (&PairForce<S>, &[Pressed<S>])> {
+        // Both lists are in the order of the groups of elements.
+        let mut pressed = self.pressed.chunk_by(|a, b| a.pair == b.pair);
+        let own = self.pair_forces.iter().filter_map(move |pair| Some((pair, pressed.next()?)));
+        own.filter(move |(_, pressed)| pressed.iter().any(|one| one.touching.lane(lane)))
     }
 
     /// Renumbers the elements for a new list; `origins` contains, for every element of the new list, its index in the
@@ -270,15 +293,23 @@ fn wipe<T: Default>(all: &mut [T]) {
 #[inline(always)]
 fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut Vec<usize>) {
     awake.clear();
-    for (number, group) in elements.groups.iter().enumerate() {
-        let impacts = model.substepping.whole_step_depth[group.interface];
-        let foreseen = impacts.lt(S::Real::splat(f64::INFINITY)).any();
-        if !elements
-            .sleeps(number, if foreseen { model.substepping.foreseen_gap } else { S::Real::zero() })
-        {
-            awake.push(number);
+    for group in 0..elements.groups.len() {
+        if !asleep(model, elements, group).all() {
+            awake.push(group);
         }
     }
+}
+
+/// Returns the lanes in which a group of elements cannot touch in the current step, and its impacts need no prediction.
+#[inline(always)]
+fn asleep<S: Space>(
+    model: &Model<S>,
+    elements: &ContactElements<S>,
+    group: usize,
+) -> <S::Real as Real>::Mask {
+    let impacts = model.substepping.whole_step_depth[elements.groups[group].interface];
+    let foreseen = impacts.lt(S::Real::splat(f64::INFINITY)).any();
+    elements.asleep(group, if foreseen { model.substepping.foreseen_gap } else { S::Real::zero() })
 }
 
 /// Adds the forces of the force elements, and the forces from outside the model.

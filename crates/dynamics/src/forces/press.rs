@@ -15,7 +15,7 @@ use crate::shape::{Facing, Gap, Surface, Whole};
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-use super::{Contact, ContactTotals, PairForce, Pressed, Scratch};
+use super::{Contact, ContactTotals, PairForce, Pressed, Scratch, asleep};
 
 use meeting::Meeting;
 pub(super) use meeting::PairKinematics;
@@ -33,6 +33,7 @@ pub(super) fn touch<S: Space>(
     group: usize,
     scratch: &mut Scratch<S>,
 ) {
+    let near = !asleep(model, &state.contact_elements, group);
     let group = &state.contact_elements.groups[group];
     let pair = model.pair(group.pair);
     scratch.contact_evaluations += (group.end - group.first) as u64;
@@ -62,7 +63,7 @@ pub(super) fn touch<S: Space>(
                 model,
                 state,
                 step,
-                group,
+                (group, near),
                 scratch,
             );
         }
@@ -73,7 +74,7 @@ pub(super) fn touch<S: Space>(
             model,
             state,
             step,
-            group,
+            (group, near),
             scratch,
         ),
     }
@@ -94,7 +95,7 @@ fn touch_by<S: Space>(
     model: &Model<S>,
     state: &State<S>,
     step: S::Real,
-    group: &Group,
+    (group, near): (&Group, <S::Real as Real>::Mask),
     scratch: &mut Scratch<S>,
 ) {
     let own;
@@ -120,6 +121,7 @@ fn touch_by<S: Space>(
             .lt(S::Real::splat(f64::INFINITY))
             .any()
             .then_some(whole_step_depth),
+        near,
         resting_allowance: model.substepping.resting_allowance,
         foreseen_gap: model.substepping.foreseen_gap,
         fast: model.substepping.fast,
@@ -182,6 +184,8 @@ struct Press<'a, S: Space, L> {
     /// Copy of [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) for the interface; `None`
     /// if it is infinite.
     whole_step_depth: Option<S::Real>,
+    /// The lanes in which the bodies may touch in this step.
+    near: <S::Real as Real>::Mask,
     /// Copy of [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
     resting_allowance: S::Real,
     /// Copy of [`Substepping::foreseen_gap`](crate::model::Substepping::foreseen_gap).
@@ -288,13 +292,16 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             }
             Nodes::Whole(whole) => {
                 let frame = self.frame;
-                if let Some(points) = whole.points(surface, frame.contactor, frame.relative) {
+                if let Some(points) =
+                    whole.points(surface, frame.contactor, frame.relative, self.near)
+                {
                     self.points(group.first, &points);
                 } else {
                     whole.meet(
                         surface,
                         frame.contactor,
                         frame.relative,
+                        self.near,
                         #[inline(always)]
                         |patch| self.patch(group.first + patch.first, &patch),
                     );

@@ -7,17 +7,20 @@ use crate::integrate::{Drive, Integrator, Method};
 use crate::model::Model;
 use crate::real::{Mask, Real};
 use crate::simulate::{Finish, RunError, StepTimes, lost_body};
-use crate::space::{Planar, Twist, Vec2};
+use crate::space::{Space, Twist};
 use crate::state::State;
 
-use super::{Lanewise, MOST_LANES};
+use super::Lanewise;
+
+/// The lanes of a space.
+type MaskOf<S> = <<S as Space>::Real as Real>::Mask;
 
 /// A case that is ready to run: model, initial state, ground motion, time step and end time.
-pub struct Case<'a, D> {
+pub struct Case<'a, S: Space, D> {
     /// The model.
-    pub model: &'a Model<Planar>,
+    pub model: &'a Model<S>,
     /// Initial state.
-    pub state: State<Planar>,
+    pub state: State<S>,
     /// Ground motion.
     pub drive: D,
     /// Time step (s).
@@ -40,21 +43,21 @@ pub struct End {
 }
 
 /// Case source and result sink for a lockstep batch.
-pub trait Batch<'a, R: Real> {
+pub trait Batch<'a, S: Space> {
     /// Ground motion of a case.
-    type Drive: Drive<Planar>;
+    type Drive: Drive<S::Single>;
 
     /// Returns the next case for a lane; all cases of a batch must have the same [`Topology`](super::Topology).
-    fn next(&mut self, lane: usize) -> Option<Case<'a, Self::Drive>>;
+    fn next(&mut self, lane: usize) -> Option<Case<'a, S::Single, Self::Drive>>;
 
     /// Called with the initial state of a case, after its prescribed bodies have been moved with the ground, and with
     /// the forces of this state.
-    fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>);
+    fn start(&mut self, lane: usize, state: &State<S::Single>, scratch: &Scratch<S::Single>);
 
     /// Called after each accepted step of all lanes; returns the lanes to stop.
     ///
     /// Lanes without a case are included; their state is constant.
-    fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask;
+    fn observe(&mut self, state: &State<S>, scratch: &Scratch<S>) -> MaskOf<S>;
 
     /// Called when a case has ended.
     fn end(&mut self, lane: usize, end: End);
@@ -65,23 +68,23 @@ pub trait Batch<'a, R: Real> {
 /// A lane gets the next case as soon as its current case has ended. Every case takes the same steps, with bit-identical
 /// results, as a single run by [`simulate`](crate::simulate()): the lanes share only the order of the computations and
 /// the list of contact elements, which affects only the speed. Only methods with a fixed step are supported.
-pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
+pub fn run_batch<'a, S: Space, C: Batch<'a, S>>(method: Method, batch: &mut C) {
     let Some(first) = batch.next(0) else { return };
-    let mut lanes = Lanes::<R, C::Drive>::of(&first);
+    let mut lanes = Lanes::<S, C::Drive>::of(&first);
     lanes.load(0, first, batch);
-    for lane in 1..R::LANES {
+    for lane in 1..S::Real::LANES {
         if let Some(case) = batch.next(lane) {
             lanes.load(lane, case, batch);
         }
     }
     let mut integrator = Integrator::new(method);
     while lanes.busy.any() {
-        let ended = R::scope(
+        let ended = S::Real::scope(
             #[inline(always)]
             || lanes.step(&mut integrator, batch),
         );
         if ended.any() {
-            for lane in (0..R::LANES).filter(|lane| ended.lane(*lane)) {
+            for lane in (0..S::Real::LANES).filter(|lane| ended.lane(*lane)) {
                 batch.end(lane, lanes.end(lane));
                 match batch.next(lane) {
                     Some(case) => lanes.load(lane, case, batch),
@@ -93,51 +96,42 @@ pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
 }
 
 /// The running cases.
-struct Lanes<R: Real, D> {
-    model: Model<Planar<R>>,
-    state: State<Planar<R>>,
-    scratch: Scratch<Planar<R>>,
-    energy: EnergyLedger<Planar<R>>,
+struct Lanes<S: Space, D> {
+    model: Model<S>,
+    state: State<S>,
+    scratch: Scratch<S>,
+    energy: EnergyLedger<S>,
     drives: Drives<D>,
     /// The lanes with a case.
-    busy: R::Mask,
+    busy: MaskOf<S>,
     /// The lanes that the batch stopped in the last step.
-    stopped: R::Mask,
-    start: R,
-    steps: R,
-    times: StepTimes<R>,
-    time_step: R,
-    end_time: R,
+    stopped: MaskOf<S>,
+    start: S::Real,
+    steps: S::Real,
+    times: StepTimes<S::Real>,
+    time_step: S::Real,
+    end_time: S::Real,
 }
 
 /// Ground motion of every lane; the ground is at rest in a lane without a case.
 struct Drives<D>(Vec<Option<D>>);
 
-impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
-    fn at(&self, time: R) -> (Vec2<R>, Vec2<R>) {
-        let mut moved = [(Vec2::default(), Vec2::default()); MOST_LANES];
+impl<S: Space, D: Drive<S::Single>> Drive<S> for Drives<D> {
+    fn at(&self, time: S::Real) -> (S::Vector, S::Vector) {
+        let mut moved = (S::Vector::default(), S::Vector::default());
         for (lane, drive) in self.0.iter().enumerate() {
             if let Some(drive) = drive {
-                moved[lane] = drive.at(time.lane(lane));
+                moved.put(lane, &drive.at(time.lane(lane)));
             }
         }
-        let gather = |pick: fn(&(Vec2, Vec2)) -> f64| {
-            R::from_lanes(
-                #[inline(always)]
-                |lane| pick(&moved[lane]),
-            )
-        };
-        (
-            Vec2::new(gather(|m| m.0.x), gather(|m| m.0.z)),
-            Vec2::new(gather(|m| m.1.x), gather(|m| m.1.z)),
-        )
+        moved
     }
 }
 
-impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
+impl<S: Space, D: Drive<S::Single>> Lanes<S, D> {
     /// Creates lanes that all contain the state of one case; none of the lanes is busy.
-    fn of(case: &Case<'_, D>) -> Self {
-        let model = Model::<Planar<R>>::in_all(case.model);
+    fn of(case: &Case<'_, S::Single, D>) -> Self {
+        let model = Model::<S>::in_all(case.model);
         let mut state = State::initial(&model);
         state.poses = Lanewise::in_all(&case.state.poses);
         state.contact_elements.rebuild(&model, &state.poses, &state.twists);
@@ -145,20 +139,20 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         scratch.keeps_contacts = false;
         crate::forces::evaluate(&model, &state, &mut scratch);
         let energy = EnergyLedger::new(&model, &state, &scratch);
-        let time_step = R::splat(case.time_step);
+        let time_step = S::Real::splat(case.time_step);
         Self {
             times: StepTimes::new(&model, time_step),
             model,
             state,
             scratch,
             energy,
-            drives: Drives((0..R::LANES).map(|_| None).collect()),
-            busy: R::Mask::default(),
-            stopped: R::Mask::default(),
-            start: R::zero(),
-            steps: R::zero(),
+            drives: Drives((0..S::Real::LANES).map(|_| None).collect()),
+            busy: MaskOf::<S>::default(),
+            stopped: MaskOf::<S>::default(),
+            start: S::Real::zero(),
+            steps: S::Real::zero(),
             time_step,
-            end_time: R::splat(case.end_time),
+            end_time: S::Real::splat(case.end_time),
         }
     }
 
@@ -166,8 +160,8 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
     fn load<'a>(
         &mut self,
         lane: usize,
-        case: Case<'a, D>,
-        batch: &mut impl Batch<'a, R, Drive = D>,
+        case: Case<'a, S::Single, D>,
+        batch: &mut impl Batch<'a, S, Drive = D>,
     ) {
         let Case { model, mut state, drive, time_step, end_time } = case;
         let mut scratch = Scratch::new(model);
@@ -182,15 +176,15 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.times.put(lane, &times);
         self.time_step.put(lane, &time_step);
         self.end_time.put(lane, &end_time);
-        self.busy = R::Mask::from_lanes(|l| l == lane || self.busy.lane(l));
+        self.busy = MaskOf::<S>::from_lanes(|l| l == lane || self.busy.lane(l));
     }
 
     /// Freezes a lane in the state of a running lane, so that the frozen lane needs no additional contact elements.
     fn retire(&mut self, lane: usize) {
-        self.busy = R::Mask::from_lanes(|l| l != lane && self.busy.lane(l));
+        self.busy = MaskOf::<S>::from_lanes(|l| l != lane && self.busy.lane(l));
         self.drives.0[lane] = None;
         self.time_step.put(lane, &0.0);
-        let Some(other) = (0..R::LANES).find(|l| self.busy.lane(*l)) else { return };
+        let Some(other) = (0..S::Real::LANES).find(|l| self.busy.lane(*l)) else { return };
         let poses = self.state.poses.of_lane(other);
         self.state.poses.put(lane, &poses);
         for twist in &mut self.state.twists {
@@ -203,16 +197,16 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
             acceleration.put(lane, &Twist::default());
         }
         for rate in &mut self.scratch.slip_rates {
-            rate.put(lane, &0.0);
+            rate.put(lane, &Default::default());
         }
     }
 
     fn put(
         &mut self,
         lane: usize,
-        model: &Model<Planar>,
-        state: &State<Planar>,
-        scratch: &Scratch<Planar>,
+        model: &Model<S::Single>,
+        state: &State<S::Single>,
+        scratch: &Scratch<S::Single>,
     ) {
         self.model.put(lane, model);
         self.state.time.put(lane, &state.time);
@@ -222,7 +216,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.scratch.accelerations.put(lane, &scratch.accelerations);
         self.scratch.lookahead.put(lane, &scratch.lookahead);
         let needs_substeps = self.scratch.needs_substeps;
-        self.scratch.needs_substeps = R::Mask::from_lanes(|l| {
+        self.scratch.needs_substeps = MaskOf::<S>::from_lanes(|l| {
             if l == lane { scratch.needs_substeps } else { needs_substeps.lane(l) }
         });
         let origins =
@@ -242,18 +236,18 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
     #[inline(always)]
     fn step<'a>(
         &mut self,
-        integrator: &mut Integrator<Planar<R>>,
-        batch: &mut impl Batch<'a, R, Drive = D>,
-    ) -> R::Mask {
+        integrator: &mut Integrator<S>,
+        batch: &mut impl Batch<'a, S, Drive = D>,
+    ) -> MaskOf<S> {
         // As in `simulate`, times are whole multiples of the step, and the last step is shortened.
-        let sliver = R::splat(1e-9) * self.time_step;
+        let sliver = S::Real::splat(1e-9) * self.time_step;
         let target =
             self.start + self.times.next(self.scratch.needs_substeps, self.scratch.is_hard);
         let early = target.lt(self.end_time - sliver);
-        let until = R::select(early, target, self.end_time);
-        let until = R::select(self.busy, until, self.state.time);
+        let until = S::Real::select(early, target, self.end_time);
+        let until = S::Real::select(self.busy, until, self.state.time);
         integrator.step(&self.model, &self.drives, &mut self.state, &mut self.scratch, until);
-        self.steps += R::splat(1.0);
+        self.steps += S::Real::splat(1.0);
         self.energy.enter(&self.model, &self.state, &self.scratch);
         self.stopped = batch.observe(&self.state, &self.scratch);
         let on = self.state.time.lt(self.end_time - sliver) & self.energy.finite();

@@ -6,7 +6,8 @@ use crate::forces::Losses;
 use crate::model::{Fast, Model, Substepping};
 use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, NoWhole, Shape};
-use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
+use crate::solid::{Ball, Barrel, Block, Capsule, Dish, Hull, Rounded, Solid};
+use crate::space::{Pose, Quaternion, Rotation2, Rotation3, Space, Twist, Vec2, Vec3, Wrench};
 
 /// A value made of bundles; each of its lanes is a value of the corresponding type made of scalars.
 ///
@@ -141,23 +142,23 @@ impl<T: Clone> Lanewise for PerLane<T> {
 
 /// Implements [`Lanewise`] from the names of the fields of a type:
 ///
-/// - `struct Name<R> { a, b }` and `struct Name<Planar<R>> { a, b }` for structs; all fields are lanewise, except those
-///   after `masks`, which are truth values;
+/// - `struct Name<R> { a, b }` for structs over a scalar and `struct Name<S> { a, b }` for structs over a space; all
+///   fields are lanewise, except those after `masks`, which are truth values;
 /// - `enum Name<R> { One { a, b }, Two(a), Three }` for enums; the variant is part of the topology;
 /// - `same Name, Other;` for types that are equal in all lanes.
 #[macro_export]
 macro_rules! lanewise {
     (struct $name:ident<R> $($rest:tt)*) => {
-        $crate::lanewise!(@fields $name, ($name<R>), ($name<f64>), $($rest)*);
+        $crate::lanewise!(@fields (R: $crate::real::Real) $name, ($name<R>), ($name<f64>), $($rest)*);
     };
-    (struct $name:ident<Planar<R>> $($rest:tt)*) => {
-        $crate::lanewise!(@fields $name, ($name<$crate::Planar<R>>), ($name<$crate::Planar>), $($rest)*);
+    (struct $name:ident<S> $($rest:tt)*) => {
+        $crate::lanewise!(@fields (S: $crate::Space) $name, ($name<S>), ($name<S::Single>), $($rest)*);
     };
     (enum $name:ident<R> $($rest:tt)*) => {
-        $crate::lanewise!(@variants $name, ($name<R>), ($name<f64>), $($rest)*);
+        $crate::lanewise!(@variants (R: $crate::real::Real) $name, ($name<R>), ($name<f64>), $($rest)*);
     };
-    (enum $name:ident<Planar<R>> $($rest:tt)*) => {
-        $crate::lanewise!(@variants $name, ($name<$crate::Planar<R>>), ($name<$crate::Planar>), $($rest)*);
+    (enum $name:ident<S> $($rest:tt)*) => {
+        $crate::lanewise!(@variants (S: $crate::Space) $name, ($name<S>), ($name<S::Single>), $($rest)*);
     };
     (same $($name:ty),*) => {$(
         impl $crate::lanes::Lanewise for $name {
@@ -172,10 +173,10 @@ macro_rules! lanewise {
         }
     )*};
     (
-        @fields $name:ident, ($bundle:ty), ($single:ty),
+        @fields ($param:ident: $bound:path) $name:ident, ($bundle:ty), ($single:ty),
         { $($field:ident),* $(,)? } $(masks { $($mask:ident),* })?
     ) => {
-        impl<R: $crate::real::Real> $crate::lanes::Lanewise for $bundle {
+        impl<$param: $bound> $crate::lanes::Lanewise for $bundle {
             type Single = $single;
             fn in_all(single: &Self::Single) -> Self {
                 $name {
@@ -196,11 +197,11 @@ macro_rules! lanewise {
         }
     };
     (
-        @variants $name:ident, ($bundle:ty), ($single:ty),
+        @variants ($param:ident: $bound:path) $name:ident, ($bundle:ty), ($single:ty),
         { $($variant:ident $({ $($field:ident),* })? $(($inner:ident))?),* $(,)? }
     ) => {
         #[allow(unreachable_code, reason = "a variant may have an empty type in the plane")]
-        impl<R: $crate::real::Real> $crate::lanes::Lanewise for $bundle {
+        impl<$param: $bound> $crate::lanes::Lanewise for $bundle {
             type Single = $single;
             fn in_all(single: &Self::Single) -> Self {
                 match single {
@@ -251,14 +252,17 @@ lanewise!(same(), bool, usize, String, Motion, Basis, Exponent, HalfPlane, NoWho
 
 lanewise!(struct Vec2<R> { x, z });
 lanewise!(struct Rotation2<R> { cos, sin });
-lanewise!(struct Pose<Planar<R>> { position, orientation });
-lanewise!(struct Twist<Planar<R>> { linear, angular });
-lanewise!(struct Wrench<Planar<R>> { force, moment });
-lanewise!(struct Losses<Planar<R>> { damped, friction });
-lanewise!(struct Node<Planar<R>> { position, tributary_length, outward });
-lanewise!(struct Face<Planar<R>> { point, outward, widest });
-lanewise!(struct Placed<Planar<R>> { surface, offset, rotation });
-lanewise!(struct Round<Planar<R>> {
+lanewise!(struct Vec3<R> { x, y, z });
+lanewise!(struct Rotation3<R> { rows });
+lanewise!(struct Quaternion<R> { w, v });
+lanewise!(struct Pose<S> { position, orientation });
+lanewise!(struct Twist<S> { linear, angular });
+lanewise!(struct Wrench<S> { force, moment });
+lanewise!(struct Losses<S> { damped, friction });
+lanewise!(struct Node<S> { position, tributary_length, outward });
+lanewise!(struct Face<S> { point, outward, widest });
+lanewise!(struct Placed<S> { surface, offset, rotation });
+lanewise!(struct Round<S> {
     center, radius, limits, arc_limits, sides, takes_limit, greatest_depth, tributary_length
 });
 lanewise!(struct Circle<R> { radius });
@@ -275,7 +279,30 @@ lanewise!(
         BarrelProfile(profile),
     }
 );
-lanewise!(enum Nodes<Planar<R>> {
+lanewise!(struct Ball<R> { radius });
+lanewise!(struct Dish<R> { radius });
+lanewise!(struct Capsule<R> { half_length, radius });
+lanewise!(struct Barrel<R> { half_length, head_radius, stave_radius, stave_offset, rounding });
+lanewise!(struct Block<R> { half, rounding });
+lanewise!(
+    enum Solid<R> {
+        HalfSpace,
+        Ball(ball),
+        Capsule(capsule),
+        Barrel(barrel),
+        Block(block),
+        Dish(dish),
+    }
+);
+lanewise!(
+    enum Hull<R> {
+        Capsule(capsule),
+        Barrel(barrel),
+        Block(block),
+    }
+);
+lanewise!(struct Rounded<R> { hull, center, rotation, tributary_length });
+lanewise!(enum Nodes<S> {
     Fixed(nodes), Rounds(rounds), Rolling { center, radius, tributary_length }, Whole(none)
 });
 lanewise!(enum FrictionLaw<R> {
@@ -290,21 +317,21 @@ lanewise!(enum NormalLaw<R> {
     Hertz { stiffness },
     Rebound { stiffness, restitution, speed }
 });
-lanewise!(struct Stick<Planar<R>> { displacement, tangent_plane } masks { slipping });
+lanewise!(struct Stick<S> { displacement, tangent_plane } masks { slipping });
 lanewise!(struct Stop<R> { depth, law });
 lanewise!(struct Rolling<R> { lever, spin });
-lanewise!(struct Interface<Planar<R>> { name, normal, stop, rolling, friction, basis });
-lanewise!(struct Body<Planar<R>> {
+lanewise!(struct Interface<S> { name, normal, stop, rolling, friction, basis });
+lanewise!(struct Body<S> {
     name, motion, mass, inertia, damping, pose, twist, surfaces, nodes, faces
 });
 
-lanewise!(struct Inert<Planar<R>> { motion, damped, mass, inertia });
+lanewise!(struct Inert<S> { motion, damped, mass, inertia });
 lanewise!(struct Substepping<R> { substeps, whole_step_depth, resting_allowance, foreseen_gap, fast });
 lanewise!(struct Fast<R> { whole_step_way, hard });
 
-impl<R: Real> Model<Planar<R>> {
+impl<S: Space> Model<S> {
     /// Returns the model of one case in every lane.
-    pub(crate) fn in_all(single: &Model<Planar>) -> Self {
+    pub(crate) fn in_all(single: &Model<S::Single>) -> Self {
         Self {
             bodies: Lanewise::in_all(&single.bodies),
             inert: Lanewise::in_all(&single.inert),
@@ -319,7 +346,7 @@ impl<R: Real> Model<Planar<R>> {
     }
 
     /// Sets the model of one lane.
-    pub(crate) fn put(&mut self, lane: usize, single: &Model<Planar>) {
+    pub(crate) fn put(&mut self, lane: usize, single: &Model<S::Single>) {
         self.bodies.put(lane, &single.bodies);
         self.inert.put(lane, &single.inert);
         self.interfaces.put(lane, &single.interfaces);

@@ -22,6 +22,7 @@ pub use batch::{Batch, Case, End, run_batch};
 pub use lanewise::{ALIKE, put_truth};
 pub use lanewise::{Lanewise, PerLane};
 pub use topology::Topology;
+pub(crate) use topology::kind;
 
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;

@@ -114,6 +114,11 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     /// Returns signed distance and outward normal at a point (m).
     fn gap(&self, point: S::Vector) -> Gap<S>;
 
+    /// Returns the number of straight sides of a polygon; zero for all other shapes.
+    fn side_count(&self) -> usize {
+        0
+    }
+
     /// Returns the gap and the nearest piece of the boundary.
     ///
     /// A straight side is extended at both ends by `slack` (m). Where the corners of two bodies coincide, the sign of
@@ -200,6 +205,13 @@ pub enum Shape<R = f64> {
 }
 
 impl<R: Real> Surface<Planar<R>> for Shape<R> {
+    fn side_count(&self) -> usize {
+        match self {
+            Self::Polygon(polygon) => polygon.side_count(),
+            Self::Circle(_) | Self::HalfPlane(_) | Self::Cradle(_) | Self::BarrelProfile(_) => 0,
+        }
+    }
+
     #[inline(always)]
     fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         match self {

@@ -85,6 +85,11 @@ pub enum PolygonError {
 }
 
 impl<R: Real> Polygon<R> {
+    /// Returns the number of sides.
+    pub(crate) fn side_count(&self) -> usize {
+        self.sides.len()
+    }
+
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec2<R>) -> Gap<Planar<R>> {
         self.nearest(point, R::zero()).gap
@@ -188,11 +193,6 @@ lanewise!(struct Polygon<R> { sides, corner_radius });
 lanewise!(struct Side<R> { start, middle, along, outward, half_length });
 
 impl Polygon {
-    /// Returns the number of sides.
-    pub(crate) fn side_count(&self) -> usize {
-        self.sides.len()
-    }
-
     /// Creates a convex polygon from the positions (m) of its corners before rounding, in counterclockwise order, and a
     /// corner radius (m).
     ///

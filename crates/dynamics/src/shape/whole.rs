@@ -10,12 +10,13 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
     /// without contact may be included; their distance is positive.
     ///
     /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to the
-    /// frame of the surface.
+    /// frame of the surface. In lanes other than `near`, the patches may be without contact whatever the distance is.
     fn meet(
         &self,
         surface: &S::Surface,
         position: S::Vector,
         rotation: S::Rotation,
+        near: <S::Real as Real>::Mask,
         visit: impl FnMut(Patch<S>),
     );
 
@@ -27,9 +28,13 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         _surface: &S::Surface,
         _position: S::Vector,
         _rotation: S::Rotation,
+        _near: <S::Real as Real>::Mask,
     ) -> Option<Points<S>> {
         None
     }
+
+    /// Returns a number that is equal for solids of one kind.
+    fn kind(&self) -> u64;
 
     /// Returns the maximum number of sticks that the solid needs for one surface.
     fn most_sticks(&self) -> usize;
@@ -128,7 +133,7 @@ pub struct Spread<S: Space> {
 /// Derivatives of the quantities of a patch with respect to the motion of the contactor relative to the target: with
 /// respect to its displacement (1/m), stored in [`Wrench::force`], and with respect to its rotation about its center of
 /// mass (1/rad), stored in [`Wrench::moment`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<S: Space> {
     /// Derivative of δ₀ (m), without the part that is due to the motion of the two bodies at the middle of the patch.
     pub middle: Wrench<S>,
@@ -136,6 +141,14 @@ pub struct Slopes<S: Space> {
     pub deepest: Wrench<S>,
     /// Derivative of `b`.
     pub others: Wrench<S>,
+}
+
+impl<S: Space> Default for Slopes<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        let none = Wrench::default();
+        Self { middle: none, deepest: none, others: none }
+    }
 }
 
 /// Weights of the parts of a patch, each between 0 and 1.
@@ -185,7 +198,17 @@ pub enum NoWhole {}
 
 impl<R: Real> Whole<Planar<R>> for NoWhole {
     #[inline(always)]
-    fn meet(&self, _: &Shape<R>, _: Vec2<R>, _: Rotation2<R>, _: impl FnMut(Patch<Planar<R>>)) {
+    fn meet(
+        &self,
+        _: &Shape<R>,
+        _: Vec2<R>,
+        _: Rotation2<R>,
+        _: R::Mask,
+        _: impl FnMut(Patch<Planar<R>>),
+    ) {
+        match *self {}
+    }
+    fn kind(&self) -> u64 {
         match *self {}
     }
     fn most_sticks(&self) -> usize {

@@ -145,6 +145,7 @@ impl<R: Real> Barrel<R> {
     }
 
     /// Returns the barrel in one lane.
+    #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> Barrel {
         Barrel {
             half_length: self.half_length.lane(lane),
@@ -156,18 +157,18 @@ impl<R: Real> Barrel<R> {
     }
 }
 
-impl Barrel {
+impl<R: Real> Barrel<R> {
     /// Returns the first three derivatives, in the direction `along` (m), of half the squared distance from the center
     /// of the stave's arc: `½ (x² + (r + a)²)` at a point (m) at the distance `r` from the axis.
     #[inline(always)]
-    pub(super) fn derivatives(&self, point: Vec3, along: Vec3) -> [f64; 3] {
-        let inverse = 1.0 / (point.y * point.y + point.z * point.z).sqrt();
+    pub(super) fn derivatives(&self, point: Vec3<R>, along: Vec3<R>) -> [R; 3] {
+        let inverse = R::splat(1.0) / (point.y * point.y + point.z * point.z).sqrt();
         let (across, square) =
             (point.y * along.y + point.z * along.z, along.y * along.y + along.z * along.z);
         // Derivatives of r.
         let first = across * inverse;
         let second = (square - first * first) * inverse;
-        let third = -3.0 * first * second * inverse;
+        let third = R::splat(-3.0) * first * second * inverse;
         let offset = self.stave_offset;
         [
             point.x * along.x + across + offset * first,

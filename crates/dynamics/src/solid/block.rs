@@ -68,6 +68,7 @@ impl<R: Real> Block<R> {
     }
 
     /// Returns the block in one lane.
+    #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> Block {
         Block { half: self.half.lane(lane), rounding: self.rounding.lane(lane) }
     }

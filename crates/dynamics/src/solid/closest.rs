@@ -1,10 +1,11 @@
 //! Closest points of two convex bodies.
 //!
-//! All computations are scalar: lanes are processed one after the other, with results that are bit-identical to a
-//! single run.
+//! Lanes have the bits of a single run. The usual case, a tube on the stave of a barrel, is computed in all lanes
+//! together; for all others, lanes are processed one after the other.
 
 use super::barrel::Barrel;
 use super::rounded::Hull;
+use crate::real::{Mask as _, Real};
 use crate::shape::Gap;
 use crate::space::{Linear, Rotation3, Spatial, Vec3};
 
@@ -71,6 +72,37 @@ pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
         middle,
         half,
     )
+}
+
+/// Searches as [`along`] does for a barrel, in all lanes together. Returns the position, the gap, and the lanes in which
+/// they have the bits of [`along`]; in all other lanes, the slower search is needed.
+#[inline(always)]
+pub(super) fn along_barrel<R: Real>(
+    barrel: &Barrel<R>,
+    middle: Vec3<R>,
+    half: Vec3<R>,
+) -> (R, Gap<Spatial<R>>, R::Mask) {
+    let one = R::splat(1.0);
+    let mut place = (-middle.dot(half) / half.dot(half)).clamp_magnitude(one);
+    let (mut done, mut failed) = (R::Mask::default(), R::Mask::default());
+    for _ in 0..MOST_HALLEY {
+        let [first, second, third] = barrel.derivatives(middle + half * place, half);
+        let step = first * second / (second * second - R::splat(0.5) * first * third);
+        let next = (place - step).clamp_magnitude(one);
+        let moved = (next - place).abs();
+        // A step that is not a number is not less than itself.
+        failed = failed | (!done & !step.le(step));
+        place = R::select(done, place, next);
+        done = done | moved.lt(R::splat(LAST_HALLEY));
+        if done.all() {
+            break;
+        }
+    }
+    let gap = barrel.gap(middle + half * place);
+    let (slope, flat) = (gap.normal.dot(half), R::splat(FLAT) * half.length());
+    let not_lower_left = slope.le(flat) | place.le(-one);
+    let not_lower_right = (-flat).le(slope) | one.le(place);
+    (place, gap, done & !failed & not_lower_left & not_lower_right)
 }
 
 /// Finds the minimum of a quantity along a segment by Halley's method, from the first three derivatives of the

@@ -204,12 +204,15 @@ struct Line {
     length: f64,
 }
 
+/// Component along the axis of a barrel below which a contact normal is taken to be that of the stave.
+pub(super) const MOST_ON_STAVE: f64 = 0.5;
+
 /// Returns the contact line of a tube on a head or a face of a solid, in the frame of that solid.
 fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -> Option<Line> {
     match hull {
         Hull::Capsule(_) => None,
         // A tube on the stave has no part in front of a head.
-        Hull::Barrel(_) if normal.x.abs() < 0.5 => None,
+        Hull::Barrel(_) if normal.x.abs() < MOST_ON_STAVE => None,
         Hull::Barrel(barrel) => {
             // The part of the tube whose axis lies in front of the circle of the head.
             let across = Vec3::new(0.0, direction.y, direction.z);

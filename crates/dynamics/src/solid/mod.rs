@@ -66,6 +66,7 @@ pub struct Capsule<R = f64> {
 
 impl<R: Real> Capsule<R> {
     /// Returns the capsule in one lane.
+    #[inline(always)]
     fn lane(&self, lane: usize) -> Capsule {
         Capsule { half_length: self.half_length.lane(lane), radius: self.radius.lane(lane) }
     }

@@ -2,10 +2,11 @@
 
 use super::barrel::Barrel;
 use super::block::{Block, from_block};
-use super::closest::{Closest, along, barrels};
-use super::flat::{shared, slopes};
+use super::closest::{Closest, along, along_barrel, barrels};
+use super::flat::{MOST_ON_STAVE, shared, slopes};
 use super::{Capsule, Solid, faces};
-use crate::real::Real;
+use crate::lanes::kind;
+use crate::real::{Mask as _, Real};
 use crate::shape::{
     Axes, Bearing, Gap, MOST_POINTS, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
 };
@@ -60,6 +61,7 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
         surface: &Solid<R>,
         position: Vec3<R>,
         rotation: Rotation3<R>,
+        near: R::Mask,
         mut visit: impl FnMut(Patch<Spatial<R>>),
     ) {
         let origin = position + rotation.apply(self.center);
@@ -81,7 +83,7 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
             // Only points can touch a concave surface.
             (_, Solid::Dish(_)) => {}
             (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_) | Solid::Block(_)) => {
-                let mut patch = meeting(hull, surface, origin, frame);
+                let mut patch = meeting(hull, surface, origin, frame, near);
                 if let Some(Spread { slopes, .. }) = &mut patch.spread {
                     let arm = origin - position;
                     for slope in [&mut slopes.middle, &mut slopes.deepest, &mut slopes.others] {
@@ -99,6 +101,7 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
         surface: &Solid<R>,
         position: Vec3<R>,
         rotation: Rotation3<R>,
+        near: R::Mask,
     ) -> Option<Points<Spatial<R>>> {
         let (Hull::Block(block), Solid::Block(target)) = (&self.hull, surface) else { return None };
         let mut points = block_on_block(
@@ -106,11 +109,16 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
             target,
             position + rotation.apply(self.center),
             rotation.after(self.rotation),
+            near,
         );
         for bearing in &mut points.points {
             bearing.touch = midway(bearing.touch.node, bearing.touch.gap);
         }
         Some(points)
+    }
+
+    fn kind(&self) -> u64 {
+        kind(&self.hull)
     }
 
     fn most_sticks(&self) -> usize {
@@ -183,6 +191,7 @@ fn meeting<R: Real>(
     surface: &Solid<R>,
     origin: Vec3<R>,
     frame: Rotation3<R>,
+    near: R::Mask,
 ) -> Patch<Spatial<R>> {
     let nothing = Gap { distance: R::splat(1.0), normal: Vec3::default() };
     let (mut gap, mut point) = (nothing, Vec3::default());
@@ -190,17 +199,32 @@ fn meeting<R: Real>(
     let (one, mut radius) = (R::splat(1.0), R::zero());
     let mut shares = Shares { deepest: one, others: R::zero(), aside: R::zero() };
     let mut changes = Slopes::default();
-    for lane in 0..R::LANES {
+    let (mut solved, mut left) = (R::Mask::default(), near);
+    if let Some((found, place, lanes)) = together(hull, surface, origin, frame) {
+        (gap, point, solved) = (found, place, lanes & near);
+        gap.distance = R::select(near, gap.distance, one);
+        // On the stave of the barrel, or without contact, there is no patch.
+        let along = match surface {
+            Solid::Barrel(_) => gap.normal.x,
+            _ => frame.unapply(gap.normal).x,
+        };
+        let flat = gap.distance.lt(R::zero()) & R::splat(MOST_ON_STAVE).le(along.abs());
+        left = near & (!solved | flat);
+    }
+    for lane in (0..R::LANES).filter(|lane| left.lane(*lane)) {
         let Some(target) = bounded(surface, lane) else { continue };
         let turned = frame.lane(lane);
         let (contactor, at) = (hull.lane(lane), origin.lane(lane));
-        let found = closest(&contactor, &target, at, turned);
-        put_gap(&mut gap, lane, Gap { distance: found.distance, normal: found.normal });
-        put(&mut point, lane, found.point);
-        if found.distance >= 0.0 {
-            continue;
+        if !solved.lane(lane) {
+            let found = closest(&contactor, &target, at, turned);
+            put_gap(&mut gap, lane, Gap { distance: found.distance, normal: found.normal });
+            put(&mut point, lane, found.point);
+            if found.distance >= 0.0 {
+                continue;
+            }
         }
-        if let Some(flat) = shared(&contactor, &target, at, turned, found.normal) {
+        let normal = gap.normal.lane(lane);
+        if let Some(flat) = shared(&contactor, &target, at, turned, normal) {
             put_gap(&mut middle_gap, lane, flat.gap);
             put(&mut middle, lane, flat.point);
             shares.deepest = shares.deepest.with_lane(lane, flat.shares.deepest);
@@ -210,7 +234,7 @@ fn meeting<R: Real>(
             for (axis, single) in axes.iter_mut().zip(flat.axes) {
                 put(axis, lane, single);
             }
-            let own = slopes(&flat, &contactor, &target, at, turned, found.normal);
+            let own = slopes(&flat, &contactor, &target, at, turned, normal);
             put_wrench(&mut changes.middle, lane, own.middle);
             put_wrench(&mut changes.deepest, lane, own.deepest);
             put_wrench(&mut changes.others, lane, own.others);
@@ -225,6 +249,45 @@ fn meeting<R: Real>(
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
 }
 
+/// Returns the gap, the closest point of the contactor (m), and the lanes in which these are found, for a tube and a
+/// barrel in bundles; `None` for all others.
+#[inline(always)]
+fn together<R: Real>(
+    hull: &Hull<R>,
+    surface: &Solid<R>,
+    origin: Vec3<R>,
+    frame: Rotation3<R>,
+) -> Option<(Gap<Spatial<R>>, Vec3<R>, R::Mask)> {
+    // In a single run, the search with its fallback is one function.
+    if R::LANES == 1 {
+        return None;
+    }
+    // The terms are those of `closest_of`, in the same order.
+    match (hull, surface) {
+        (Hull::Capsule(capsule), Solid::Barrel(target)) => {
+            let end = frame.apply(Vec3::new(capsule.half_length, R::zero(), R::zero()));
+            let (place, gap, found) = along_barrel(target, origin, end);
+            let center = origin + end * place;
+            let point = center - gap.normal * capsule.radius;
+            Some((
+                Gap { distance: gap.distance - capsule.radius, normal: gap.normal },
+                point,
+                found,
+            ))
+        }
+        (Hull::Barrel(barrel), Solid::Capsule(target)) => {
+            let end = frame.unapply(Vec3::new(target.half_length, R::zero(), R::zero()));
+            let middle = frame.unapply(-origin);
+            let (place, gap, found) = along_barrel(barrel, middle, end);
+            let nearest = middle + end * place - gap.normal * gap.distance;
+            let own =
+                Gap { distance: gap.distance - target.radius, normal: -frame.apply(gap.normal) };
+            Some((own, origin + frame.apply(nearest), found))
+        }
+        _ => None,
+    }
+}
+
 /// Returns the contact points of two blocks, lane by lane: the corners of the area that their faces share, and the
 /// deepest point.
 #[inline(always)]
@@ -233,6 +296,7 @@ fn block_on_block<R: Real>(
     surface: &Block<R>,
     origin: Vec3<R>,
     frame: Rotation3<R>,
+    near: R::Mask,
 ) -> Points<Spatial<R>> {
     let gap = Gap { distance: R::splat(1.0), normal: Vec3::default() };
     let none = Bearing {
@@ -241,7 +305,7 @@ fn block_on_block<R: Real>(
         turning: Vec3::default(),
     };
     let mut points = Points { points: [none; MOST_POINTS], axes: [Vec3::default(); 4] };
-    for lane in 0..R::LANES {
+    for lane in (0..R::LANES).filter(|lane| near.lane(*lane)) {
         let (contactor, target) = (block.lane(lane), surface.lane(lane));
         let (at, turned) = (origin.lane(lane), frame.lane(lane));
         let found = closest(&Hull::Block(contactor), &Hull::Block(target), at, turned);
@@ -292,6 +356,7 @@ fn put<R: Real>(vector: &mut Vec3<R>, lane: usize, single: Vec3) {
 
 impl<R: Real> Hull<R> {
     /// Returns the hull in one lane.
+    #[inline(always)]
     fn lane(&self, lane: usize) -> Hull {
         match self {
             Self::Capsule(capsule) => Hull::Capsule(capsule.lane(lane)),
@@ -344,6 +409,7 @@ impl Hull {
 
 /// Returns a bounded convex surface in one lane; a ball is returned as a capsule of zero length. Returns `None` for
 /// other surfaces.
+#[inline(always)]
 fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     match surface {
         Solid::HalfSpace | Solid::Dish(_) => None,

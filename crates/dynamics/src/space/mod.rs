@@ -11,6 +11,7 @@ mod vector;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
+use crate::lanes::Lanewise;
 use crate::real::Real;
 
 pub use planar::{Planar, Rotation2, Vec2};
@@ -45,28 +46,61 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
 
     /// The scalar.
     type Real: Real;
+    /// The same space with a single number as its scalar, for one lane of a bundle.
+    type Single: Space<Real = f64>;
     /// Positions (m), velocities (m/s) and forces (N).
-    type Vector: Linear<Self::Real>;
+    type Vector: Linear<Self::Real> + Lanewise<Single = <Self::Single as Space>::Vector>;
     /// Angular velocities (rad/s) and moments (N·m).
-    type Spin: Linear<Self::Real>;
+    type Spin: Linear<Self::Real> + Lanewise<Single = <Self::Single as Space>::Spin>;
     /// Orientation of a body, advanced by the integrator.
-    type Orientation: Copy + Debug + PartialEq + Send + Sync + 'static;
+    type Orientation: Copy
+        + Debug
+        + PartialEq
+        + Send
+        + Sync
+        + Lanewise<Single = <Self::Single as Space>::Orientation>
+        + 'static;
     /// Rotation that can be applied to vectors; computed once from an orientation.
-    type Rotation: Copy + Debug + PartialEq + Send + Sync + 'static;
+    type Rotation: Copy
+        + Debug
+        + PartialEq
+        + Send
+        + Sync
+        + Lanewise<Single = <Self::Single as Space>::Rotation>
+        + 'static;
     /// Moment of inertia about the center of mass (kg·m²).
-    type Inertia: Copy + Debug + PartialEq + Send + Sync + 'static;
+    type Inertia: Copy
+        + Debug
+        + PartialEq
+        + Send
+        + Sync
+        + Lanewise<Single = <Self::Single as Space>::Inertia>
+        + 'static;
     /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
-    type Tangent: Linear<Self::Real>;
+    type Tangent: Linear<Self::Real> + Lanewise<Single = <Self::Single as Space>::Tangent>;
     /// Data stored with a tangent, so that it can be transported along a curved surface: the normal in three
     /// dimensions, and nothing in the plane, where a tangent is a scalar.
-    type TangentPlane: Copy + Debug + Default + PartialEq + Send + Sync + 'static;
+    type TangentPlane: Copy
+        + Debug
+        + Default
+        + PartialEq
+        + Send
+        + Sync
+        + Lanewise<Single = <Self::Single as Space>::TangentPlane>
+        + 'static;
     /// Viscous damping matrix of a body.
-    type Damping: Copy + Debug + PartialEq + Send + Sync + 'static;
+    type Damping: Copy
+        + Debug
+        + PartialEq
+        + Send
+        + Sync
+        + Lanewise<Single = <Self::Single as Space>::Damping>
+        + 'static;
     /// Shapes whose surface can be a contact target.
-    type Surface: crate::shape::Surface<Self>;
+    type Surface: crate::shape::Surface<Self> + Lanewise<Single = <Self::Single as Space>::Surface>;
     /// Convex solids that touch with their deepest points; an empty type in the plane, where boundaries have round
     /// pieces instead.
-    type Whole: crate::shape::Whole<Self>;
+    type Whole: crate::shape::Whole<Self> + Lanewise<Single = <Self::Single as Space>::Whole>;
 
     /// Returns the rotation from the body frame to the inertial frame for an orientation.
     fn rotation(orientation: Self::Orientation) -> Self::Rotation;
@@ -179,6 +213,18 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         yes: Self::Tangent,
         no: Self::Tangent,
     ) -> Self::Tangent;
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
+    fn choose_vector(
+        mask: <Self::Real as Real>::Mask,
+        yes: Self::Vector,
+        no: Self::Vector,
+    ) -> Self::Vector;
+    /// Returns `yes` in lanes where the mask is set, and `no` in all other lanes.
+    fn choose_plane(
+        mask: <Self::Real as Real>::Mask,
+        yes: Self::TangentPlane,
+        no: Self::TangentPlane,
+    ) -> Self::TangentPlane;
     /// Returns the force and the moment of viscous damping: the negative product of the damping matrix and the
     /// velocity.
     fn damp(

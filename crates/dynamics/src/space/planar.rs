@@ -138,6 +138,7 @@ impl<R: Real> Space for Planar<R> {
     const SOLIDS_SHARE: bool = false;
 
     type Real = R;
+    type Single = Planar;
     type Vector = Vec2<R>;
     type Spin = R;
     type Orientation = R;
@@ -287,6 +288,12 @@ impl<R: Real> Space for Planar<R> {
     fn choose(mask: R::Mask, yes: R, no: R) -> R {
         R::select(mask, yes, no)
     }
+    #[inline(always)]
+    fn choose_vector(mask: R::Mask, yes: Vec2<R>, no: Vec2<R>) -> Vec2<R> {
+        Vec2::select(mask, yes, no)
+    }
+    #[inline(always)]
+    fn choose_plane(_: R::Mask, (): (), (): ()) {}
     #[inline(always)]
     fn damp(c: [[R; 3]; 3], linear: Vec2<R>, spin: R) -> (Vec2<R>, R) {
         let [x, z, turn] = c;

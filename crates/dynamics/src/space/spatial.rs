@@ -15,6 +15,7 @@ impl<R: Real> Space for Spatial<R> {
     const SOLIDS_SHARE: bool = true;
 
     type Real = R;
+    type Single = Spatial;
     type Vector = Vec3<R>;
     type Spin = Vec3<R>;
     type Orientation = Quaternion<R>;
@@ -237,6 +238,14 @@ impl<R: Real> Space for Spatial<R> {
     }
     #[inline(always)]
     fn choose(mask: R::Mask, yes: Vec3<R>, no: Vec3<R>) -> Vec3<R> {
+        Vec3::select(mask, yes, no)
+    }
+    #[inline(always)]
+    fn choose_vector(mask: R::Mask, yes: Vec3<R>, no: Vec3<R>) -> Vec3<R> {
+        Vec3::select(mask, yes, no)
+    }
+    #[inline(always)]
+    fn choose_plane(mask: R::Mask, yes: Vec3<R>, no: Vec3<R>) -> Vec3<R> {
         Vec3::select(mask, yes, no)
     }
     #[inline(always)]

@@ -29,6 +29,7 @@ impl<R: Real> Vec3<R> {
         Self::new(R::splat(vector.x), R::splat(vector.y), R::splat(vector.z))
     }
     /// Returns the vector in one lane.
+    #[inline(always)]
     pub fn lane(self, lane: usize) -> Vec3<f64> {
         Vec3::new(self.x.lane(lane), self.y.lane(lane), self.z.lane(lane))
     }
@@ -248,6 +249,7 @@ impl<R: Real> Rotation3<R> {
         Self { rows: [inner.unapply(x), inner.unapply(y), inner.unapply(z)] }
     }
     /// Returns the matrix in one lane.
+    #[inline(always)]
     pub fn lane(self, lane: usize) -> Rotation3 {
         let [x, y, z] = self.rows;
         Rotation3 { rows: [x.lane(lane), y.lane(lane), z.lane(lane)] }

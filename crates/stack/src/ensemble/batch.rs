@@ -59,7 +59,7 @@ impl Task for InLanes<'_, '_> {
             interrupted: false,
             results: Vec::with_capacity(group.len()),
         };
-        run_batch(method, &mut batch);
+        run_batch::<Planar<R>, _>(method, &mut batch);
         batch.results
     }
 }
@@ -100,10 +100,10 @@ impl<R: Real> Batch<'_, '_, R> {
     }
 }
 
-impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
+impl<'a, R: Real> lanes::Batch<'a, Planar<R>> for Batch<'a, '_, R> {
     type Drive = &'a Ground;
 
-    fn next(&mut self, lane: usize) -> Option<Case<'a, &'a Ground>> {
+    fn next(&mut self, lane: usize) -> Option<Case<'a, Planar, &'a Ground>> {
         let run = self.group.get(self.next).filter(|_| !self.interrupted)?;
         self.runs[lane] = self.next;
         self.next += 1;

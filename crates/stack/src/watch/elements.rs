@@ -1,5 +1,6 @@
 //! Forces and failure times of force elements.
 
+use barrelstack_dynamics::real::{Mask as _, Real as _};
 use barrelstack_dynamics::{Scratch, Space, State};
 
 /// Largest forces of one force element, and its failure.
@@ -25,16 +26,29 @@ impl ElementFates {
         standing: bool,
         scratch: &Scratch<S>,
     ) {
+        self.observe_lane(0, state, standing, scratch);
+    }
+
+    /// Records an accepted step of one lane, as [`ElementFates::observe`] does.
+    pub fn observe_lane<S: Space>(
+        &mut self,
+        lane: usize,
+        state: &State<S>,
+        standing: bool,
+        scratch: &Scratch<S>,
+    ) {
+        let time = state.time.lane(lane);
         self.0.resize(scratch.loads.len(), ElementFate::default());
         for ((fate, load), memory) in self.0.iter_mut().zip(&scratch.loads).zip(&state.memory) {
-            if load.force.abs() > fate.peak_whole_run.0.abs() {
-                fate.peak_whole_run = (load.force, state.time);
+            let force = load.force.lane(lane);
+            if force.abs() > fate.peak_whole_run.0.abs() {
+                fate.peak_whole_run = (force, time);
                 if standing {
                     fate.peak = fate.peak_whole_run;
                 }
             }
-            if memory.broken && fate.broken_at.is_none() {
-                fate.broken_at = Some(state.time);
+            if memory.broken.lane(lane) && fate.broken_at.is_none() {
+                fate.broken_at = Some(time);
             }
         }
     }

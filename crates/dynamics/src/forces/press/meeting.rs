@@ -64,14 +64,13 @@ impl<S: Space> PairKinematics<S> {
         rotations: &[S::Rotation],
     ) -> &'a Self {
         let of = [pair.contactor, pair.target, pair.surface];
-        last.take_if(
-            #[inline(always)]
-            |kinematics| kinematics.of != of,
-        );
-        last.get_or_insert_with(
-            #[inline(always)]
-            || Self::new(model, pair, state, rotations),
-        )
+        if last.as_ref().is_some_and(|known| known.of != of) {
+            *last = None;
+        }
+        match last {
+            Some(known) => known,
+            none => none.insert(Self::new(model, pair, state, rotations)),
+        }
     }
 }
 

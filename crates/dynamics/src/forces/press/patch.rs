@@ -18,18 +18,36 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         if !gap.distance.lt(zero).any() {
             return;
         }
-        match &patch.spread {
-            Some(spread) if spread.bears(gap.distance).any() => {
-                self.spread(first, patch.deepest, spread);
+        let Some(spread) = &patch.spread else {
+            self.node(first, node, gap, one);
+            return;
+        };
+        let bears = spread.bears(gap.distance);
+        let alone = gap.distance.lt(zero) & !bears;
+        if bears.any() && alone.any() {
+            // Each lane takes one of the two branches below.
+            let at = self.pressed.len();
+            let in_lanes =
+                |lanes| Gap { distance: S::Real::select(lanes, gap.distance, one), ..gap };
+            self.spread(first, Touch { node, gap: in_lanes(bears) }, spread);
+            let slip_rate = self.slip_rates[first];
+            self.deepest_only(first, Touch { node, gap: in_lanes(alone) }, spread);
+            self.slip_rates[first] = S::choose(alone, self.slip_rates[first], slip_rate);
+            if let Some(own) = self.pressed.pop() {
+                self.pressed[at].merge(alone, &own);
             }
-            Some(Spread { shares, slopes, .. }) => {
-                let energy = self.node(first, node, gap, shares.deepest);
-                self.sum.normal += slopes.deepest.times(-energy);
-            }
-            None => {
-                self.node(first, node, gap, one);
-            }
+        } else if bears.any() {
+            self.spread(first, patch.deepest, spread);
+        } else {
+            self.deepest_only(first, patch.deepest, spread);
         }
+    }
+
+    /// Adds the forces of a patch of which only the deepest point is in contact.
+    #[inline(always)]
+    fn deepest_only(&mut self, first: usize, deepest: Touch<S>, spread: &Spread<S>) {
+        let energy = self.node(first, deepest.node, deepest.gap, spread.shares.deepest);
+        self.sum.normal += spread.slopes.deepest.times(-energy);
     }
 
     /// Requests substeps in lanes where the forces of spring and damper would change too abruptly in a whole step, and
@@ -39,7 +57,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let Some(fast) = self.fast else { return };
         let approach = -self.meeting.velocity(node).dot(gap.normal);
         let travel = self.lookahead * approach.abs();
-        let near = gap.distance.lt(travel);
+        // As in `look_ahead`, elements farther apart are not tested in every run.
+        let near = gap.distance.lt(travel) & gap.distance.lt(self.foreseen_gap);
         self.needs_substeps = self.needs_substeps | (near & fast.whole_step_way.lt(travel));
         self.is_hard = self.is_hard | (near & fast.hard.lt(approach));
     }
