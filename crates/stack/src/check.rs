@@ -12,7 +12,7 @@ use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 
 described! {
-    /// Result of a check in which the scenario was found sound.
+    /// Result of the check of a sound scenario.
     #[derive(Clone, Debug)]
     pub struct Checked {
         /// Name and version of the schema.

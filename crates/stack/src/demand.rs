@@ -37,7 +37,7 @@ pub struct Demand {
 }
 
 impl Demand {
-    /// Returns `true` if the demand is a value at the end of the run, whatever the span.
+    /// Returns `true` if the demand is a value at the end of the run, so that it is the same for every span.
     pub fn is_of_the_end(&self) -> bool {
         self.name == "base_slip_residual"
     }

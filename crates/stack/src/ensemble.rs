@@ -241,7 +241,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Returns the criteria that may end the run earlier.
+    /// Returns the criteria that may end the run before its latest end.
     fn end(&self, standing: &Standing) -> End {
         End::new(&self.case.scenario, &standing.assembly, &self.case.ground)
     }
@@ -261,7 +261,7 @@ fn prepare<'a>(
     let stack = known.unwrap_or(stacks.len());
     if known.is_none() {
         let built = Stack::built(scenario, end_time);
-        // This error concerns the motion: the same stack may run under a shorter one.
+        // This error concerns the duration of the motion, and the same stack may run under a shorter motion.
         if let Err(failure @ RunFailure::Duration(_)) = &built.standing {
             return Err(failure.to_string());
         }

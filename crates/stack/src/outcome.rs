@@ -58,7 +58,7 @@ pub enum Outcome {
         first: String,
         /// Lowest level whose seat or support was lost.
         from_level: u32,
-        /// Highest level that collapsed with that level.
+        /// Highest level that collapsed together with `from_level`.
         to_level: u32,
     },
     /// Not judged, because a free scene has no seats that could be lost.

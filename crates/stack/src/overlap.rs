@@ -202,7 +202,8 @@ fn parting(a: &Outline, b: &Outline) -> f64 {
     }
 }
 
-/// Returns the least depth (m) of one polygon below the sides of another.
+/// Returns the shortest displacement (m), along the outward normal of a side of one polygon, that separates another
+/// polygon from it; zero or less if they are apart.
 fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     let mut least = f64::INFINITY;
     for (i, from) in sides.iter().enumerate() {
@@ -211,7 +212,7 @@ fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
         let mut lowest = f64::INFINITY;
         for corner in corners {
             lowest = lowest.min((*corner - *from).dot(outward));
-            // Another side separates the polygons by a shorter displacement.
+            // The displacement for another side is already shorter.
             if -lowest >= least {
                 break;
             }

@@ -359,8 +359,8 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
         .filter(|interface| interface.friction.creep_speed(0.5) > 0.0)
         .map(|interface| {
             format!(
-                "{}: the regularized friction law creeps; at half of the friction limit, by \
-                 {:.2e} m/s",
+                "{}: contacts creep under the regularized friction law: at half of the friction limit, \
+                 they slide at {:.2e} m/s",
                 interface.name,
                 interface.friction.creep_speed(0.5)
             )
@@ -369,7 +369,8 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// Returns the basis of the contact constants, such as "seat", or "mixed" if they differ.
+    /// Returns the basis of the contact constants, such as "seat", or "mixed" if not all contact laws have the same
+    /// basis.
     ///
     /// In a stack, only the contact laws of seats are considered; in a free scene, all interfaces.
     pub fn stiffness_basis(&self) -> &'static str {

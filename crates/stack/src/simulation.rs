@@ -23,9 +23,9 @@ use crate::watch::{
 
 /// A run of a scenario in a plane, which advances by any number of steps.
 ///
-/// [`Scenario::run`] is a simulation that is run to its end, so that both have the same bits. A clone has the complete
-/// state: positions, velocities, sticks, memory of devices, recordings and criteria for the end; it continues with the
-/// same bits. Clones share the stack and the ground motion.
+/// [`Scenario::run`] is a simulation that is run to its end, so the results of both are bit-identical. A clone has the
+/// complete state: positions, velocities, sticks, history of devices, recordings and stop criteria; it continues with
+/// bit-identical results. Clones share the stack and the ground motion.
 ///
 /// ```
 /// use barrelstack_dynamics::{Applied, Vec2};
@@ -64,7 +64,7 @@ struct Fixed {
     settled: Option<Settled>,
     settings: barrelstack_dynamics::Simulation,
     sticks: Vec<SoftStick>,
-    /// Numbers of evaluations and of tested contact elements before the run.
+    /// Number of force evaluations and number of contact elements tested before the run.
     before: (u64, u64),
 }
 
@@ -100,7 +100,8 @@ impl Simulation {
         Ok(Self { fixed, state, scratch, stepper, watch, failure: None })
     }
 
-    /// Advances by up to `most` steps, less if the run ends before. Impacts divide a step into several.
+    /// Advances by up to `most` steps, or by fewer if the run ends. During impacts, a step is divided into several,
+    /// which all count.
     ///
     /// Returns the number of steps that were taken.
     pub fn step(&mut self, most: u64) -> u64 {
@@ -213,12 +214,12 @@ impl Simulation {
         }
     }
 
-    /// Sets the force from outside on a body, in place of an earlier one; it acts until it is changed.
+    /// Sets the external force on a body, in place of an earlier external force; it acts until it is changed.
     ///
     /// The work of such forces is part of the energy balance.
     ///
     /// # Errors
-    /// If there is no such body, it follows the ground, or a number is not finite.
+    /// If there is no such body, the body follows the ground, or a number is not finite.
     pub fn apply(&mut self, applied: Applied<Planar>) -> Result<(), ApplyError> {
         let model = &self.fixed.assembly.model;
         self.stepper.apply(model, &mut self.state, &mut self.scratch, applied)

@@ -90,7 +90,7 @@ pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let ratio = depth / room_length;
     let swing = tanh(PI * ratio);
     let share = 8.0 * swing / (PI * PI * PI * ratio);
-    // This depth preserves the center of mass of the wine, with the rest of it at the middle of the barrel.
+    // With the rest of the wine at the middle of the barrel, this depth preserves the center of mass of the wine.
     let center = radius * 2.0 * b * b * b / (3.0 * area);
     Wave { share, length: room_length / (PI * swing), depth: center / share }
 }

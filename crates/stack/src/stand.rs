@@ -50,7 +50,7 @@ pub(crate) struct Stack<'a> {
 }
 
 impl<'a> Stack<'a> {
-    /// Builds a stack for a run until a time (s), without settling it.
+    /// Builds the stack of a scenario without settling it, for a run that ends at `end_time` (s) at the latest.
     pub(crate) fn built(scenario: &'a Scenario, end_time: f64) -> Self {
         let build = || {
             let assembly = assemble(scenario)?;
@@ -79,7 +79,7 @@ impl<'a> Stack<'a> {
     }
 }
 
-/// Builds a stack for a run until a time (s) and settles it.
+/// Builds the stack of a scenario and settles it, for a run that ends at `end_time` (s) at the latest.
 ///
 /// # Errors
 /// If the stack cannot be built, or does not stand.

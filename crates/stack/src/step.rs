@@ -22,13 +22,13 @@ const DAMPING_SHARE: f64 = 0.33;
 /// Penetration (m) at full scale at which nonlinear laws are linearized.
 const REFERENCE: f64 = 0.01;
 
-/// Time step during impacts, which last some milliseconds, as a fraction of the critical time step of impacts.
+/// Time step during impacts, which last a few milliseconds, as a fraction of the critical time step of impacts.
 ///
 /// With this fraction, the energy balance of the paper's cases closes to 3e-5. Halving the step changes the time of
 /// every fall by at most 0.3 ms (`tests/paper.rs`).
 pub const IMPACT_SHARE: f64 = 0.4;
 
-/// Penetration up to which impacts take whole steps, as a fraction of `REFERENCE`; the penetration of resting
+/// Penetration up to which steps are not divided in impacts, as a fraction of `REFERENCE`; the penetration of resting
 /// contacts is smaller.
 ///
 /// With this value, the energy residual of the demo along the barrels is 1.1e-5; with a value four times as large, it
@@ -38,8 +38,8 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
 /// springs.
 ///
-/// Bodies at rest require stability only. A resting contact takes whole steps up to twice that penetration. At twice
-/// that penetration, the step is 0.83 of the critical step, since the stiffness grows with the square root of the
+/// Bodies at rest require stability only. For resting contacts, steps are not divided up to twice the penetration
+/// [`WHOLE_STEP`]. There, the step is 0.83 of the critical step, since the stiffness grows with the square root of the
 /// penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
@@ -59,20 +59,21 @@ const LOADED_SHARE: f64 = 1.4;
 /// gravity during the contact.
 const RESTITUTION_SHARE: f64 = 0.005;
 
-/// Gap (m) at full scale within which closing contacts with a stated restitution are detected in advance: enough for 40
-/// m/s at steps of 1 ms.
+/// Gap (m) at full scale within which closing contacts with a stated restitution are detected in advance: enough for a
+/// closing speed of 40 m/s at steps of 1 ms.
 const FORESEEN_REBOUND: f64 = 0.05;
 
 /// Radius (m) above which a round piece counts as nearly straight: first for contacts with constants per seat, then for
 /// other contacts.
 ///
-/// The lever arms of rounder pieces, such as the staves of the paper's cases, are overestimated by up to four times.
+/// The lever arms of pieces with a smaller radius, such as the staves of the paper's cases, are overestimated by a
+/// factor of up to four.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
-/// Time step of a model and its division in impacts.
+/// Time step of a model, and its division during impacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeStepping {
-    /// Time step (s) outside of impacts, rounded down to few digits at full scale.
+    /// Time step (s) outside of impacts, rounded down to one or two significant digits at full scale.
     pub step: f64,
     /// Division of the step during impacts.
     pub substepping: Substepping<f64>,
@@ -139,8 +140,8 @@ pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     let states = laws.iter().any(|law| law.law.states_restitution());
     (states && tolerance > KEEPS_RESTITUTION).then(|| {
         format!(
-            "run.tolerance = {tolerance:e}: the adaptive method may miss the restitution that this \
-             scene states by several percent; {KEEPS_RESTITUTION:e} reproduces it"
+            "run.tolerance = {tolerance:e}: the adaptive method may miss the restitution of this \
+             scene by several percent; {KEEPS_RESTITUTION:e} reproduces it"
         )
     })
 }
@@ -216,7 +217,7 @@ pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
 }
 
 /// Returns the critical time step (s) of the pairs that `of` selects at a penetration (m); `held` (1/s²) is the
-/// additional rate due to force elements.
+/// contribution of force elements to ω².
 fn critical(
     model: &Model<Planar>,
     held: f64,
@@ -230,7 +231,7 @@ fn critical(
     2.0 / (rate + held).sqrt()
 }
 
-/// Returns the largest rate of any body due to its force elements.
+/// Returns the largest rate of any body due to its force elements: ω² (1/s²) for stiffness, or γ (1/s) for damping.
 ///
 /// The rate is twice the sum of `constant` × (1/mass + arm²/inertia) over the elements of a body, where `constant`
 /// returns the stiffness or the damping of an element.
@@ -269,8 +270,9 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
         for id in contactors.iter().filter(free) {
             most = most.max(2.0 * rate(&met(*id, pair.target), &bodies[*id]));
         }
-        // The rate of a target grows with that of the contactor on a common yardstick: of many contactors, the two
-        // with the largest rates suffice, since one of them may be the target itself.
+        // A contactor with a larger rate for one target also has a larger rate for every other target. Of many
+        // contactors, the two with the largest rates for a common yardstick therefore suffice: two, since one of them
+        // may be the target itself.
         let yardstick = (contactors.len() > 1).then(|| bodies[pair.target].clone());
         let mut largest: [Option<(f64, BodyId)>; 2] = [None; 2];
         for id in contactors {
@@ -292,7 +294,8 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
     most
 }
 
-/// Returns the rate (1/s²) of a body per stiffness (N/m) of a node, from the nodes that face a target at the same time.
+/// Returns ω² (1/s²) of a body divided by the stiffness (N/m) of a node, summed over the nodes that face a target at
+/// the same time.
 ///
 /// These are all nodes of a straight face, or a quarter of the nodes around a body.
 fn per_stiffness(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
@@ -306,7 +309,8 @@ fn stiffness(model: &Model<Planar>, pair: &ContactPair, depth: f64) -> f64 {
     interface.normal.tangent_stiffness(depth).max(interface.friction.stick_stiffness())
 }
 
-/// Returns the rate Σc/m, or Σc d²/I if larger (1/s), from the nodes that face a target at the same time.
+/// Returns the larger of the rates Σc/m and Σc d²/I (1/s), where d is the lever arm. The sums cover the nodes that face
+/// a target at the same time.
 ///
 /// These are half of the nodes around a body on a flat target, and a quarter of these nodes on a round target.
 fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, depth: f64) -> f64 {
@@ -376,11 +380,11 @@ fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     }
 }
 
-/// Returns a bound of the lever arm (m) of the force on a round piece, whose normals pass through the center of the
-/// piece.
+/// Returns an upper bound of the lever arm (m) of the normal force on a round piece. The normals of the piece pass
+/// through its center.
 ///
-/// The center of nearly straight staves is hundreds of meters away, but their contacts stay between their ends, where
-/// the limits are perpendicular to the outermost normals.
+/// The center of nearly straight staves is hundreds of meters away, but contacts lie between the ends of the staves.
+/// The bound is therefore the larger lever arm of the two outermost normals, which are perpendicular to the limits.
 fn lever(basis: Basis, round: &Round<Planar>) -> f64 {
     let center = round.center;
     let is_bounded = round.limits.iter().all(|limit| limit.length() > 0.0);

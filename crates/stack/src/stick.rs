@@ -19,8 +19,8 @@ const REPORTED: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
-    /// Tangential displacement (m) at which the sticks of all contacts of the interface, loaded as at rest, yield
-    /// together.
+    /// Tangential displacement (m) at which the sticks of all contacts of the interface yield together under their
+    /// normal forces at rest.
     yields: f64,
     /// Peak displacement of the ground (m).
     swing: f64,
@@ -66,8 +66,8 @@ impl fmt::Display for SoftStick {
         write!(
             f,
             "{}: the elastic stick yields after {:.2} mm, so reversing slip on ground that moves by \
-             {:.0} mm may differ by {:.0} % from slip with rigid friction; {:.0} times its \
-             friction.tangential_stiffness_ratio reduces this error to {:.0} %",
+             {:.0} mm may differ by {:.0} % from slip with rigid friction; a \
+             friction.tangential_stiffness_ratio {:.0} times as large reduces this error to {:.0} %",
             self.interface,
             1e3 * self.yields,
             1e3 * self.swing,

@@ -94,8 +94,8 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 }
 
 impl<R: Real> End<R> {
-    /// Observes an accepted state. Returns the lanes whose run is over after a collapse, and the lanes whose run is
-    /// over by rest.
+    /// Observes an accepted state. Returns the lanes in which the time after a collapse has elapsed, and the lanes in
+    /// which all bodies are at rest.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub(crate) fn observe(
@@ -159,7 +159,7 @@ impl Watch {
         self.recording.observe(assembly, ground, standing, state, scratch, energy);
     }
 
-    /// Ends the run if one of its criteria is met in the state that was seen last.
+    /// Ends the run if one of its stop criteria is met in the last observed state.
     #[inline]
     pub fn end(&mut self, state: &State<Planar>) {
         if self.ending.is_none() {

@@ -225,7 +225,7 @@ class BarrelstackWarning(UserWarning):
     ...     warnings.simplefilter("always")
     ...     run = Scenario.load("candia-8-barrels").run(Record.bundled().scale(pgv="20 cm/s"), variants=0)
     >>> print(caught[0].message)
-    the run ends at 12.0 s, but the motion at 35.0 s: ...
+    the run ends at 12.0 s, before the motion ends at 35.0 s: ...
     """
 
 

@@ -98,7 +98,7 @@ class BarrelFields(TypedDict, total=False):
     the barrel above the rails of the rack.
     """
     stave_capacity: Quantity
-    """Force between a barrel and a rack at which its staves are crushed: an assumption, from 4.3 MPa for white oak
+    """Force between a barrel and a rack at which the staves are crushed: an assumption, from 4.3 MPa for white oak
     across the grain (Record 1914) over 10 cm under each of two rails that are 5 cm wide. Default: 43 kN.
     """
     stave_thickness: Quantity
@@ -1048,12 +1048,12 @@ class StackFields(TypedDict, total=False):
     chock: "ChockFields"
     """Chocks beside the barrels that keep them from rolling out."""
     columns: int
-    """Number of barrels per level, a multiple of the number that one rack carries: those in the plane of the
-    model, or, with both planes or in space, those that lie side by side.
+    """Number of barrels per level, a multiple of the number that one rack carries: in a single plane, the barrels
+    in that plane; in both planes or in space, the barrels that lie side by side.
     """
     columns_along: int
-    """Number of barrels per level along the barrels, if the model is in both planes or in space. Default: in both
-    planes and in space, the number that one rack carries; must not be given otherwise.
+    """Number of barrels per level, counted along the barrels, if the model is in both planes or in space. Default:
+    in both planes and in space, the number that one rack carries; must not be given otherwise.
     """
     gap: Quantity
     """Free distance between racks side by side. Default: 0.05 m."""
@@ -1098,9 +1098,9 @@ class StrapFields(TypedDict, total=False):
     lost. Default: 0 N.
     """
     slack: Quantity
-    """Slack of one strap on the stack at rest: the elongation before it pulls. Default: 0 m."""
+    """Slack of one strap on the stack at rest: the elongation at which the strap begins to pull. Default: 0 m."""
     stiffness: Quantity
-    """Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of some 5 to 7 % of
+    """Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of about 5 to 7 % of
     its length. Default: 100 kN/m.
     """
     strength: Quantity
@@ -1119,17 +1119,17 @@ class TieFields(TypedDict, total=False):
     damping: Quantity
     """Damping of one tie, force per rate of elongation, while it is taut. Default: 0 N s/m."""
     distance: Quantity
-    """Distance from the end of a rack to the wall or the ceiling; the default is the 18 in that one winery keeps
-    from its walls (Press Democrat 2014). Default: 45 cm.
+    """Distance from the end of a rack to the wall or the ceiling; the default is the clearance of 18 inches that
+    one winery keeps from its walls (Press Democrat 2014). Default: 45 cm.
     """
     levels: int
     """Number of levels that are tied, counted from the top; 0 for none. Default: 0."""
     side: Literal["left", "right", "both"]
     """Side on which there is a wall or a ceiling, before mirroring. Default: both."""
     slack: Quantity
-    """Slack of one tie on the stack at rest: the elongation before it pulls. Default: 1 cm."""
+    """Slack of one tie on the stack at rest: the elongation at which the tie begins to pull. Default: 1 cm."""
     stiffness: Quantity
-    """Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of some 2 MN
+    """Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of about 2 MN
     divided by the length of the cable, and anchors make a tie softer. Default: 500 kN/m.
     """
     strength: Quantity
@@ -1190,8 +1190,8 @@ class UnknownsFields(TypedDict, total=False):
     is then the scatter of ln μ between racks and barrels. Default: `friction`.
     """
     friction_correlation: Union[float, Quantity]
-    """Correlation of ln μ between any two of these pairs of materials (a wet cellar is wet everywhere, but steel,
-    wood and floors differ in roughness; nobody has measured it, and 0 is an assumption). Default: 0.
+    """Correlation of ln μ between any two pairs of materials (a wet cellar is wet everywhere, but steel, wood and
+    floors differ in roughness; nobody has measured it, and 0 is an assumption). Default: 0.
     """
     friction_ground: Union[float, Quantity]
     """Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily;
@@ -1199,7 +1199,7 @@ class UnknownsFields(TypedDict, total=False):
     assumption). Default: 0.2.
     """
     impact_stiffness: Union[float, Quantity]
-    """Standard deviation of ln k of all impacts, one draw for all (an assumption). Default: 0.1."""
+    """Standard deviation of ln k of impacts, one draw for all impacts (an assumption). Default: 0.1."""
     rails: Quantity
     """Largest deviation of `stack.rack.rail_half_spacing` to either side, uniformly distributed, one draw for all
     racks, which are made alike. Not drawn by default, because 1 cm changes shares of collapses by less than

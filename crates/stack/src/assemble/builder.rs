@@ -21,7 +21,7 @@ pub(crate) struct Builder<'a> {
     inertia: f64,
     /// Contact data of every surface, grouped by body in the order of the bodies.
     pub(super) touches: Vec<Vec<Touch>>,
-    /// Index of the law between barrels and their cradles.
+    /// Index of the contact law between barrels and their cradles.
     pub(crate) cradle_law: usize,
     /// Contact laws of devices, numbered after the contact laws of the stack.
     pub(super) laws: Vec<Interface<Planar>>,
@@ -45,13 +45,14 @@ pub(crate) struct Draft {
     pub(crate) column: u32,
     /// Mass (kg).
     pub(crate) mass: f64,
-    /// Moment of inertia (kg·m²) about the center of mass, which is then the origin of the frame.
+    /// Moment of inertia (kg·m²) about the center of mass. If given, the center of mass is the origin of the body
+    /// frame.
     ///
     /// If `None`, the center of mass and the inertia are computed from the solids, all with the same density.
     pub(crate) inertia: Option<f64>,
     /// Position (m) of the origin of the body frame.
     pub(crate) position: Vec2,
-    /// Characteristic size (m).
+    /// Characteristic size (m) of the body; the radius of a barrel.
     pub(crate) size: f64,
     pub(crate) solids: Vec<Solid>,
     pub(crate) carrier: Option<BodyId>,

@@ -94,15 +94,15 @@ impl Bundle {
         }
     }
 
-    /// Returns the normal stiffness and damping of the bundle, divided by the values of one seat.
+    /// Returns the ratio of the normal stiffness and damping of the bundle to those of one seat.
     pub(super) fn elements(self) -> f64 {
         self.count * self.cosine * self.cosine
     }
 
     /// Returns the friction law of the bundle.
     ///
-    /// Seats that form a wedge press on the barrel with more than its weight, which divides the friction coefficient by
-    /// the cosine. The tangential springs of all seats act in full.
+    /// Seats that form a wedge press on the barrel with a total normal force above its weight. The friction coefficient
+    /// is therefore divided by the cosine. The tangential stiffness and damping are the sums over all seats.
     pub(super) fn friction(self, friction: Friction) -> Friction {
         if self.cosine == 1.0 {
             return friction;

@@ -59,8 +59,8 @@ pub(super) fn assemble(
     })
 }
 
-/// Returns a force element between two bodies. If no length is stated, the element is as long as the initial distance
-/// between its ends.
+/// Returns a force element between two bodies. If no length is stated, the length is the initial distance between the
+/// ends of the element.
 fn element(
     spec: &FreeElement,
     scene: &FreeScene,
@@ -127,8 +127,8 @@ struct Outer<'a> {
 
 /// Index ranges of the surfaces and node sets of a body that have the same kind.
 ///
-/// The surface and the nodes of a part have the same position in both ranges; nodes chosen one by one have no
-/// surface.
+/// The surface and the nodes of a part have the same position in both ranges; nodes at individually chosen points have
+/// no surface.
 struct Boundary<'a> {
     kind: &'a str,
     surfaces: Range<usize>,
@@ -136,7 +136,7 @@ struct Boundary<'a> {
 }
 
 impl Boundary<'_> {
-    /// Returns the node set of the part with this surface; `None` if nodes are chosen one by one.
+    /// Returns the node set of the part with this surface; `None` if the points of the nodes are chosen individually.
     fn nodes_of(&self, surface: usize) -> Option<usize> {
         let at = self.nodes.start + surface - self.surfaces.start;
         (self.nodes.len() == self.surfaces.len()).then_some(at)
@@ -338,7 +338,8 @@ fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, Asse
     })
 }
 
-/// Returns the nodes of one part by a rule, in the body frame; `None` if the nodes of the body are chosen one by one.
+/// Returns the nodes of one part by a rule, in the body frame; `None` if the points of the nodes are chosen
+/// individually.
 fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option<Nodes<Planar>> {
     let shape = &placed.surface;
     let boundary = match (rule, shape) {

@@ -19,8 +19,8 @@ use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 /// Radius (m) of the rounding of a barrel's chime: an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
-/// Cosine of the largest angle (73°) between the direction of a contact and the normal of a rail's seat at which the
-/// nodes of the seat carry the contact.
+/// Cosine of the largest angle (73°) between the normal of a contact and the normal of a rail's face at which the nodes
+/// of the face carry the contact.
 ///
 /// Contacts at larger angles, such as the chime of a barrel that has slid off, are tested exactly. Among cosines from 0
 /// to 0.7, tried on seven stacks that include the worst known cases, this value gave the smallest residual of the
@@ -120,7 +120,8 @@ fn add_rack(
         body: name.clone(),
         problem: problem.to_string(),
     };
-    // The rails lie above the underside of a frame with posts by the stroke of the seats, and bear when it is used up.
+    // The rails of a rack with posts lie above the underside of its frame by the stroke of the seats, and carry load
+    // once the stroke is used up.
     let lift = rack.posts.map_or(0.0, |_| rack.seat_stroke.min(rack.beam_height));
     let on_barrels = rack.posts.is_none() && level > 1;
     let rail = |(barrel, place, side): (usize, f64, f64)| {
@@ -176,9 +177,8 @@ fn add_rack(
 
 /// Returns `true` if rails carry rows of nodes.
 ///
-/// A barrel touches the rounded edge of a rail over a few millimeters, and a rail on the ground rests on its two
-/// corners. Where constants are stated per seat, each of these contacts is one element, even if wider seats are divided
-/// into many.
+/// A barrel touches the rounded edge of a rail over a few millimeters only, and a rail on the ground rests on its two
+/// corners. If constants are stated per seat, each of these contacts is therefore one element, and rails carry no rows.
 pub(super) fn has_rows(spec: &StackSpec) -> bool {
     spec.rack.contact == SeatContact::Nodes && spec.interfaces.barrel_rack.basis != Basis::Seat
 }
@@ -200,8 +200,8 @@ fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid
     Ok(solids.into_iter().map(|solid| Solid { out_of_plane: true, ..solid }).collect())
 }
 
-/// Returns the nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): a row along the flat part,
-/// and one node in the middle of each rounded end.
+/// Returns the nodes of the lower or upper face of a rail that is centered at `x` (m) and has this face at height `z`
+/// (m): a row along the flat part, and one node in the middle of each rounded end.
 fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
     let corner = corner_of(rack);
     let half = 0.5 * rack.rail_width - corner;
@@ -223,12 +223,14 @@ fn corner_of(rack: &Rack) -> f64 {
 
 /// Position of a barrel relative to its two rails, which may be inclined.
 struct Seating {
-    /// Height (m) of the middle of the barrel above the mean top of its rails.
+    /// Height (m) of the middle of the barrel above the mean height of the tops of its rails.
     seat: f64,
-    /// Height (m) of the right rail above the mean height of both rails; the left rail is as far below the mean.
+    /// Height (m) of the right rail above the mean height of both rails; the left rail is below the mean by the same
+    /// amount.
     ///
-    /// The upper side of a barrel mirrors its underside. Between inclined barrels, the underside of a rail is therefore
-    /// raised by as much as its top: both rails keep their thickness, and one rail sits a little higher than the other.
+    /// A rail between two inclined barrels touches the underside of one and the upper side of the other. Barrels are
+    /// symmetric, so the top and the underside of the rail shift by the same amount: each rail keeps its thickness, and
+    /// one rail sits slightly higher than the other.
     rise: f64,
 }
 

@@ -81,7 +81,7 @@ impl Pairs<'_> {
     /// Adds the exact tests of two solids: a circle is tested against the other solid; two solids with corners are
     /// tested in both directions.
     ///
-    /// `counts` gives the active side of each test.
+    /// `counts` selects, for each test, the contacts that count.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),

@@ -102,7 +102,8 @@ impl Solid {
         }
     }
 
-    /// Scales the solid by `length` and adds it to a body whose center of mass is at `center` (m) of the draft.
+    /// Scales the solid by `length` and adds it to a body whose center of mass is at `center` (m) in the frame of its
+    /// draft.
     pub(super) fn add_to(self, body: &mut Body<Planar>, center: Vec2, length: f64) -> Touch {
         let shape = scaled(self.shape, length);
         let offset = (self.offset - center) * length;

@@ -60,8 +60,8 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
 
 /// Returns the displacement (m) across the barrels below beyond which a rack is no longer supported.
 ///
-/// A rack with feet is supported until the feet stand beside the crowns and the beam rests on the round of a barrel.
-/// A rack without feet is supported until the end of its beam has passed the crown and stands on the falling side of
+/// A rack with feet is supported until the feet stand beside the crowns and the beam rests on the round of a barrel. A
+/// rack without feet is supported until the end of its beam has passed the crown and stands on the descending side of
 /// the round, where friction holds it up to a slope of arctan μ.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
@@ -73,7 +73,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
         Friction::Regularized { coefficient, .. } => coefficient,
     };
     if rack.foot_height > 0.0 {
-        // A foot bears on the falling side of the round until the beam has come down on the barrel.
+        // A foot bears on the descending side of the round until the beam has come down on the barrel.
         let height = (radius - rack.foot_height).max(0.0);
         return rack.foot_half_length + (radius * radius - height * height).sqrt();
     }
@@ -198,7 +198,7 @@ fn cradle(
     seat: Seat,
 ) -> Result<(), PolygonError> {
     let mut bar = |from: Vec2, to: Vec2| -> Result<(), PolygonError> {
-        // Of a support that does not rise above the beam, only the round end is left.
+        // If a support does not rise above the beam, only its round end remains.
         let shape = if (to - from).z.abs() + (to - from).x.abs() < 1e-3 {
             Shape::Circle(Circle { radius: BAR_RADIUS })
         } else {

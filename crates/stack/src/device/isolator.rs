@@ -44,7 +44,8 @@ pub(super) static WORDS: Words = Words {
         Setting { name: "seized rollers", overrides: &["stack.isolator.friction=0.6"] },
         Setting { name: "rusty rollers", overrides: &["stack.isolator.friction=0.1"] },
     ],
-    // A platform is an additional body: results equal those of the bare stack bit for bit only without it.
+    // A platform is an additional body, so results are bit-identical to those of the bare stack only without a
+    // platform.
     idle: &["stack.isolator.path=\"none\"", "stack.isolator.recentring=\"10 kN/m\""],
     cost: Cost {
         dollars: [800.0, 2500.0],

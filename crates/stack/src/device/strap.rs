@@ -83,14 +83,14 @@ section! {
     levels: u32 = LEVELS, Default::Value("0");
     /// Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
-    /// Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of some 5 to 7 % of its
+    /// Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of about 5 to 7 % of its
     /// length.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
     /// Damping of one strap, force per rate of elongation, while it is taut.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Slack of one strap on the stack at rest: the elongation before it pulls.
+    /// Slack of one strap on the stack at rest: the elongation at which the strap begins to pull.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"0 m\"");
     /// Force in one strap when it is tightened; the stack settles under this force, so that part of the force is lost.
@@ -121,7 +121,7 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
     check_levels(&reader, straps.levels, levels)?;
     if straps.levels == 1 && straps.ties == Ties::LevelsTogether {
         return refused(format!(
-            "`{path}` is 1, but \"levels-together\" ties at least 2; take 2, or \"barrels-to-racks\""
+            "`{path}` is 1, but \"levels-together\" ties at least 2 levels; take 2, or \"barrels-to-racks\""
         ));
     }
     reader.finish();
@@ -129,10 +129,10 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// Returns one strap over a vertical distance (m) on the stack as drawn, and the difference (m) between the length
-    /// of the strap and the distance between its ends after it is tightened on the stack at rest.
+    /// Returns one strap over a vertical distance (m) on the stack as drawn, and its slack (m) after it is tightened on
+    /// the stack at rest.
     ///
-    /// The difference is negative under pretension.
+    /// The slack is the length of the strap minus the distance between its ends; it is negative under pretension.
     ///
     /// # Errors
     /// If the pretension would stretch the strap by more than its whole length.

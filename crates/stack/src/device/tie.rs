@@ -79,17 +79,18 @@ section! {
     to: Anchor = Kind::Choice(names::<Anchor>), Default::Value("\"wall\"");
     /// Side on which there is a wall or a ceiling, before mirroring.
     side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
-    /// Distance from the end of a rack to the wall or the ceiling; the default is the 18 in that one winery keeps from its walls (Press Democrat 2014).
+    /// Distance from the end of a rack to the wall or the ceiling; the default is the clearance of 18 inches that one
+    /// winery keeps from its walls (Press Democrat 2014).
     distance: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.01, 20.0)), Default::Value("\"45 cm\"");
-    /// Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of some 2 MN
+    /// Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of about 2 MN
     /// divided by the length of the cable, and anchors make a tie softer.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
     /// Damping of one tie, force per rate of elongation, while it is taut.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Slack of one tie on the stack at rest: the elongation before it pulls.
+    /// Slack of one tie on the stack at rest: the elongation at which the tie begins to pull.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"1 cm\"");
     /// Force at which a tie yields and becomes permanently longer; if not given, ties never yield.

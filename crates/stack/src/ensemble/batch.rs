@@ -16,7 +16,7 @@ use crate::watch::{self, Ending, Fates, Joints, StressWatch};
 /// Number of steps between two polls of the stop request.
 const PATIENCE: u32 = 1024;
 
-/// Runs a group of cases with one topology and method in lanes; when stopped, returns the results so far.
+/// Runs a group of cases with one topology and method in lanes; if stopped, returns the results so far.
 pub(super) fn run(
     width: Width,
     method: Method,
@@ -68,9 +68,9 @@ struct Batch<'a, 'b, R: Real> {
     group: &'a [Run<'a>],
     stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
-    /// Index of the next run of the group.
+    /// Index, in the group, of the next run to be loaded.
     next: usize,
-    /// Index of the run in every lane.
+    /// Index, in the group, of the run in every lane.
     runs: Vec<usize>,
     /// Fates of the bodies of every lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
@@ -80,14 +80,15 @@ struct Batch<'a, 'b, R: Real> {
     joints: Option<Joints<R>>,
     /// Stop criteria of every lane; `None` before the first run is loaded.
     end: Option<watch::End<R>>,
-    /// Barrel positions of every lane, and the time (s) at which the next sample is due.
+    /// Barrel positions of every lane.
     trails: Vec<Trail>,
+    /// Time (s) at which the next sample of every lane is due; infinite in lanes without a case.
     due: R,
     /// Progress of the case in every lane; `None` without a case.
     shares: Vec<Option<Share>>,
-    /// The lanes that had come to rest in the last step.
+    /// The lanes that met the rest criterion in the last step.
     rested: R::Mask,
-    /// Number of steps since the last poll.
+    /// Number of steps since the last poll of the stop request.
     steps: u32,
     interrupted: bool,
     results: Vec<(usize, CaseResult)>,

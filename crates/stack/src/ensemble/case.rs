@@ -37,11 +37,11 @@ impl Prepared {
 pub struct CaseResult {
     /// Outcome, or the reason why the case could not run.
     pub outcome: Result<Outcome, String>,
-    /// Time (s) at which the first barrel had fallen.
+    /// Time (s) at which the first barrel counted as fallen.
     pub first_fall: Option<f64>,
     /// Number of barrels.
     pub barrels: usize,
-    /// Name of each barrel and the time (s) at which the barrel had fallen, in the order of the barrels; `None` for a
+    /// Name of each barrel and the time (s) at which it counted as fallen, in the order of the barrels; `None` for a
     /// barrel that did not fall.
     pub falls: Vec<(String, Option<f64>)>,
     /// Largest drop (m) of each fallen barrel, in the order of the barrels.
@@ -153,9 +153,10 @@ impl CaseResult {
 
     /// Creates the result of a case whose stack falls under its own weight before it is shaken.
     ///
-    /// The result is a collapse at time zero, from the level of the lowest unsupported body (name and level) upward;
-    /// the barrels of these levels count as fallen. `barrels` lists all barrels of the stack, each with its name, its
-    /// level, its height (m) above the floor, and its wine (m³). The height counts as the drop of the barrel.
+    /// The first argument is the name and the level of the lowest unsupported body. The result is a collapse at time
+    /// zero of this level and all levels above; the barrels of these levels count as fallen. `barrels` lists all
+    /// barrels of the stack, each with its name, its level, its height (m) above the floor, and its wine (m³). The
+    /// height counts as the drop of the barrel.
     pub fn fallen_at_rest(
         (first, from_level): (&str, u32),
         levels: u32,

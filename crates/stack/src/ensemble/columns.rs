@@ -146,7 +146,7 @@ columns! {
         Ok(Outcome::Collapse { time, .. }) => Some(*time),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => None,
     };
-    /// time at which the first barrel had fallen
+    /// time at which the first barrel counted as fallen
     first_fall "s": Outcome Number |case| case.first_fall;
     /// number of barrels of the stack
     barrels "": Outcome Integer |case| case.outcome.is_ok().then_some(case.barrels);

@@ -14,7 +14,7 @@ use crate::run::{Ended, conclude, method, thresholds};
 use crate::stand::Stack;
 use crate::watch::{End, Ending, Fates, Joints, StressWatch};
 
-/// Runs a group of cases one after the other; when stopped, returns the results so far.
+/// Runs a group of cases one after the other; if stopped, returns the results so far.
 pub(super) fn run(
     group: &[Run<'_>],
     stacks: &[Stack<'_>],

@@ -1,4 +1,4 @@
-//! Sampled barrel positions of a case: paths of the top barrels, and final positions of all.
+//! Sampled barrel positions of a case: paths of the top barrels, and final positions of all barrels.
 
 use barrelstack_dynamics::{BodyId, Planar, Pose, State};
 

@@ -63,9 +63,9 @@ impl Work {
     }
 }
 
-/// Total time that all threads have spent in one kind of work, including the threads that are in it now.
+/// Total time that all threads have spent on one kind of work, including work that is still under way.
 struct Clock {
-    /// Number of threads that are in this kind of work now.
+    /// Number of threads that are now at work of this kind.
     threads: AtomicI64,
     /// Sum of all end times minus the sum of all start times (ns).
     sum: AtomicI64,
@@ -133,7 +133,7 @@ fn now() -> i64 {
     i64::try_from(EPOCH.elapsed().as_nanos()).unwrap_or(i64::MAX)
 }
 
-/// Guard of a running case, whose progress counts as under way until it is dropped.
+/// Guard of a running case. The progress of the case counts as under way until the guard is dropped.
 #[derive(Debug, Default)]
 pub struct Share(u64);
 

@@ -120,12 +120,12 @@ fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64)
             if *outcome == Outcome::Stable && cut(ending, motion_end, time).is_some() =>
         {
             Some(format!(
-                "the run ends at {time:.1} s, but the motion at {motion_end:.1} s: the effect of the rest of the \
+                "the run ends at {time:.1} s, before the motion ends at {motion_end:.1} s: the effect of the remaining \
                  motion is not known; leave out run.duration to cover the whole motion"
             ))
         }
         Ending::Patience => Some(format!(
-            "a body still moved at {time:.1} s, when the run ended; raise run.patience to see it come \
+            "a body was still moving at {time:.1} s, when the run ended; raise run.patience to see it come \
              to rest"
         )),
         Ending::Duration

@@ -86,7 +86,7 @@ known! {
     capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
     /// Diameter of the circle that represents the barrel in the plane across the barrels.
     section_diameter: f64 = SIZE, Default::Derived("the diameter of the barrel above the rails of the rack");
-    /// Force between a barrel and a rack at which its staves are crushed: an assumption, from 4.3 MPa for white oak
+    /// Force between a barrel and a rack at which the staves are crushed: an assumption, from 4.3 MPa for white oak
     /// across the grain (Record 1914) over 10 cm under each of two rails that are 5 cm wide.
     stave_capacity: f64 =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Value("\"43 kN\"");

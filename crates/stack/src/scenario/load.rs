@@ -286,7 +286,7 @@ pub(super) fn merged(
     Ok((sources, table))
 }
 
-/// Builds the scenario from a table to which all overrides have been applied, with earlier warnings about it.
+/// Builds the scenario from a table to which all overrides have been applied, and adds its warnings to `warnings`.
 pub(super) fn finished(
     sources: Sources,
     mut table: Table,

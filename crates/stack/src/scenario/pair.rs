@@ -123,7 +123,7 @@ pairs! {
     /// Barrel against a rack on which it has no seat, or against its own rack after leaving its seat.
     FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.3,
         "the same as for a barrel on a rack";
-    /// Fallen rack on the ground, whose seat is on a higher level.
+    /// Rack of an upper level that has fallen to the ground.
     FallenRackGround fallen_rack_ground "fallen-rack-ground" = IMPACT, LIGHT, 0.5,
         "the same as for a rack on the ground";
     /// Rack against a rack on which it does not stand.

@@ -59,8 +59,8 @@ named! {
 }
 
 impl SeatContact {
-    /// Returns the number of elements, each with the constants of a node, that one element in the plane across the
-    /// barrels represents, because these elements stand one behind the other.
+    /// Returns the number of elements, each with the constants of a node, that coincide in the plane across the barrels
+    /// and are represented by one element.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,

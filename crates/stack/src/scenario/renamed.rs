@@ -6,13 +6,13 @@
 use super::error::{Problem, ScenarioError};
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
 
-/// Table that held the keys.
+/// Table that formerly held the keys.
 const FORMER: &str = "imperfections";
 
 /// Table that holds the keys now.
 const PRESENT: &str = "unknowns";
 
-/// Keys that moved from one table to the other under the same name.
+/// Keys that moved from [`FORMER`] to [`PRESENT`] under the same name.
 const MOVED: [&str; 6] = [
     "friction",
     "friction_barrel_rack",
@@ -22,17 +22,17 @@ const MOVED: [&str; 6] = [
     "damping",
 ];
 
-/// Key that selected between the two kinds of differences.
+/// Former key that selected which kinds of differences are drawn.
 const KIND: &str = "kind";
 
-/// Values of [`KIND`], with the present values of `imperfections.drawn` and `unknowns.drawn`.
+/// Values of [`KIND`], each with the equivalent values of `imperfections.drawn` and `unknowns.drawn`.
 const KINDS: [(&str, [bool; 2]); 3] =
     [("hair", [true, false]), ("ignorance", [false, true]), ("both", [true, true])];
 
 /// Replaces former keys by present ones. Returns a warning for each.
 ///
-/// Of a former and a present key, the one in the upper layer holds: overrides precede the file, and the file precedes
-/// those that it extends.
+/// If a former key and the present key are stated in different layers, the key in the upper layer applies: overrides
+/// take precedence over the file, and the file over the files that it extends.
 ///
 /// # Errors
 /// If one file states a former key together with the present one, or gives `kind` an unknown value.
@@ -71,7 +71,7 @@ pub(super) fn renew(table: &mut Table, sources: &Sources) -> Result<Vec<String>,
     Ok(warnings)
 }
 
-/// Returns the present values of `imperfections.drawn` and `unknowns.drawn`.
+/// Returns the values of `imperfections.drawn` and `unknowns.drawn` that are equivalent to an entry of [`KIND`].
 fn kinds(entry: &Entry, sources: &Sources) -> Result<[bool; 2], ScenarioError> {
     let known = KINDS.iter().find(|(name, _)| entry.node.value == Value::Text((*name).to_owned()));
     known.map(|(_, drawn)| *drawn).ok_or_else(|| {

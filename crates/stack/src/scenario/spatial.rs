@@ -62,7 +62,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
             return Err(reader.inconsistent("name", message));
         }
         let name = reader.text("name")?;
-        // The name "ground" is that of the ground in the model.
+        // The name "ground" is reserved for the ground of the model.
         if name == "ground" || bodies.iter().any(|body| body.name == name) {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));

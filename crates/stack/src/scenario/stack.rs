@@ -35,7 +35,7 @@ pub struct StackSpec {
     pub levels: u32,
     /// Number of barrels per level in this plane.
     pub columns: u32,
-    /// Number of barrels per level along the barrels, if both planes are requested; `None` for a single plane.
+    /// Number of barrels per level, counted along the barrels, if both planes are requested; `None` for a single plane.
     ///
     /// If both planes are requested, `view` is the transverse plane.
     pub columns_along: Option<u32>,
@@ -111,7 +111,7 @@ impl StackSpec {
         Some(along)
     }
 
-    /// Returns the number of racks along the barrels on one level in space; 1 in a plane.
+    /// Returns the number of racks on one level in space, counted along the barrels; 1 in a plane.
     pub fn racks_along(&self) -> u32 {
         self.space.map_or(1, |space| space.columns_along / self.rack.barrels_deep.max(1))
     }
@@ -125,7 +125,7 @@ impl StackSpec {
 /// Properties of a stack that is modeled in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InSpace {
-    /// Number of barrels per level along the barrels.
+    /// Number of barrels per level, counted along the barrels.
     pub columns_along: u32,
     /// Angle (rad) by which the stack is turned, counterclockwise viewed from above; at zero, the component of the
     /// scenario acts across the barrels.
@@ -179,9 +179,10 @@ const OWN: [Field; 9] = fields! {
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
-    /// Number of barrels per level, a multiple of the number that one rack carries: those in the plane of the model, or, with both planes or in space, those that lie side by side.
+    /// Number of barrels per level, a multiple of the number that one rack carries: in a single plane, the barrels in
+    /// that plane; in both planes or in space, the barrels that lie side by side.
     columns = COLUMNS, Default::Required;
-    /// Number of barrels per level along the barrels, if the model is in both planes or in space.
+    /// Number of barrels per level, counted along the barrels, if the model is in both planes or in space.
     columns_along = COLUMNS,
         Default::Derived("in both planes and in space, the number that one rack carries; must not be given otherwise");
     /// Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes the

@@ -31,14 +31,14 @@ section! {
     /// Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily; steel
     /// on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the number is an assumption).
     friction_ground: f64 = DISPERSION, Default::Value("0.2");
-    /// Correlation of ln μ between any two of these pairs of materials (a wet cellar is wet everywhere, but steel,
-    /// wood and floors differ in roughness; nobody has measured it, and 0 is an assumption).
+    /// Correlation of ln μ between any two pairs of materials (a wet cellar is wet everywhere, but steel, wood and
+    /// floors differ in roughness; nobody has measured it, and 0 is an assumption).
     friction_correlation: f64 = Kind::Number(Range::between(0.0, 0.95)), Default::Value("0");
     /// Standard deviation of ln k, one draw for all seats (nobody has measured these racks; with 0.6, nineteen in
     /// twenty variants lie within a factor of 3.2, which reaches from the value measured by Candia, de la Llera and
     /// Almazán 2008 to the value of a stave clamped between hoops).
     stiffness: f64 = DISPERSION, Default::Value("0.6");
-    /// Standard deviation of ln k of all impacts, one draw for all (an assumption).
+    /// Standard deviation of ln k of impacts, one draw for all impacts (an assumption).
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
     /// Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated, one draw for
     /// all seats with a damper (with 0.3, a stated restitution of 0.8 becomes a restitution between 0.69 and 0.88 in

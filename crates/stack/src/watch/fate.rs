@@ -117,7 +117,7 @@ pub struct Fates<R: Real = f64> {
     collapse: R,
     /// The first body that left its seat.
     first: PerLane<Option<BodyId>>,
-    /// Time (s) at which the first barrel had fallen; infinite until then.
+    /// Time (s) at which the first barrel counted as fallen; infinite until then.
     first_fall: R,
 }
 
@@ -266,7 +266,7 @@ impl Fates {
         self.first[0]
     }
 
-    /// Returns the time (s) at which the first barrel had fallen.
+    /// Returns the time (s) at which the first barrel counted as fallen.
     pub fn first_fall(&self) -> Option<f64> {
         known(self.first_fall)
     }
@@ -406,7 +406,8 @@ impl<R: Real> Fates<R> {
             return here - state.poses[Assembly::GROUND].position - body.rest;
         }
         if let (Some(rack), Some(foot)) = (body.support.below, body.support.foot) {
-            // Measured in this frame, racks that lean together or rock on the posts of another do not slide.
+            // In this frame, a rack does not slide if it leans together with the rack below, or rocks on the posts of
+            // that rack.
             let foot = Vec2::new(R::zero(), R::splat(-foot));
             let from = here + scratch.rotations[i].apply(foot) - state.poses[rack].position;
             let rest = body.rest + foot - self.bodies[rack].rest;

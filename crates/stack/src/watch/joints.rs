@@ -300,7 +300,8 @@ impl<R: Real> Joints<R> {
 
     /// Returns the index of the joint of two bodies that touch, and `true` if the first body is the upper one.
     ///
-    /// A missing joint is added; `None` if joints without support by design are not observed.
+    /// Adds the joint if it does not exist yet. If bodies that do not support each other by design are not observed,
+    /// returns `None` instead.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {

@@ -134,7 +134,7 @@ impl Recording {
         }
     }
 
-    /// Returns the number of values of a sample, including its time.
+    /// Returns the number of values in one sample of the histories, including its time.
     pub(crate) fn histories(assembly: &Assembly) -> usize {
         1 + GROUND
             + BODY * assembly.parts.len()

@@ -30,7 +30,7 @@ const CALM: f64 = 0.02;
 /// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
 
-/// Ratio of the height of the center of a barrel to its radius up to which the barrel counts as on the floor.
+/// Ratio of the height of the center of a barrel to its radius up to which the barrel counts as lying on the floor.
 pub const ON_FLOOR: f64 = 1.05;
 
 /// Reason for the end of a run.
@@ -39,7 +39,7 @@ pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
     /// calm ground is sufficient.
     Rest,
-    /// The time that the scenario allows after a collapse was over.
+    /// The time that the scenario allows after a collapse had elapsed.
     AfterCollapse,
     /// The duration that the scenario sets was reached.
     Duration,
@@ -79,19 +79,19 @@ impl Ending {
 /// Detects when all bodies are at rest, in one run or in one run per lane.
 ///
 /// A body rests when its kinetic energy could not lift it by half a centimeter. A barrel that rolls away on the floor
-/// also counts as at rest if it approaches no other body: it slows down by some 0.2 m/s² and cannot reach any body.
+/// also counts as at rest if it approaches no other body: it slows down by about 0.2 m/s² and cannot reach any body.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
-    /// Time (s) from which the ground is still; infinite if the run does not end by rest.
+    /// Time (s) from which the ground is still; infinite if the run ends by its duration only.
     still_from: R,
-    /// Time (s) from which the ground is calm; infinite if the run does not end by rest.
+    /// Time (s) from which the ground is calm; infinite if the run ends by its duration only.
     calm_from: R,
     /// Largest kinetic energy of a body at rest divided by its mass (m²/s²).
     slow: R,
     /// Duration (s) for which all bodies must be slow.
     hold: R,
     bodies: Vec<Mover<R>>,
-    /// Time (s) of the last motion.
+    /// Time (s) at which a body was last in motion.
     moved: R,
 }
 
@@ -144,7 +144,7 @@ impl Rest {
 /// Returns the times (s) from which a standing stack and a collapsed stack may be at rest.
 ///
 /// `end` is the end of the motion (s), and `calm` returns the time (s) from which the ground is calm. Both times are
-/// infinite if the run does not end by rest.
+/// infinite if the run ends by its duration only.
 pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f64) {
     match until {
         Until::Rest => (end, calm()),
@@ -160,7 +160,8 @@ pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f
 pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
     let holding = laws.iter().map(|interface| match interface.friction {
         FrictionLaw::Coulomb { kinetic_coefficient, .. } => CALM_OF_FRICTION * kinetic_coefficient,
-        // Such contacts hold by the shape of their seats only, or creep.
+        // Contacts without friction hold by the shape of their seats only, and contacts with regularized friction
+        // creep.
         FrictionLaw::Frictionless | FrictionLaw::Regularized { .. } => 0.0,
     });
     holding.fold(CALM, f64::min)

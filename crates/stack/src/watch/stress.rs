@@ -136,9 +136,11 @@ impl StressEnvelope {
         (length > 0.0).then(|| self.loaded().map(ratio).sum::<f64>() / length)
     }
 
-    /// Returns the ratio of two averages: the largest stress at each point until the first loss of seat, averaged over
-    /// the boundary that is loaded at any time until then; and the stress at rest, averaged over the boundary that is
-    /// loaded at rest; `None` without load at rest.
+    /// Returns the mean of the envelope divided by the mean stress at rest; `None` without load at rest.
+    ///
+    /// The envelope is the largest stress at each point until the first loss of seat, averaged over the part of the
+    /// boundary that is loaded at any time until then. The stress at rest is averaged over the part that is loaded at
+    /// rest.
     pub fn mean_of_envelope(&self) -> Option<f64> {
         let mean = |stress: &[f64]| {
             let covered = || stress.iter().zip(&self.lengths).filter(|(stress, _)| **stress > 0.0);

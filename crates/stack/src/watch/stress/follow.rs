@@ -21,8 +21,9 @@ use crate::assemble::{Assembly, PartKind};
 /// Most contacts in most steps therefore need only a few comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds<R: Real = f64> {
-    /// The first point or direction of the range, and the first point or direction past the range.
+    /// First point or direction of the range.
     pub(super) from: Vec2<R>,
+    /// First point or direction past the range.
     pub(super) to: Vec2<R>,
     /// `true` if the place is above the axis of a barrel; on a rack, `true` if the place is known.
     pub(super) above: R::Mask,
@@ -137,16 +138,16 @@ struct Lane {
     on_racks: BTreeMap<(usize, u32, BodyId), usize>,
 }
 
-/// Mark of a pair that has not touched yet.
+/// Value that marks a pair that has not touched yet.
 const NEVER: usize = usize::MAX;
 
 /// Observer of the stresses in one run, or in one run per lane. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub(crate) struct StressWatch<R: Real = f64> {
     lanes: Vec<Lane>,
-    /// The lanes that have a run.
+    /// The lanes in which a run is observed.
     watched: R::Mask,
-    /// The lanes with a run in which a body has left its seat.
+    /// The observed lanes in which a body has left its seat.
     lost: R::Mask,
     pairs: Vec<Pair<R>>,
     /// Index of the first entry of every pair in `bounds`.
