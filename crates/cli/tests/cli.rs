@@ -291,7 +291,10 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
     let stands = "  Shaken along the barrels, the stack stands until 1.0 s, where the run ends, 34.0 s before the motion does.\n";
     assert!(stdout(&output).contains(stands), "{}", stdout(&output));
     let warning = stderr(&output);
-    assert!(warning.starts_with("warning: the run ends at 1.0 s, before the motion ends at "), "{warning}");
+    assert!(
+        warning.starts_with("warning: the run ends at 1.0 s, before the motion ends at "),
+        "{warning}"
+    );
     assert_eq!(warning.lines().count(), 1);
     // In JSON the same warning is part of the document, and standard error is silent.
     let arguments = [

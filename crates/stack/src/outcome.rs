@@ -125,7 +125,7 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
 
 /// Returns the collapse that begins at a time (s) with the loss of seat of a body, in a stack with `levels` levels.
 ///
-/// The body is given by name, kind and level; `slid` is `true` if it is a rack that slid off along the barrels.
+/// The body is given by name, kind and level; `slid` is `true` if the body is a rack that slid off along the barrels.
 pub fn collapse(
     time: f64,
     (first, kind, from_level): (&str, PartKind, u32),

@@ -287,10 +287,11 @@ class FreeInterfaceFields(TypedDict, total=False):
     between: list[str]
     """The two kinds: the first has the contact nodes, the second the surface; in space, the order does not matter."""
     damping: Quantity
-    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, derived from the restitution
-    of the rack's seats in the catalog for constants per seat, and 22 N s/cm per node if the stiffness is not
-    given either. Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.
-    Default: must be given, unless `restitution` and `reference_speed` are given.
+    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
+    derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
+    22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the elastic
+    force, per unit of penetration rate. Default: must be given, unless `restitution` and `reference_speed` are
+    given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
@@ -298,19 +299,20 @@ class FreeInterfaceFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: the mass of the
-    rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise.
+    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
+    per seat, the mass that the catalog gives for the seats of the rack; must be given with `restitution`
+    otherwise.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack, the
-    restitution of the rack's seats in the catalog for constants per seat without `damping`. Or: Ratio of normal
-    speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack with
+    constants per seat and without `damping`, the restitution that the catalog gives for the seats of the rack.
+    Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
     """Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent
-    1.5. Default: in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8
-    kN/cm for a linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks
-    and from a fallen rack to the ground; must be given otherwise.
+    1.5. Default: in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of
+    the rack, with a linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8
+    N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     within_groups: bool
     """True if the interface also acts between bodies of the same `group`. Default: true."""
@@ -334,9 +336,9 @@ class FrictionFields(TypedDict, total=False):
     """Ratio of the tangential damping of the stick to the normal damping. Default: 1.0."""
     tangential_stiffness_ratio: Union[float, Quantity]
     """Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses friction
-    sooner, but needs a smaller time step. Default: the ratio of the rack's seats in the catalog for constants
-    per seat: 2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4 on the
-    ground, where tubes that do not lie flat bend; 1 otherwise.
+    sooner, but needs a smaller time step. Default: for constants per seat, the ratio that the catalog gives for
+    the seats of the rack: 2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4
+    on the ground, where tubes that do not lie flat bend; 1 otherwise.
     """
     velocity: Quantity
     """Slip rate at which the friction is fully developed."""
@@ -366,10 +368,11 @@ class ImpactFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     damping: Quantity
-    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, derived from the restitution
-    of the rack's seats in the catalog for constants per seat, and 22 N s/cm per node if the stiffness is not
-    given either. Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.
-    Default: must be given, unless `restitution` and `reference_speed` are given.
+    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
+    derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
+    22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the elastic
+    force, per unit of penetration rate. Default: must be given, unless `restitution` and `reference_speed` are
+    given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
@@ -377,19 +380,20 @@ class ImpactFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: the mass of the
-    rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise.
+    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
+    per seat, the mass that the catalog gives for the seats of the rack; must be given with `restitution`
+    otherwise.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack, the
-    restitution of the rack's seats in the catalog for constants per seat without `damping`. Or: Ratio of normal
-    speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack with
+    constants per seat and without `damping`, the restitution that the catalog gives for the seats of the rack.
+    Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
     """Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent
-    1.5. Default: in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8
-    kN/cm for a linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks
-    and from a fallen rack to the ground; must be given otherwise.
+    1.5. Default: in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of
+    the rack, with a linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8
+    N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -446,10 +450,11 @@ class InterfaceFields(TypedDict, total=False):
     boundary. Default: seat.
     """
     damping: Quantity
-    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, derived from the restitution
-    of the rack's seats in the catalog for constants per seat, and 22 N s/cm per node if the stiffness is not
-    given either. Or: Damping d: ratio of the damping force to the elastic force, per unit of penetration rate.
-    Default: must be given, unless `restitution` and `reference_speed` are given.
+    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
+    derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
+    22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the elastic
+    force, per unit of penetration rate. Default: must be given, unless `restitution` and `reference_speed` are
+    given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
@@ -457,19 +462,20 @@ class InterfaceFields(TypedDict, total=False):
     """
     law: Union[Literal["speed-gap"], Literal["kelvin-voigt"], Literal["hunt-crossley"], Literal["rebound"], Literal["hertz"]]
     reference_mass: Quantity
-    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: the mass of the
-    rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise.
+    """Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary. Default: for constants
+    per seat, the mass that the catalog gives for the seats of the rack; must be given with `restitution`
+    otherwise.
     """
     restitution: Union[float, Quantity]
-    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack, the
-    restitution of the rack's seats in the catalog for constants per seat without `damping`. Or: Ratio of normal
-    speeds after and before an impact. Default: 0.3.
+    """Ratio of normal speeds after and before an impact, stated instead of the damping. Default: in a stack with
+    constants per seat and without `damping`, the restitution that the catalog gives for the seats of the rack.
+    Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
     """Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent
-    1.5. Default: in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8
-    kN/cm for a linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks
-    and from a fallen rack to the ground; must be given otherwise.
+    1.5. Default: in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of
+    the rack, with a linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8
+    N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""

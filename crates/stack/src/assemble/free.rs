@@ -148,7 +148,7 @@ impl Boundary<'_> {
     }
 }
 
-/// Classifies the bodies and returns the number of the class of each body. Bodies of the same class form the same
+/// Divides the bodies into classes, and returns the class number of each body. Bodies of the same class form the same
 /// contact pairs with any other body.
 fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec<usize> {
     let grouped = scene.interfaces.iter().any(|interface| !interface.within_groups);

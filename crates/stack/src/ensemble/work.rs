@@ -63,7 +63,7 @@ impl Work {
     }
 }
 
-/// Total time that all threads have spent on one kind of work, including work that is still under way.
+/// Total time that all threads have spent on one kind of work, including work in progress.
 struct Clock {
     /// Number of threads that are now at work of this kind.
     threads: AtomicI64,

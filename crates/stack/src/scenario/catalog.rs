@@ -218,8 +218,8 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes.",
         source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which gives pitch and width (Wines & \
-             Vines 2016); clearance for 7 inches between the bilges of neighboring levels, so that six levels are 18 ft \
-             high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
+             Vines 2016); clearance for 7 inches between the bilges of neighboring levels, so that six levels are \
+             18 ft high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },

@@ -198,7 +198,7 @@ pub(super) fn clash(name: &str, column: &str) -> String {
     )
 }
 
-/// Reads the fields of a free scene from the top of the file.
+/// Reads the fields of a free scene from the top level of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
@@ -365,7 +365,7 @@ fn of_kind<'a>(
     bodies.iter().flat_map(FreeBody::outer).filter(move |(other, ..)| *other == kind)
 }
 
-/// Writes the fields of a free scene at the top of the file.
+/// Writes the fields of a free scene to the top level of the file.
 pub(super) fn write(writer: &mut Writer, scene: &FreeScene) {
     writer.table("ground", scene.ground.write());
     writer.tables("body", scene.bodies.iter().map(write_body).collect());

@@ -124,8 +124,8 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Sources of the values of a scenario, from which errors determine their place in a file, and warnings about them.
-/// Ignored in comparisons.
+/// Sources of the values of a scenario, from which errors determine their place in a file, and warnings about the text
+/// of the scenario. Ignored in comparisons.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>, Vec<String>);
 

@@ -116,7 +116,7 @@ fn put(
     }
 }
 
-/// Orders origins from the lowest layer to the uppermost.
+/// Returns the layer of an origin as a sort key: the lowest layer comes first.
 fn layer(origin: Origin) -> (u8, usize) {
     match origin {
         Origin::Default => (0, 0),

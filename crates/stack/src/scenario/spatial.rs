@@ -50,7 +50,7 @@ fn solids(body: &SpatialBody) -> usize {
     if let Solid::Compound { parts } = &body.solid { parts.len() } else { 1 }
 }
 
-/// Reads the fields of a free scene in space from the top of the file.
+/// Reads the fields of a free scene in space from the top level of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
     let ground = SpatialGround::read(root.section("ground")?)?;
     let mut bodies: Vec<SpatialBody> = Vec::new();
@@ -134,7 +134,7 @@ fn read_interfaces(
     Ok(interfaces)
 }
 
-/// Writes a free scene in space into the top of the file.
+/// Writes a free scene in space to the top level of the file.
 pub(super) fn write(writer: &mut Writer, scene: &SpatialScene) {
     writer.table("ground", scene.ground.write());
     writer.tables("body", scene.bodies.iter().map(SpatialBody::write).collect());

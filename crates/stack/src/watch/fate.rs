@@ -57,8 +57,8 @@ pub struct Fate {
     pub left_seat: Option<(f64, Loss)>,
     /// Time (s) at which the drop of the body exceeded the threshold of a fall; `None` if the body did not fall.
     pub fell_at: Option<f64>,
-    /// Time (s) at which the body landed: the first time after [`Fate::fell_at`] at which the body moved down at less
-    /// than half of its largest downward speed.
+    /// Time (s) at which the body landed: the first time after [`Fate::fell_at`] at which the body moved downward at
+    /// less than half of its largest downward speed.
     pub landed_at: Option<f64>,
     /// Largest downward speed (m/s) between fall and landing.
     pub landing_speed: Option<f64>,

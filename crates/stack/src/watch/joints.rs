@@ -42,7 +42,7 @@ pub struct Joints<R: Real = f64> {
     /// Every barrel on its rack and every rack on its supports, followed by other pairs of bodies in the order of their
     /// first contact.
     pub joints: Vec<Joint<R>>,
-    /// For every body, the lower bodies of its joints, each with the index of the joint.
+    /// For every body, the joints in which it is the upper body: the lower body and the index of each joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
     /// `true` if bodies that touch, but do not support each other by design, are also observed.
     follows_all: bool,

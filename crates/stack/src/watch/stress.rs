@@ -4,11 +4,11 @@
 //! In a planar model, stress is force per length of boundary (N/m). Every contact loads both of its bodies over the
 //! tributary length of its contact element. For a node, this length is half the distance to each neighbor. For a
 //! contact without nodes, the tributary length is 1 cm, the spacing of the nodes of the paper's racks, so that both
-//! kinds of contact are comparable. (Hertz's half-width between an oak stave and a steel bar is about 1 mm, less than a
-//! stave deforms in bending, and would change with the force; a bearing of fixed length keeps stress proportional to
-//! force, as EN 1995-1-1, 6.1.5, does for timber under compression across the grain.) On a rack, there is one value for
-//! each node and for each place of a contact without nodes. The boundary of a barrel is divided into cells, and a
-//! contact loads all cells within its tributary length.
+//! kinds of contact are comparable. A fixed length keeps stress proportional to force, as in EN 1995-1-1, 6.1.5, for
+//! timber under compression across the grain. (Hertz's half-width between an oak stave and a steel bar changes with the
+//! force. It is about 1 mm, less than the deflection of a stave in bending.) On a rack, there is one value for each
+//! node and for each place of a contact without nodes. The boundary of a barrel is divided into cells, and a contact
+//! loads all cells within its tributary length.
 //!
 //! At rest, the stress of every point times its [length](StressEnvelope::lengths) is the contact force on this point,
 //! so the sum over the boundary is the sum of the contact forces on the body.

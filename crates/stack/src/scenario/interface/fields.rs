@@ -66,8 +66,8 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack, the stiffness of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a \
-         linear law per node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
+        "in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of the rack, with a \
+         linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
          racks and from a fallen rack to the ground; must be given otherwise",
     ),
     "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
@@ -86,7 +86,8 @@ const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack, the restitution of the rack's seats in the catalog for constants per seat without `damping`",
+        "in a stack with constants per seat and without `damping`, the restitution that the catalog gives for the seats \
+         of the rack",
     ),
     "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
@@ -96,8 +97,8 @@ const LINEAR: &[Field] = &[
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
         Default::Derived(
-            "in a stack, derived from the restitution of the rack's seats in the catalog for constants per seat, and \
-             22 N s/cm per node if the stiffness is not given either",
+            "in a stack, with constants per seat derived from the restitution that the catalog gives for the seats of \
+             the rack, and with constants per node 22 N s/cm if the stiffness is not given either",
         ),
         "Damping c: N s/m per seat or node or N s/m^2 per length.",
     ),
@@ -106,8 +107,8 @@ const LINEAR: &[Field] = &[
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
         Default::Derived(
-            "the mass of the rack's seats in the catalog for constants per seat; must be given with `restitution` \
-             otherwise",
+            "for constants per seat, the mass that the catalog gives for the seats of the rack; must be given with \
+             `restitution` otherwise",
         ),
         "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
@@ -243,9 +244,9 @@ table! {
             /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
             /// friction sooner, but needs a smaller time step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("the ratio of the rack's seats in the catalog for constants per seat: 2 on barrels, \
-                    whose staves are softer across than along their surface; 2 on posts; 4 on the ground, where tubes \
-                    that do not lie flat bend; 1 otherwise");
+                Default::Derived("for constants per seat, the ratio that the catalog gives for the seats of the rack: \
+                    2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4 on the \
+                    ground, where tubes that do not lie flat bend; 1 otherwise");
             /// Ratio of the tangential damping of the stick to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
