@@ -115,8 +115,8 @@ impl Scenario {
         scenario
     }
 
-    /// Returns a record with the record settings of the scenario. If the scenario has no record, the first horizontal
-    /// component with the default processing is used.
+    /// Returns the motion of a record with the record settings of the scenario. If the scenario has no record, the
+    /// first horizontal component with the default processing is used.
     fn recorded(&self, source: RecordSource) -> RecordMotion {
         match &self.motion.source {
             MotionSource::Record(own) => RecordMotion { source, ..own.clone() },

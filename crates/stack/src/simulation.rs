@@ -1,4 +1,4 @@
-//! A run that advances step by step, can be acted upon, and can be copied at any time.
+//! A run that advances step by step, accepts external forces, and can be copied at any time.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 //!
 //! An elastic stick reverses its friction gradually, over twice its yield displacement, so every reversal of slip is
 //! delayed by √(4 yield / acceleration). For a block on oscillating ground, this delay changed the slip, up or down, by
-//! 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). The square root is therefore reported
-//! as the relative error.
+//! 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). Therefore, √(yield / amplitude) is
+//! reported as the relative error.
 
 use std::fmt;
 

@@ -52,7 +52,7 @@ pub struct Glance<'a> {
     pub state: &'a State<Planar>,
 }
 
-/// Step callback of a run, which may stop it.
+/// Step callback of a run, which may stop the run.
 pub type Eye<'a> = dyn FnMut(Glance<'_>) -> ControlFlow<()> + 'a;
 
 /// Interval between callbacks.

@@ -264,7 +264,9 @@ class ElementFields(TypedDict, total=False):
     yields_at: Quantity
     """Force at which the strap yields and becomes permanently longer; if not given, the strap never yields."""
     sway_damping: Quantity
-    """Damping force per velocity of the second attachment point perpendicular to the rod. Default: 0 N s/m."""
+    """Damping force on the second attachment point divided by its velocity, both perpendicular to the rod.
+    Default: 0 N s/m.
+    """
     axis: Quantity
     """Inclination of the axis in the first body, counterclockwise. Default: 0 deg."""
     gap: Quantity
@@ -404,8 +406,8 @@ class ImpactFields(TypedDict, total=False):
 
 
 class ImperfectionsFields(TypedDict, total=False):
-    """Random differences from stack to stack, centered on the scenario, and the number of stacks (variants) that
-    are drawn with them; the table `unknowns` states the differences that a whole stack shares.
+    """Random differences from stack to stack, centered on the values of the scenario, and the number of variants
+    of the stack that are drawn; the table `unknowns` states the differences that a whole stack shares.
     """
 
     drawn: bool
@@ -1179,14 +1181,14 @@ class UnknownsFields(TypedDict, total=False):
     damping: Union[float, Quantity]
     """Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated, one draw
     for all seats with a damper (with 0.3, a stated restitution of 0.8 becomes a restitution between 0.69 and
-    0.88 in nineteen of twenty variants; the number is an assumption). Default: 0.3.
+    0.88 in nineteen of twenty variants; the default is an assumption). Default: 0.3.
     """
     drawn: bool
     """True to draw the constants; false to keep all of them as stated in all variants. Default: true."""
     friction: Union[float, Quantity]
     """Standard deviation of ln μ, static and kinetic alike, where racks or barrels touch each other; one draw for
     barrels on racks, one for racks on racks and one for barrels on barrels, each also for bodies that have
-    fallen. Shear tests give 0.10 to 0.30 for laminated veneer on smooth steel and up to 0.80 on rough steel
+    fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth steel and up to 0.80 on rough steel
     (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al. 2020), 0.37 to 0.45 for
     pallets on steel racks. A standard deviation of 0.35, which is an assumption, puts nine in ten variants
     within a factor of 1.8. Default: 0.35.
@@ -1201,7 +1203,7 @@ class UnknownsFields(TypedDict, total=False):
     """
     friction_ground: Union[float, Quantity]
     """Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily;
-    steel on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the number is an
+    steel on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the default is an
     assumption). Default: 0.2.
     """
     impact_stiffness: Union[float, Quantity]
@@ -1213,10 +1215,11 @@ class UnknownsFields(TypedDict, total=False):
     """
     static_friction: Union[float, Quantity]
     """Largest excess of static over kinetic friction of barrels on racks, as a fraction of the kinetic coefficient
-    and in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Chestnut on
-    chestnut has 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in planes, an excess of 0.4
-    changes shares of collapses by less than their sampling error; in space 39 instead of 53 of 64 variants of
-    the demo on four levels collapse, which has not been repeated with another seed. Default: 0.
+    and in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Tests of
+    chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in
+    planes, an excess of 0.4 changes shares of collapses by less than their sampling error; in space, 39 of 64
+    variants of the demo on four levels collapse instead of 53, which has not been repeated with another seed.
+    Default: 0.
     """
     stick: Union[float, Quantity]
     """Standard deviation of the logarithm of the ratio of tangential to normal stiffness, lognormal, one draw for

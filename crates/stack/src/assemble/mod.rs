@@ -115,7 +115,7 @@ impl Part {
         }
     }
 
-    /// Creates the part of the ground, drawn as a line longer than any picture is wide.
+    /// Creates the part of the ground, drawn as a line that is longer than the width of any picture.
     fn ground() -> Self {
         let points = vec![Vec2::new(-100.0, 0.0), Vec2::new(100.0, 0.0)];
         let outlines = vec![Outline { points, closed: false }];

@@ -26,7 +26,7 @@ pub const BAR_RADIUS: f64 = 0.015;
 
 /// Corner radius (m) of tubes: an assumption.
 ///
-/// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes never touch.
+/// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes, inside the rounding, never touch.
 pub const TUBE_CORNER: f64 = 0.012;
 
 /// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer

@@ -54,7 +54,7 @@ section! {
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// Reach of a lid to either side of its barrel, as a fraction of the radius of the barrel: an assumption.
+/// Reach of a lid to either side of the center of its barrel, as a fraction of the radius of the barrel: an assumption.
 const HALF_WIDTH: f64 = 0.6;
 
 /// Reads the table of lids.
@@ -71,7 +71,7 @@ impl Lids {
         self.levels > 0
     }
 
-    /// Returns the lid of a barrel with a radius (m), as a guide from its rack to the barrel.
+    /// Returns the lid of a barrel with the given radius (m), as a guide between its rack and the barrel.
     ///
     /// The rack is the first body of the link; `up` is the upward direction in its frame.
     pub fn guide<S: Space<Real = f64>>(

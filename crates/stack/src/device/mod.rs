@@ -240,7 +240,7 @@ fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), Inpu
 /// A force element of a device that is installed and tightened after the stack has settled.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
-    /// The element on the stack as drawn, before it settles.
+    /// The element on the stack as drawn, before the stack settles.
     pub(crate) element: Element<Planar>,
     /// Length (m) of the element minus the distance between its ends; negative under pretension.
     give: f64,

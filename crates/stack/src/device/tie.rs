@@ -43,7 +43,7 @@ pub(super) static WORDS: Words = Words {
 };
 
 named! {
-    /// Anchor of the ties of racks.
+    /// Structure to which the ties anchor a rack.
     pub enum Anchor {
         /// A wall at either end of the rack.
         Wall = "wall",

@@ -22,7 +22,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares a scenario under its own motion.
+    /// Prepares a scenario with its own motion.
     ///
     /// # Errors
     /// If the motion cannot be read.

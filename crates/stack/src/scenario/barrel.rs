@@ -175,7 +175,8 @@ impl Barrel {
             transverse: wine_density * wine.transverse,
         };
         let contents = match self.fill {
-            // Mass in excess of that of the wood, stated for an empty barrel, is distributed like the wood.
+            // If the mass stated for an empty barrel exceeds the mass of the wood, the excess is distributed like the
+            // wood.
             Fill::Empty => {
                 let density = wine_mass / wood.volume;
                 Moments { axial: density * wood.axial, transverse: density * wood.transverse }

@@ -14,9 +14,9 @@ use super::tree::Table;
 named! {
     /// Kind of body that an override changes.
     pub enum StackBody {
-        /// A barrel; columns count barrels.
+        /// A barrel; its column is counted in barrels.
         Barrel = "barrel",
-        /// A rack; columns count racks.
+        /// A rack; its column is counted in racks.
         Rack = "rack",
     }
 }

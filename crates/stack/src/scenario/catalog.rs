@@ -32,7 +32,7 @@ pub struct CatalogBarrel {
 }
 
 impl CatalogBarrel {
-    /// Returns the barrel of a scenario, empty and without the values that depend on the rack.
+    /// Returns the catalog barrel as a barrel of a scenario, empty and without the values that depend on the rack.
     pub(super) const fn barrel(&self) -> Barrel {
         let Self { name, length, bilge_diameter, head_diameter, stave_thickness, .. } = *self;
         Barrel {
@@ -187,8 +187,7 @@ pub struct CatalogRack {
     pub source: &'static str,
 }
 
-/// Rack for two barrels side by side on two rails: a rack of type 2 across the barrels, and of type 1 along the
-/// barrels.
+/// Rack for two barrels side by side on two rails.
 const TWO_BARREL: Rack = Rack {
     base: "two-barrel",
     kind: RackKind::OnBarrels,

@@ -12,8 +12,8 @@ section! {
     /// Random differences from stack to stack, and how many stacks are drawn.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Imperfections;
-    /// Random differences from stack to stack, centered on the scenario, and the number of stacks (variants) that are
-    /// drawn with them; the table `unknowns` states the differences that a whole stack shares.
+    /// Random differences from stack to stack, centered on the values of the scenario, and the number of variants of
+    /// the stack that are drawn; the table `unknowns` states the differences that a whole stack shares.
     pub static IMPERFECTIONS = "imperfections";
     /// Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run only
     /// the stack as stated.

@@ -21,15 +21,16 @@ section! {
     drawn: bool = Kind::Flag, Default::Value("true");
     /// Standard deviation of ln μ, static and kinetic alike, where racks or barrels touch each other; one draw for
     /// barrels on racks, one for racks on racks and one for barrels on barrels, each also for bodies that have fallen.
-    /// Shear tests give 0.10 to 0.30 for laminated veneer on smooth steel and up to 0.80 on rough steel (Dorn et al.
-    /// 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al. 2020), 0.37 to 0.45 for pallets on steel
+    /// Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth steel and up to 0.80 on rough steel (Dorn et
+    /// al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al. 2020), 0.37 to 0.45 for pallets on steel
     /// racks. A standard deviation of 0.35, which is an assumption, puts nine in ten variants within a factor of 1.8.
     friction: f64 = DISPERSION, Default::Value("0.35");
     /// Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured; the value is
     /// then the scatter of ln μ between racks and barrels.
     friction_barrel_rack: Option<f64> = DISPERSION, Default::Derived("`friction`");
     /// Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily; steel
-    /// on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the number is an assumption).
+    /// on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the default is an
+    /// assumption).
     friction_ground: f64 = DISPERSION, Default::Value("0.2");
     /// Correlation of ln μ between any two pairs of materials (a wet cellar is wet everywhere, but steel, wood and
     /// floors differ in roughness; nobody has measured it, and 0 is an assumption).
@@ -42,13 +43,13 @@ section! {
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
     /// Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated, one draw for
     /// all seats with a damper (with 0.3, a stated restitution of 0.8 becomes a restitution between 0.69 and 0.88 in
-    /// nineteen of twenty variants; the number is an assumption).
+    /// nineteen of twenty variants; the default is an assumption).
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// Largest excess of static over kinetic friction of barrels on racks, as a fraction of the kinetic coefficient and
-    /// in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Chestnut on chestnut has
-    /// 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in planes, an excess of 0.4 changes shares of
-    /// collapses by less than their sampling error; in space 39 instead of 53 of 64 variants of the demo on four
-    /// levels collapse, which has not been repeated with another seed.
+    /// in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Tests of chestnut on
+    /// chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in planes, an excess
+    /// of 0.4 changes shares of collapses by less than their sampling error; in space, 39 of 64 variants of the demo on
+    /// four levels collapse instead of 53, which has not been repeated with another seed.
     static_friction: f64 = DISPERSION, Default::Value("0");
     /// Standard deviation of the logarithm of the ratio of tangential to normal stiffness, lognormal, one draw for all
     /// seats. Not drawn by default, because a factor of 2 changes shares of collapses by less than their sampling error.

@@ -124,7 +124,7 @@ struct Pressed {
     on: usize,
     /// Tributary length (m) of the element.
     length: f64,
-    /// The loaded points of the envelope; indices past the last point continue with the first.
+    /// The loaded points of the envelope; indices past the last point wrap around to the first point.
     points: Range<usize>,
 }
 
