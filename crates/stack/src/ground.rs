@@ -32,8 +32,8 @@ described! {
 }
 
 impl Scenario {
-    /// Reads or generates the ground motion of the scenario, and scales it. Its warnings include those about the text
-    /// of the scenario.
+    /// Reads or generates the ground motion of the scenario, and scales it. The warnings of the result include those
+    /// about the text of the scenario.
     ///
     /// # Errors
     /// If a record cannot be read, lacks the requested component, or cannot be scaled.
@@ -66,7 +66,8 @@ impl Scenario {
         of_record(record, &spec, &self.motion, self.run.similitude)
     }
 
-    /// Returns the scenario with the records of its motion loaded into memory, so that it opens no file from then on.
+    /// Returns the scenario with the records of its motion loaded into memory, so that the scenario opens no file
+    /// afterwards.
     ///
     /// `fetch` returns the content of a file by its path; records already in memory are not fetched. A run loads files
     /// with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as "there is no such

@@ -223,7 +223,7 @@ pub(crate) fn conclude(
     verdict
 }
 
-/// Returns the time step (s) that a scenario sets; by default, a step that suits its stiffest contact.
+/// Returns the time step (s) that a scenario sets; by default, a step that suits the stiffest contact.
 ///
 /// At another length scale, the step is the scaled step of the full-size stack, so that both runs are equivalent.
 ///

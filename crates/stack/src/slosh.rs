@@ -52,7 +52,7 @@ pub fn across(radius: f64, filled: f64) -> Wave {
         let sum = |i: usize| amplitudes.iter().zip(&functions).map(|(a, f)| a * f[i]).sum();
         (0..POINTS).map(sum).collect()
     };
-    // The largest 1/κ by power iteration, which converges fast: the next eigenvalue is less than half as large.
+    // Power iteration for the largest 1/κ. It converges fast, since the next eigenvalue is less than half as large.
     let mut amplitudes = vec![0.0; TERMS];
     amplitudes[0] = 1.0;
     let mut inverse = 0.0;

@@ -259,7 +259,8 @@ fn of_elements<'a>(
     2.0 * rates.into_iter().fold(0.0, f64::max)
 }
 
-/// Returns twice the largest rate over all pairs and their free bodies, since a body may be held from below and above.
+/// Returns twice the largest rate over all pairs and their free bodies, since a body may be in contact from below and
+/// from above.
 fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> f64) -> f64 {
     let mut most = 0.0_f64;
     let bodies = model.bodies();

@@ -124,9 +124,9 @@ impl Barrel {
     ///
     /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
     /// capacity. The mass of the contents is `mass` minus `empty_mass`. A frozen filling rotates with the wood. An
-    /// ideal fluid does not rotate about the axis, except for half a Stokes layer at 1 Hz. About a transverse axis, an
-    /// ideal fluid rotates like the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb,
-    /// Hydrodynamics, on the ellipsoidal shell filled with liquid).
+    /// ideal fluid does not rotate about the axis, except for a layer at the wall that is half as thick as the Stokes
+    /// layer at 1 Hz. About a transverse axis, an ideal fluid rotates like the fluid in a spheroid with the same
+    /// moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -267,7 +267,8 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Returns the second moment of the volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
+/// Returns the second moment of the volume (m⁵) of a layer of wine at the wall that is half as thick as the Stokes
+/// layer at 1 Hz.
 fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     /// Kinematic viscosity of wine (m²/s).
     const VISCOSITY: f64 = 1.6e-6;

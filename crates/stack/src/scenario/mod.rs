@@ -235,7 +235,8 @@ impl Scenario {
         root::write(self)
     }
 
-    /// Returns the scenario as TOML text that reads back equal, with all defaults written out and all quantities in SI.
+    /// Returns the scenario as TOML text that yields an equal scenario when read, with all defaults written out and all
+    /// quantities in SI.
     ///
     /// Paths are unchanged.
     pub fn to_resolved_toml(&self) -> String {

@@ -9,7 +9,7 @@ use super::field::{Default, Kind, Range};
 const DISPERSION: Kind = Kind::Number(Range::between(0.0, 1.0));
 
 section! {
-    /// Uncertainty of the constants of contacts, each of which the whole stack shares.
+    /// Uncertainty of contact constants; every variant draws each constant once for the whole stack.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Unknowns;
     /// Uncertainty of constants that nobody has measured on this stack. Every variant draws a factor of each constant,

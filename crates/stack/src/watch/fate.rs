@@ -390,9 +390,9 @@ impl<R: Real> Fates<R> {
 
     /// Returns the displacement (m) of a body relative to its support.
     ///
-    /// The displacement of a barrel is measured in the frame of its rack; that of the foot of a rack on posts, in the
-    /// frame of the rack below; that of a rack on barrels, relative to the mean position of these barrels; and that of
-    /// any other body, relative to the ground.
+    /// A barrel is measured in the frame of its rack, and the foot of a rack on posts in the frame of the rack below. A
+    /// rack on barrels is measured relative to the mean position of these barrels, and any other body relative to the
+    /// ground.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "lanes use vector instructions only if inlined")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {

@@ -23,9 +23,9 @@ pub const HOLD: f64 = 3.0;
 
 /// Largest acceleration of calm ground, as a fraction of gravity.
 ///
-/// Such an acceleration neither slides nor tips bodies, and the last third of many records is weaker. A standing stack
-/// is nevertheless simulated to the end of the motion, since its displacements are results, unless only the verdict is
-/// requested.
+/// Such an acceleration is too small to slide or tip bodies, and the last third of many records is weaker. A standing
+/// stack is nevertheless simulated to the end of the motion, since its displacements are results, unless only the
+/// verdict is requested.
 const CALM: f64 = 0.02;
 /// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
