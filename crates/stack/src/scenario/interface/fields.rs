@@ -86,8 +86,8 @@ const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack with constants per seat and without `damping`, the restitution that the catalog gives for the seats \
-         of the rack",
+        "in a stack with constants per seat and without `damping`, the restitution that the catalog gives for the \
+         seats of the rack",
     ),
     "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
