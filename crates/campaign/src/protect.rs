@@ -307,7 +307,7 @@ pub fn protect(
     let mut search =
         Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
     let mut singles = singles(&base);
-    // The stack as it is must stand; otherwise nothing else is tried.
+    // The unprotected stack must stand; otherwise no protection is tried.
     let mut candidates = vec![Candidate::new(&base, singles.remove(0))?];
     candidates.extend(search.candidates(singles));
     let mut open: Vec<usize> = (0..candidates.len()).collect();

@@ -192,7 +192,7 @@ impl Sheet {
         (0..count).map(least).collect()
     }
 
-    /// Returns the range of the score (cm/s) over the uncertain constants, with a probability of 95 %, sampling
+    /// Returns the range of the score (cm/s) over the uncertain constants, with a probability of 95 %, sampling error
     /// included; rounded outward. Without uncertain constants it is the interval of sampling of the weakest row.
     pub fn range(&self) -> Option<[u32; 2]> {
         let draws = self.draws();

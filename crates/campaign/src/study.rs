@@ -97,7 +97,7 @@ pub struct Study {
     /// Text of the study file.
     text: String,
     template: Template,
-    /// Files for the motion of the base scenario whose contents are held in memory.
+    /// Files of the motion of the base scenario. Their contents are held in memory.
     held: Vec<FileRef>,
     factors: Vec<Factor>,
     correlations: Vec<Correlation>,
@@ -130,7 +130,7 @@ struct Factor {
     base: Option<Value>,
     /// `true` if models for different values of the factor may have different bodies or contacts.
     structural: bool,
-    /// `true` if at least one of the values makes the stack be simulated in space.
+    /// `true` if at least one of the values causes the stack to be simulated in space.
     in_space: bool,
 }
 

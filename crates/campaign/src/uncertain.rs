@@ -58,7 +58,8 @@ impl Drawn {
         if self.field.ends_with(".restitution")
             && let Some(median) = value(0.0)
         {
-            // That of the damping ratio.
+            // Convert to the dispersion of the damping ratio, which is proportional to the logarithm of the
+            // restitution.
             dispersion /= -libm::log(median);
         }
         let Self { name, field, unit, .. } = *self;
@@ -76,7 +77,7 @@ pub(crate) struct Sample {
     seed: u64,
     /// Correlations of the deviates of the constants.
     correlations: Vec<Vec<f64>>,
-    /// `true` if a run has no verdict, or none of its constants is known.
+    /// `true` if some run has no verdict, or if its intensity or a value of its constants is not known.
     incomplete: bool,
 }
 

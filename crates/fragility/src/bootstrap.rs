@@ -15,7 +15,7 @@ pub struct Replicates {
     pub curves: Vec<Lognormal>,
     /// Number of resampled data sets that determine no curve ([`FitError`]).
     ///
-    /// These data sets are excluded from every interval. If they are more than a few percent of all, the
+    /// These data sets are excluded from every interval. If they are more than a few percent of all data sets, the
     /// intervals are too narrow.
     pub refused: usize,
 }

@@ -53,8 +53,8 @@ pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
 /// Computes [`goodness`] for bins in which cases have different intensities. The cases of a bin are stripes
 /// in ascending order of intensity.
 ///
-/// The expected number of failures in a bin is the sum of the probabilities of its cases, since the curve is
-/// not straight within the bin.
+/// The expected number of failures in a bin is the sum of the probabilities of its cases, since the curve is not linear
+/// within the bin.
 pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     let chance = |s: &Stripe| found.curve.probability(s.intensity);
     // Cases, failures, expected failures, variance.

@@ -57,8 +57,8 @@ pub struct Hazard {
     rows: Vec<(f64, f64)>,
 }
 
-/// Annual rate of an event, as bounds that differ by the effect of shaking beyond the last row of the hazard
-/// table.
+/// Annual rate of an event, as a lower and an upper bound. The bounds differ in the assumed effect of shaking beyond
+/// the last row of the hazard table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
     /// Rate (1/year) if shaking stronger than the last row has the same effect as the last row.

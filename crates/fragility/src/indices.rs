@@ -82,13 +82,14 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
         let half = reach * error;
         let (mut low, mut high) = (here - half, here + half);
         if which == TOTAL && here > 0.0 {
-            // A mean of squares over few blocks is skewed, so the logarithmic scale is tried as well.
+            // The mean of squares over few blocks has a skewed distribution, so the logarithmic scale is tried as well.
             high = high.max(here * exp((half / here).min(50.0)));
         }
         let unchanged = blocks.iter().filter(|block| block[0] == block[2 + input]).count();
         if 2 * unchanged >= count {
-            // Largest change of an index by one block: for the total, the square of the range; for the first, half of
-            // that, since its other factor is a distance from the mean.
+            // Largest contribution of a block to an index, range²/(2 V). For the total index it is a squared change;
+            // for the first-order index it is a change times a distance from the mean, which is taken as half of the
+            // range.
             let most = range * range / (2.0 * variance);
             let (below, above) = if which == TOTAL { (0.0, most) } else { (-most, most) };
             low = low.min((1.0 - missed) * here + missed * below);

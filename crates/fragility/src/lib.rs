@@ -41,7 +41,7 @@
 //! Functions that resample data take uniform random numbers from the caller (`FnMut() -> f64`). The caller
 //! chooses the generator and the seed.
 
-// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so transcendental functions are those of `libm` (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod bootstrap;

@@ -222,7 +222,7 @@ mod tests {
         for probability in [0.5, 0.95, 0.99, 0.999] {
             let [before, at, after, later] =
                 [999, 1000, 1001, 1002].map(|freedom| student_quantile(probability, freedom));
-            // The step across the border between the methods, compared with the steps next to it; measured 5e-11.
+            // The step where the method changes, compared with the steps before and after; measured 5e-11.
             let bend = (at - after) - 0.5 * ((before - at) + (after - later));
             assert!(bend.abs() < 1e-9, "{probability}: {bend:e}");
             assert!((student_beyond(later, 1002) / (1.0 - probability) - 1.0).abs() < 1e-9); // measured 3e-10

@@ -8,8 +8,7 @@ use crate::math::{chi_square_above, ln, student_beyond};
 /// Fit of failures to one intensity measure, with its efficiency and sufficiency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Fragility curve in terms of this measure. The more efficient the measure is, the smaller is the
-    /// dispersion.
+    /// Fragility curve in terms of this measure. The more efficient the measure, the smaller the dispersion.
     pub fit: Fit,
     /// Concordance: the probability that a failed case had a higher intensity than a standing case (area
     /// under the ROC curve). It is 0.5 if the measure does not discriminate and 1 if it discriminates

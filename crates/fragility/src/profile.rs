@@ -67,7 +67,7 @@ impl<'a> Profile<'a> {
     }
 }
 
-/// Returns the largest log-likelihood for slopes that are not negative.
+/// Returns the maximum of the log-likelihood over slopes of at least 0.
 fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     match of.top([start]) {
         Some(top) if top.parameters[0] >= 0.0 => top.shape.value,

@@ -49,10 +49,10 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// Returns the largest proportion of a population that a sample of `count` observations may plausibly miss.
+/// Returns the largest proportion of a population that may well be absent from a sample of `count` observations.
 ///
-/// For that proportion, the probability that no observation belongs to it equals one tail of an interval of
-/// the confidence `level`.
+/// With that proportion, the probability that the sample contains none of it is `(1 − level)/2`, one tail of an
+/// interval with the confidence `level`.
 pub fn unobserved(count: usize, level: f64) -> f64 {
     if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
 }

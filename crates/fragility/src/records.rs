@@ -130,11 +130,11 @@ impl LeaveOneOut {
 
 /// Returns the interval of the mean of a quantity between 0 and 1, over cases that depend on each other within groups.
 ///
-/// Each group is `(sum, cases)`. The interval is Wilson's, with a quantile of Student's t distribution in
-/// place of the normal quantile. As the number of cases it uses the number of independent cases that would
-/// scatter like the groups, or the number of groups if these do not scatter at all. A few groups may agree by
-/// chance. The interval therefore also covers the mean that would result if the groups that a sample may miss
-/// ([`unobserved`]) had only zeros or only ones.
+/// Each group is `(sum, cases)`. The interval is Wilson's, with a quantile of Student's t distribution in place of the
+/// normal quantile. In place of the number of cases, it uses the number of independent cases that would scatter as much
+/// as the groups do, or the number of groups if these do not scatter at all. A few groups may agree by chance. The
+/// interval therefore also covers the mean that would result if the groups that a sample may miss ([`unobserved`]) had
+/// only zeros or only ones.
 pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     let count = groups.len() as f64;
     let cases: f64 = groups.iter().map(|(_, cases)| cases).sum();

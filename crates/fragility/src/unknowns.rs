@@ -7,10 +7,10 @@ use crate::sobol;
 /// Minimum number of runs to which a [`Conditional`] share is fitted.
 pub const FEWEST_RUNS: usize = 16;
 
-/// Points of the constants over which a share is averaged.
+/// Number of points over which a share is averaged; a point holds a value of every constant.
 const AVERAGED: usize = 32;
 
-/// Of the kept samples, one in this many is used where a share is averaged.
+/// Step between the samples that are used where a share is averaged: every sixth of the kept samples.
 const THINNED: usize = 6;
 
 /// Number of discarded samples and number of kept samples of the posterior distribution.
@@ -20,7 +20,7 @@ const SAMPLES: [usize; 2] = [400, 3000];
 /// `b`. Its heavy tail permits a single constant to decide the result.
 const FREEDOM: f64 = 3.0;
 
-/// Scale of the prior distribution of the coefficients of the halves and of the constants.
+/// Scale of the prior distribution of the coefficients `g` (the two halves of the runs) and `aⱼ` (the constants).
 ///
 /// With a scale of 0.6, the share changes from 16 to 84 % when a typical constant changes from −1.6 to +1.6
 /// of its standard deviations.
@@ -32,16 +32,16 @@ const PRIOR_SECOND: f64 = 0.2;
 /// Scale of the prior distribution of the standard deviation between motions.
 const PRIOR_GROUPS: f64 = 0.6;
 
-/// Standard deviation of the coefficient of the logarithm of an intensity in its prior distribution, which is normal.
+/// Standard deviation of the normal prior distribution of the coefficient of the logarithm of the intensity.
 const PRIOR_SLOPE: f64 = 4.0;
 
-/// Scale of the prior distribution of the departure of a single intensity from the curve.
+/// Scale of the prior distribution of `bₓ`, the departure of the share at a single intensity from the curve.
 const PRIOR_LEVELS: f64 = 0.3;
 
 /// Index of `b` in a sample.
 const MIDDLE: usize = 1;
 
-/// Standard deviation of `b` in its prior distribution, which is normal.
+/// Standard deviation of the normal prior distribution of `b`.
 const PRIOR_MIDDLE: f64 = 2.5;
 
 /// A run with randomly drawn constants.
@@ -64,10 +64,10 @@ pub struct DrawnRun {
 /// η(z)     = b + Σ aⱼ zⱼ + Σ cᵢⱼ (zᵢ zⱼ − δᵢⱼ),  i ≤ j
 /// ```
 ///
-/// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the runs.
-/// Squares and products are needed: without them, the range of a stack of three levels contained 10 of 24 true
-/// shares; with them it contains 19, and all 24 within their error (`validation/statistics.md`).
-/// The posterior distribution is sampled by the method of Albert and Chib (1993).
+/// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the runs. Squares and
+/// products are needed: without them, the range of a stack of three levels contained 10 of 24 true shares. With them,
+/// it contains 19 of the 24, and all 24 if the sampling error of the true shares is allowed for
+/// (`validation/statistics.md`). The posterior distribution is sampled by the method of Albert and Chib (1993).
 #[derive(Clone, Debug)]
 pub struct Conditional {
     /// Coefficients `g`, `b`, `aⱼ`, `cᵢⱼ` of each sample.
@@ -93,7 +93,7 @@ pub struct Influence {
 ///
 /// `uniform` returns random numbers between 0 (inclusive) and 1 (exclusive).
 pub fn conditional(runs: &[DrawnRun], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
-    // Logarithms of it are finite.
+    // The value is never 0, so that its logarithm is finite.
     let mut uniform = || 1.0 - uniform();
     let unknowns = runs.first()?.deviates.len();
     if runs.len() < FEWEST_RUNS
@@ -130,7 +130,7 @@ fn independent(unknowns: usize) -> Vec<Vec<f64>> {
 enum Prior {
     /// Normal distribution with a standard deviation.
     Normal(f64),
-    /// Student's t distribution of [`FREEDOM`] degrees of freedom with a scale.
+    /// Student's t distribution with [`FREEDOM`] degrees of freedom and a scale.
     Student(f64),
     /// Normal distribution with a standard deviation that all such coefficients share and that is itself uncertain;
     /// [`PRIOR_GROUPS`] is its scale.
@@ -145,8 +145,7 @@ fn priors_of_constants(unknowns: usize) -> impl Iterator<Item = Prior> {
 }
 
 /// Draws samples of the coefficients of a probit regression from their posterior distribution. If there are
-/// coefficients of groups, a sample ends with their common standard deviation, and omits the coefficients
-/// themselves.
+/// coefficients of groups, a sample holds in their place, as its last value, their common standard deviation.
 fn posterior(
     rows: &[Vec<f64>],
     failed: &[bool],
@@ -197,8 +196,8 @@ fn posterior(
         if groups > 0 {
             let squared: f64 = coefficients[own..].iter().map(|value| value * value).sum();
             let scaled = FREEDOM * PRIOR_GROUPS * PRIOR_GROUPS + squared;
-            // The variance has the inverse gamma distribution, of which the sum of squares of normal deviates is the
-            // chi-square part; three of them belong to the prior distribution.
+            // The variance has a scaled inverse χ² distribution. Its degrees of freedom are the number of groups plus
+            // the three of the prior distribution.
             let chi: f64 = (0..groups + 3).map(|_| deviate(uniform)).map(|z| z * z).sum();
             of_groups = scaled / chi;
         }
@@ -216,7 +215,7 @@ fn posterior(
 pub struct Shaken {
     /// Values of the unknown constants, as standard normal deviates.
     pub deviates: Vec<f64>,
-    /// Number of the motion. The runs under one motion are alike, whatever the constants are.
+    /// Number of the motion. The outcomes of runs under the same motion are correlated, whatever the constants are.
     pub motion: usize,
     /// Intensity of the motion (> 0).
     pub intensity: f64,
@@ -224,12 +223,12 @@ pub struct Shaken {
     pub failed: bool,
 }
 
-/// How the share of failures depends on the intensity.
+/// Assumption on how the share of failures depends on the intensity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// The share at each intensity may depart from a lognormal curve, so that it need not grow with the intensity.
     Levels,
-    /// The share follows a lognormal curve of the intensity.
+    /// The share is a lognormal function of the intensity.
     Lognormal,
 }
 
@@ -237,17 +236,18 @@ pub enum Shape {
 ///
 /// ```text
 /// share(z, x) = Φ[(b(x) + Σ aⱼ zⱼ + Σ cᵢⱼ (zᵢ zⱼ − δᵢⱼ)) / √(1 + σ²)]
-/// b(x)        = b₀ + b₁ ln(x/x₀), and for single intensities + bₓ
+/// b(x)        = b₀ + b₁ ln(x/x₀) + bₓ
 /// ```
 ///
-/// `σ` is the standard deviation between motions: the runs under one motion have a common coefficient in the regression,
-/// so that they do not count as independent. The effects of the constants are the same at all intensities.
-/// The method is that of [`conditional`].
+/// `bₓ` is the departure of the share at the intensity `x` from the curve; it is 0 for [`Shape::Lognormal`]. `σ` is the
+/// standard deviation between motions: the runs under one motion have a common coefficient in the regression, so that
+/// they do not count as independent. The effects of the constants are the same at all intensities. The method is that
+/// of [`conditional`].
 #[derive(Clone, Debug)]
 pub struct Intensities {
     /// Coefficients `b`, `aⱼ`, `cᵢⱼ` and `σ` of each sample.
     samples: Vec<Vec<f64>>,
-    /// Intensities that may depart from the curve.
+    /// Intensities at which the share may depart from the curve.
     levels: Vec<f64>,
     /// `x₀`.
     middle: f64,
@@ -296,7 +296,7 @@ pub fn shaken(
     Some(Intensities { samples, levels, middle, shape, correlations: independent(unknowns) })
 }
 
-/// Returns the terms of `b(x)`.
+/// Returns the factors of the coefficients in `b(x)`.
 fn known(levels: &[f64], middle: f64, intensity: f64) -> Vec<f64> {
     let own = levels.iter().map(|level| f64::from(u8::from(*level == intensity)));
     [1.0, ln(intensity / middle)].into_iter().chain(own).collect()
@@ -310,14 +310,14 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 impl Intensities {
-    /// Returns the share for constants whose deviates have the given correlations, as in [`Conditional::correlated`].
+    /// Returns the share for constants whose deviates have the given correlations, like [`Conditional::correlated`].
     #[must_use]
     pub fn correlated(self, correlations: Vec<Vec<f64>>) -> Self {
         Self { correlations, ..self }
     }
 
-    /// Returns the share of failures at an intensity as a function of the constants; `None` for an intensity without
-    /// runs, unless the share follows a curve.
+    /// Returns the share of failures at an intensity as a function of the constants. Returns `None` for an intensity
+    /// without runs, unless the share follows a lognormal curve.
     pub fn at(&self, intensity: f64) -> Option<Conditional> {
         if self.shape == Shape::Levels && !self.levels.contains(&intensity) {
             return None;
@@ -334,9 +334,9 @@ impl Intensities {
         Some(Conditional::new(self.samples.iter().map(of).collect(), self.correlations.clone()))
     }
 
-    /// Returns, in every draw of [`Conditional::shares`], the intensity between two others at which the share of
-    /// failures is `share`: 0 if the share is greater already at the lower one, and the upper one if the share is not
-    /// greater even there. Returns `None` unless the share follows a lognormal curve.
+    /// Returns, for every draw of [`Conditional::shares`], the intensity between `low` and `high` at which the share of
+    /// failures is `share`. The intensity is 0 if the share of failures exceeds `share` already at `low`, and `high` if
+    /// it does not exceed `share` even there. Returns `None` unless the share follows a lognormal curve.
     pub fn intensities(&self, share: f64, [low, high]: [f64; 2]) -> Option<Vec<f64>> {
         let [below, above] = [self.at(low)?.shares(), self.at(high)?.shares()];
         let quantile = normal_quantile(share);
@@ -357,14 +357,15 @@ impl Intensities {
     }
 }
 
-/// Returns the interval that contains the middle of draws with a probability.
+/// Returns the central interval that contains the fraction `level` of the draws.
 pub fn interval_of(draws: &[f64], level: f64) -> Interval {
     let mut ascending = draws.to_vec();
     ascending.sort_by(f64::total_cmp);
     ends(&ascending, level)
 }
 
-/// Returns the share of draws in which the first quantity is less than the second; equal ones count by half.
+/// Returns the share of draws in which the first quantity is less than the second. A draw in which they are equal
+/// counts as one half.
 pub fn share_less(first: &[f64], second: &[f64]) -> f64 {
     let less = |(a, b): (&f64, &f64)| match a.total_cmp(b) {
         std::cmp::Ordering::Less => 1.0,
@@ -375,8 +376,8 @@ pub fn share_less(first: &[f64], second: &[f64]) -> f64 {
 }
 
 impl Conditional {
-    /// Creates the share from samples of its coefficients, with values of the constants that depend only on the
-    /// number of a sample: the same number of another share has the same values.
+    /// Creates the share from samples of its coefficients, and draws values of the constants for every sample. The
+    /// values depend only on the number of the sample: samples with the same number have the same values in all shares.
     fn new(samples: Vec<Vec<f64>>, correlations: Vec<Vec<f64>>) -> Self {
         let lower = cholesky(correlations.clone());
         let point = |point| {
@@ -389,15 +390,15 @@ impl Conditional {
         Self { samples, points, correlations }
     }
 
-    /// Returns the share for constants whose deviates have the given correlations: a positive definite matrix, 1 on its
-    /// diagonal. Without this, the constants are independent of each other.
+    /// Returns the share for constants whose deviates have the given correlations: a positive definite matrix with ones
+    /// on its diagonal. By default the constants are independent of each other.
     #[must_use]
     pub fn correlated(self, correlations: Vec<Vec<f64>>) -> Self {
         Self::new(self.samples, correlations)
     }
 
-    /// Returns a point with one constant fixed at a deviate. The other constants move with it as far as they are
-    /// correlated with it.
+    /// Returns a point with one constant fixed at a deviate. The other constants change in proportion to their
+    /// correlation with that constant.
     fn fixed(&self, point: &[f64], unknown: usize, deviate: f64) -> Vec<f64> {
         let change = deviate - point[unknown];
         let moved = point.iter().zip(&self.correlations[unknown]);
@@ -406,15 +407,15 @@ impl Conditional {
         fixed
     }
 
-    /// Returns the share in every draw. A draw is a sample of the posterior distribution and values of the
-    /// constants; the values in a draw are the same for all shares with the same constants, in the same order.
+    /// Returns the share in every draw. A draw combines a sample of the posterior distribution with values of the
+    /// constants. The values in a draw are the same for all shares that have the same constants in the same order.
     pub fn shares(&self) -> Vec<f64> {
         let draws = self.samples.iter().zip(&self.points);
         draws.map(|(sample, point)| share(sample, point)).collect()
     }
 
     /// Returns the share for given constants, as standard normal deviates, with the coefficients of one sample of the
-    /// posterior distribution. The number of the sample may be any number.
+    /// posterior distribution. Numbers beyond the last sample start again from the first.
     ///
     /// # Panics
     /// If there are fewer deviates than constants.
@@ -450,8 +451,8 @@ impl Conditional {
         totals.into_iter().enumerate().map(of).collect()
     }
 
-    /// Returns the interval of the share with one constant at the second deviate, less the share with the
-    /// constant at the first deviate; all other constants are unknown.
+    /// Returns the interval of a difference: the share with one constant at the second deviate, minus the share with
+    /// that constant at the first deviate. All other constants are unknown.
     pub fn difference(&self, unknown: usize, deviates: [f64; 2], level: f64) -> Interval {
         let [from, to] = deviates.map(|deviate| self.shares_at(unknown, deviate));
         let mut differences: Vec<f64> = to.iter().zip(&from).map(|(b, a)| b - a).collect();
@@ -504,8 +505,8 @@ impl Conditional {
         let middle = mean(shares.iter().copied());
         let variance = mean(shares.iter().map(|share| (share - middle) * (share - middle)));
         let total = |unknown: usize| {
-            // The constant is drawn anew while all others are known; in this order of the constants, the last row of
-            // the factor states how it depends on them.
+            // The constant is drawn anew while all others are known. It comes last in this order, so that the last row
+            // of the Cholesky factor states how it depends on the others.
             let order: Vec<usize> =
                 (0..unknowns).filter(|at| *at != unknown).chain([unknown]).collect();
             let row = |i: &usize| order.iter().map(|j| self.correlations[*i][*j]).collect();
@@ -526,7 +527,8 @@ impl Conditional {
     }
 }
 
-/// Returns 1, the deviates, and their squares, less 1, and products: the factors of `b`, `aⱼ` and `cᵢⱼ`.
+/// Returns the factors of `b`, `aⱼ` and `cᵢⱼ`: 1, the deviates, and the products of two deviates (for a square, the
+/// square minus 1).
 fn terms(deviates: &[f64]) -> impl Iterator<Item = f64> {
     let second = move |i: usize| {
         let square = std::iter::once(deviates[i] * deviates[i] - 1.0);
@@ -600,7 +602,8 @@ fn sampled(precision: Vec<Vec<f64>>, sums: &[f64], uniform: &mut impl FnMut() ->
     found
 }
 
-/// Returns the lower triangle `L` of `L Lᵀ = M`, for a symmetric positive definite matrix `M`; zero above its diagonal.
+/// Returns the lower triangular matrix `L` with `L Lᵀ = M`, for a symmetric positive definite matrix `M`. The elements
+/// of `L` above the diagonal are 0.
 fn cholesky(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     for j in 0..matrix.len() {
         for i in j..matrix.len() {
@@ -615,7 +618,7 @@ fn cholesky(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     matrix
 }
 
-/// Returns the solution `x` of the first rows of `L x = s`.
+/// Solves `L x = s` for lower triangular `L`. If `s` is shorter than `L`, only the first rows of `L` are used.
 fn forward(lower: &[Vec<f64>], sums: &[f64]) -> Vec<f64> {
     let mut found = Vec::with_capacity(sums.len());
     for (row, sum) in lower.iter().zip(sums) {

@@ -298,7 +298,7 @@ impl<'a> Set<'a> {
         }
     }
 
-    /// `true` if a row may join the set when the member at the index `leaving` leaves it.
+    /// `true` if a row may join the set, provided that the member at the index `leaving` leaves the set.
     fn takes(&self, pool: &Pool, row: usize, leaving: Option<usize>) -> bool {
         let group = pool.rows[row].group;
         let mut same = 0;
@@ -366,7 +366,7 @@ impl<'a> Set<'a> {
         ROUNDS
     }
 
-    /// Returns the error of the set with an additional spectrum. The sum over the periods stops as soon as it
+    /// Returns the error of the set with an additional spectrum. Summation over the periods stops as soon as the sum
     /// exceeds `limit`.
     fn error_with(&self, spectrum: &[f64], shift: f64, limit: f64) -> f64 {
         let mut error = 0.0;

@@ -16,7 +16,7 @@
 //! # Ok::<(), barrelstack_motion::MotionError>(())
 //! ```
 
-// Sets must be equal on every machine, so transcendental functions are our own (`clippy.toml`).
+// Selected sets must be identical on every machine, so transcendental functions are those of `libm` (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod correlation;

@@ -151,7 +151,7 @@ impl JudgedCase {
 pub struct Cases {
     /// Title of the study.
     pub title: String,
-    /// The stacks in words, without what a factor varies; `None` for free scenes.
+    /// Description of the stacks, without the properties that a factor varies; `None` for free scenes.
     pub stacks: Option<String>,
     /// Names of the motions, to which [`JudgedCase::record`] refers.
     pub records: Vec<String>,
@@ -172,8 +172,7 @@ pub struct Cases {
     pub drawn: Vec<String>,
     /// Numbers of cases by the way in which they ended.
     pub endings: Endings,
-    /// All cases. They are shared by reference, since there may be a million of them and subsets are used as
-    /// well.
+    /// All cases. They are reference-counted, since there may be a million of them, and subsets share them.
     pub all: Vec<Arc<JudgedCase>>,
     /// Number of rows without a verdict, because the run failed, could not start, or gave a result that is
     /// not judged.

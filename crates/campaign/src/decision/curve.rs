@@ -58,7 +58,7 @@ pub struct LimitCurve {
     pub goodness: Option<Goodness>,
     /// Test of the assumption that failure becomes likelier with intensity.
     pub monotony: Monotony,
-    /// Curves of one motion on which the stack failed at one intensity and stood at a higher one.
+    /// Curves (each of one motion) on which the stack failed at one intensity and stood at a higher one.
     ///
     /// Empty for independent samples, since each sample is a separate curve.
     pub returned: Vec<Returned>,
@@ -139,8 +139,8 @@ impl LimitCurve {
         })
     }
 
-    /// `true` if the fraction of failures decreases significantly anywhere as intensity grows, which no
-    /// fragility curve can describe.
+    /// `true` if the fraction of failures decreases significantly in some range of intensity, which no fragility curve
+    /// can describe.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }

@@ -34,7 +34,7 @@ pub enum ExportError {
     NoCurve(String),
 }
 
-/// The intensity measure of a study under its names and in its units in the other programs.
+/// Intensity measure of a study, with the names and units that it has in the other programs.
 struct Foreign {
     /// Name of the measure in `OpenQuake`.
     imt: String,
@@ -163,7 +163,7 @@ fn provenance(decision: &Decision, made: &Provenance) -> String {
 fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
     let mut head =
         "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();
-    // The demand is directional; of a nondirectional one Pelicun takes 1.2 times the largest of all directions.
+    // The demand is directional. For a nondirectional demand, Pelicun uses 1.2 times the largest of all directions.
     let mut row = format!("{asset},0,{},{},0,1", foreign.demand, foreign.unit);
     for (number, (_, curve)) in (1..).zip(limits) {
         // Writing to a String cannot fail.

@@ -104,13 +104,12 @@ described! {
         /// is true.
         pub goodness_p: Option<f64> as "1" =
             curve.goodness.filter(|test| test.freedom > 0).map(|test| test.p),
-        /// p-value of the test of monotony: the probability of decreases as large as these if failure never
-        /// becomes less likely with intensity.
+        /// p-value of the test of monotonicity: the probability of decreases as large as these if failure never becomes
+        /// less likely with intensity.
         pub monotone_p: Option<f64> as "1" = finite(curve.monotony.p),
         /// Ranges of intensity over which the fraction of failures decreases.
         pub falls: Vec<FallBetween> = curve.monotony.falls.iter().map(FallBetween::of).collect(),
-        /// Number of curves of one motion on which the stack fails at one intensity and stands at a higher
-        /// one.
+        /// Number of curves (each of one motion) on which the stack fails at one intensity and stands at a higher one.
         pub returned: usize = curve.returned.len(),
     }
 
@@ -330,7 +329,8 @@ described! {
         pub chance: f64 as "1" = limit.chance,
     }
 
-    /// Annual rate, with bounds that differ by the effect of shaking beyond the hazard curve.
+    /// Annual rate, as a lower and an upper bound. The bounds differ in the assumed effect of shaking beyond the hazard
+    /// curve.
     pub struct YearlyRate of rate: &Rate {
         /// Rate if shaking stronger than the last row of the hazard curve has the same effect as the last
         /// row.

@@ -8,7 +8,7 @@ use super::{AtLevel, Heights};
 use crate::decision::percent;
 use crate::direction::Direction;
 
-/// Number of levels of the lowest stacks that are compared with the field observations.
+/// Minimum number of levels of the stacks that are compared with the field observations.
 const LOWEST_OBSERVED: u32 = 4;
 
 /// Compares the results with field observations at Napa.

@@ -90,7 +90,7 @@ described! {
         /// damping), with a probability of 95 %, sampling error included. Null if a run of this stack has no verdict, or
         /// if there are too few runs.
         pub range: Option<[f64; 2]> as "1" = at.2.map(|effect| effect.range),
-        /// Share of stacks that collapse if all uncertain constants are as stated; null if `range` is null.
+        /// Share of stacks that collapse if all uncertain constants have their stated values; null if `range` is null.
         pub share_as_stated: Option<f64> as "1" = at.2.map(|effect| effect.as_stated),
         /// Constant that decides the result; null if no constant decides.
         pub decides: Option<Unknown> = at.2.and_then(Fitted::decisive).cloned(),

@@ -88,9 +88,9 @@ mod tests {
             };
             assert_eq!([falls(0.8), falls(1.15)], [false, true], "{levels} {direction:?}");
         }
-        // The higher stack has the smaller margin.
+        // The margin of the higher stack is smaller.
         assert!(found[2] < found[1], "{found:?}");
-        // In space the smaller one counts.
+        // In space the margin is the smaller one of those across and along the barrels.
         assert_eq!(found[3], found[0].min(found[4]));
     }
 }

@@ -157,7 +157,8 @@ fn headline(all: &Heights) -> String {
     )
 }
 
-/// Returns the words for stacks in planes, or for those in space.
+/// Returns the text `planes` if the stacks are simulated in planes, and the text `space` if they are simulated in
+/// space.
 fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
     if all.request.in_space { space } else { planes }
 }
@@ -183,8 +184,8 @@ fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel
     found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
 }
 
-/// Returns the largest number of levels whose range over the uncertain constants stays within the limit of a low chance,
-/// at a level of PGV (m/s), provided that those of all smaller numbers do as well.
+/// Returns the largest number of levels whose range over the uncertain constants stays below the limit for the rating
+/// "low" at a level of PGV (m/s), provided that the ranges of all smaller numbers do as well.
 fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
     let low =
         |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
@@ -221,7 +222,7 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     )
 }
 
-/// Tabulates the range over the uncertain constants, in the direction in which it reaches further.
+/// Tabulates the range over the uncertain constants, in the direction in which its upper end is higher.
 fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,

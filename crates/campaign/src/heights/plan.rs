@@ -91,8 +91,8 @@ fn columns_and_rack(
         let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
         return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
     }
-    // Along the barrels one rack is one column. A rail that touches a bulged stave at its inner edge needs only a
-    // closer node spacing.
+    // In the plane along the barrels, one rack is one column. A rail touches the bulged staves at its inner edge, which
+    // requires a smaller node spacing but no other change of the rack.
     Ok(match direction {
         Direction::Plane(View::Transverse) | Direction::Space => {
             (rack.barrels, format!("\"{}\"", rack.base))
@@ -138,8 +138,8 @@ pub(crate) fn quoted(path: &std::path::Path) -> String {
 
 /// Returns the `[[motion]]` tables of synthetic motions; `suffix` is appended to their names.
 ///
-/// Half of the motions are of a moderate earthquake nearby, and a quarter are of a large earthquake further
-/// away. The last quarter has a velocity pulse as it occurs near faults.
+/// Half of the motions are of a moderate earthquake nearby, and a quarter are of a large earthquake further away. The
+/// last quarter has a velocity pulse, as occurs near faults.
 pub(crate) fn synthetic(count: u32, suffix: &str) -> String {
     let large = count / 4;
     let pulses = count / 4;

@@ -38,8 +38,8 @@ fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
     }
 }
 
-/// Returns the effect of the uncertain constants: from 0 to 4 % per level fall, along the barrels twice as many; the friction
-/// of barrels decides.
+/// Returns an effect of the uncertain constants in which the friction of barrels decides. The share of stacks that
+/// collapse ranges from 0 to 2 % per level across the barrels, and from 0 to 4 % per level along them.
 fn effect(levels: u32, direction: Direction) -> Fitted {
     let across = direction == Direction::Plane(View::Transverse);
     let highest = f64::from(levels) * if across { 0.02 } else { 0.04 };
@@ -196,7 +196,7 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     };
     assert_eq!(row(3)["range"], serde_json::json!([0.0, 0.12]));
     assert_eq!(row(3)["decides"]["name"], "friction of barrels on racks");
-    // Where even two levels exceed the limit, the constant that decides is named.
+    // If even two levels exceed the limit, the constant that decides is named.
     let mut wide = some;
     for height in &mut wide.heights {
         height.effects.iter_mut().flatten().for_each(|effect| effect.range[1] = 0.4);
@@ -205,7 +205,7 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     let over = "not even two levels do: the probability is 0 to 40 % (95 % range), along the barrels, and the friction of \
                 barrels on racks decides.";
     assert!(headline.ends_with(over), "{headline}");
-    // Weaker shaking in which they do not is named.
+    // Weaker shaking in which they do not exceed the limit is named.
     for height in &mut wide.heights {
         height.effects[0].as_mut().unwrap().range[1] = 0.1;
     }

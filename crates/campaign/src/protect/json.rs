@@ -68,7 +68,7 @@ described! {
         /// which has the same constants; the error of sampling is drawn as well. Null where `range` is null, and without
         /// uncertain constants.
         pub better_than_as_it_is: Option<f64> as "1" = one.better_than_as_it_is,
-        /// Share of the draws in which fewer barrels fall than with the next protection of the list, as
+        /// Share of the draws in which fewer barrels fall than with the next protection of the list; computed like
         /// `better_than_as_it_is`.
         pub better_than_next: Option<f64> as "1" = one.better_than_next,
         /// Number of barrels that fall, per event or per year.
@@ -79,9 +79,8 @@ described! {
         /// Reduction of fallen barrels compared with the unprotected stack, under the same motions; null for
         /// the unprotected stack.
         pub barrels_saved: Option<Interval> = one.saved.as_ref().map(Interval::of),
-        /// Reduction of fallen barrels as in `barrels_saved`, with an interval that holds for all tried
-        /// protections simultaneously (Bonferroni). This interval decides on `best`. Null for the unprotected
-        /// stack.
+        /// Reduction of fallen barrels as in `barrels_saved`, with an interval that holds for all tried protections
+        /// simultaneously (Bonferroni). This interval determines `best`. Null for the unprotected stack.
         pub barrels_saved_together: Option<Interval> = one.saved_together.as_ref().map(Interval::of),
         /// Number of barrels that fall in the worst state of maintenance; null if no such state was tried.
         pub barrels_fallen_when_worn: Option<Interval> = one.worn.as_ref().map(|(_, worn)| Interval::of(worn)),

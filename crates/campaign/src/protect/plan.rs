@@ -40,7 +40,7 @@ pub(super) fn study(
     round: u32,
 ) -> Result<Study, StudyError> {
     let seed = request.seed.wrapping_add(round);
-    // Runs go on to rest, since losses need all falls.
+    // Runs continue until nothing moves, since the losses depend on all falls.
     shaken("protection", (scenario, Until::Rest), seed, &motions(request, round), levels)
 }
 

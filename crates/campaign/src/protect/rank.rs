@@ -89,7 +89,8 @@ impl Runs {
         self.count += cases.all.len() + cases.left_out;
         for case in &cases.all {
             let Some(velocity) = case.intensity(cases.main) else { continue };
-            // Motions were scaled to levels that were rounded when written as text, so the comparison has a tolerance.
+            // Motions were scaled to levels that were rounded when written as text, so the comparison needs a
+            // tolerance.
             let off = |level: &f64| (velocity / level - 1.0).abs();
             let nearest =
                 (0..levels.len()).min_by(|a, b| off(&levels[*a]).total_cmp(&off(&levels[*b])));

@@ -78,7 +78,8 @@ impl Search<'_> {
             }
             match Candidate::new(self.base, protection) {
                 Ok(candidate) => candidates.push(candidate),
-                // The location in a generated text is of no use to the reader, so only the first line is kept.
+                // Only the first line is kept: the others state the location in a generated text, which is of no use to
+                // the reader.
                 Err(error) => {
                     let reason = error.to_string();
                     self.not_tried

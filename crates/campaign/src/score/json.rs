@@ -58,8 +58,8 @@ described! {
             },
         /// 95 % interval of the velocity, clustered by motion; null if there is none.
         pub interval: Option<[f64; 2]> as "m/s" = row.0.capacity.interval().map(|of| [of.low, of.high]),
-        /// Range of the velocity over the uncertain constants, as `range` of the score; 0 if it is below all levels, and
-        /// the highest level if it is above all.
+        /// Range of the velocity over the uncertain constants, defined like `range` of the score. An end below all
+        /// levels is given as 0, and an end above all levels as the highest level.
         pub range: Option<[f64; 2]> as "m/s" = row.0.range().map(|of| [of.low, of.high]),
         /// Share of collapse at each of the velocities of the protocol; null where no run has a verdict.
         pub collapsed: Vec<Option<f64>> as "1" = row.1.protocol.velocities.iter()

@@ -55,8 +55,8 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
     catalog::RACKS.iter().map(rack).chain(devices.map(device)).collect()
 }
 
-/// Returns the changes that put a stack on a rack: the rack, and as many columns as it carries if those of the stack do
-/// not fill racks.
+/// Returns the changes that put a stack on a rack: the rack, and the number of columns of one rack if the columns of
+/// the stack do not fill whole racks.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
     if !stack.columns.is_multiple_of(rack.barrels.max(1)) {
@@ -126,7 +126,8 @@ pub fn league(
     Ok(league)
 }
 
-/// Returns the first line of an error and of its cause; places in a generated text are of no use to the reader.
+/// Returns the first line of an error and of its cause. Further lines state locations in a generated text, which are of
+/// no use to the reader.
 fn reason(error: &ScoreError) -> String {
     let line = |text: String| text.lines().next().unwrap_or_default().to_owned();
     let cause =

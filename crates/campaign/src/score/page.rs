@@ -228,7 +228,8 @@ fn protocol_ends(sheet: &Sheet) -> [f64; 2] {
     [velocities.first(), velocities.last()].map(|end| end.copied().unwrap_or(0.0))
 }
 
-/// Formats a range of velocities, whose ends stand for all velocities beyond the levels of the protocol.
+/// Formats a range of velocities; an end beyond the levels of the protocol is shown as "below" or "above" the last
+/// level.
 fn over(of: &Interval, [lowest, highest]: [f64; 2]) -> String {
     let low = if of.low < lowest { format!("below {}", shown(lowest)) } else { shown(of.low) };
     let high =

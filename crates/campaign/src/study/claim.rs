@@ -100,7 +100,8 @@ pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // A process may have opened the file before and lock it later; it then looks for the shard again, and finds it.
+        // Another process may have opened the file before its removal and may lock it afterwards. That process then
+        // looks for the shard again, and finds it.
         drop(fs::remove_file(&self.path));
     }
 }

@@ -258,7 +258,7 @@ fn crossed(study: &Study, number: u64) -> PlannedCase {
     PlannedCase { number, id, motion, level, settings }
 }
 
-/// Returns the name of the axis of the common part of a group of factors.
+/// Returns the name of the axis for the deviate that a group of correlated factors shares.
 fn common(group: usize) -> String {
     format!("correlation {}", group + 1)
 }
@@ -363,8 +363,8 @@ impl Study {
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).chain(groups).collect()
     }
 
-    /// Returns the cumulative probability at which a factor is drawn, from its own uniform deviate and from that of its
-    /// group of correlated factors, which `common` returns by the number of the group.
+    /// Returns the cumulative probability at which a factor is drawn. `own` is the uniform deviate of the factor; for
+    /// the number of a group of correlated factors, `common` returns the uniform deviate that the group shares.
     fn correlated(&self, factor: &str, own: f64, common: impl FnOnce(usize) -> f64) -> f64 {
         let group = self.correlations.iter().position(|group| group.contains(factor));
         let Some(group) = group else { return own };

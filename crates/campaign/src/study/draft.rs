@@ -61,15 +61,15 @@ impl Draft {
             let file = match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => file,
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
-                // Another process, which only tested write access, has removed its empty folder again.
+                // Another process has created the folder to test write access, and has removed it again.
                 Err(error) if error.kind() == ErrorKind::NotFound && tries < TRIES => {
                     whole.parent().map_or(Ok(()), fs::create_dir_all)?;
                     continue;
                 }
                 Err(error) => return Err(error),
             };
-            // The lock shows processes that clean the folder that the writer is alive. Such a process may have locked the
-            // file first.
+            // Processes that clean the folder recognize by the lock that the writer is alive. One of them may have
+            // locked the file first.
             let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
             if !taken && path.exists() {
                 drafts.push(path.clone());

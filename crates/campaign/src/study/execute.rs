@@ -228,7 +228,8 @@ impl Study {
             self.compute(*chunk, &mut resources)?.ok_or(StudyError::Stopped)
         };
         let rule = self.stop_rule();
-        // Without a stop rule all chunks run at once; with one, one at a time, since later ones may not be needed.
+        // Without a stopping rule all chunks run at once. With a stopping rule they run one at a time, since later
+        // chunks may not be needed.
         let together = if rule.is_some() { 1 } else { chunks.len().max(1) };
         let (mut parts, mut tally) = (Vec::new(), Tally::default());
         for chunks in chunks.chunks(together) {

@@ -220,8 +220,8 @@ table! {
             step = Kind::Value, Default::Required;
             /// Amount by which each step is larger than the previous one.
             growth = Kind::Value, Default::Derived("half of `step`");
-            /// Gap between the highest level that stood and the lowest level that collapsed, relative to the
-            /// former, at which narrowing stops.
+            /// Gap between the highest level at which the stack stood and the lowest level at which it collapsed,
+            /// relative to the former, at which narrowing stops.
             resolution = Kind::Number(Range::between(1e-3, 1.0)), Default::Value("0.1");
             /// Number of runs in each hunt.
             runs = Kind::Integer(3, 1000), Default::Value("12");

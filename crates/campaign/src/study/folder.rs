@@ -58,8 +58,8 @@ described! {
         pub version: String,
         /// Title of the study.
         pub title: String,
-        /// The stacks in words, such as "stacks of 4 levels on two-barrel racks, shaken along the barrels", without what a
-        /// factor varies; null for free scenes.
+        /// Description of the stacks, such as "stacks of 4 levels on two-barrel racks, shaken along the barrels",
+        /// without the properties that a factor varies; null for free scenes.
         pub stacks: Option<String>,
         /// Fingerprint of the study file, the scenarios that it extends, the bytes of its records, and the
         /// version of the program.
@@ -252,9 +252,9 @@ impl Folder {
             if !(claim || draft) {
                 continue;
             }
-            // A process that is alive holds its file locked. The file may also have been renamed or removed by now.
-            // Network file systems lock only files that are open for writing.
-            // Anything but a file, such as a link, belongs to no process.
+            // A process that is alive keeps its file locked. The file may also have been renamed or removed by now.
+            // Network file systems lock only files that are open for writing. An entry that is not a file, such as a
+            // link, belongs to no process.
             let found = fs::symlink_metadata(&path);
             if found.is_ok_and(|found| !found.is_file()) {
                 drop(fs::remove_file(&path));
@@ -412,8 +412,9 @@ impl Study {
         })
     }
 
-    /// Describes the stacks of the study by the levels, the rack and the direction of shaking of `base`, each unless a
-    /// factor varies it; `None` for a free scene. A rack of which a factor varies a dimension is not named, either.
+    /// Describes the stacks of the study by the number of levels, the rack and the direction of shaking in `base`. Each
+    /// of these is omitted if a factor varies it; the rack is omitted also if a factor varies one of its dimensions.
+    /// Returns `None` for a free scene.
     fn stacks(&self, base: &Scenario) -> Option<String> {
         let fields = || self.factors.iter().flat_map(|factor| &factor.fields);
         let varied = |path: &str| {

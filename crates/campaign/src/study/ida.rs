@@ -15,8 +15,8 @@ pub struct Hunt {
     pub step: f64,
     /// Amount by which each step is larger than the previous one.
     pub growth: f64,
-    /// Gap between the highest level that stood and the lowest level that collapsed, relative to the former,
-    /// at which narrowing ends.
+    /// Gap between the highest level at which the stack stood and the lowest level at which it collapsed, relative to
+    /// the former, at which narrowing ends.
     pub resolution: f64,
     /// Number of runs in each hunt.
     pub runs: u32,
@@ -47,7 +47,8 @@ impl Hunt {
             known.iter().filter(|(level, fell)| !*fell && *level < fall).map(|(level, _)| *level);
         let stood = stood.fold(0.0, f64::max);
         let gap = fall - stood;
-        // If the stack stood at no level, a tenth of the first level replaces the highest that stood.
+        // If the stack stood at no level, a tenth of the first level takes the place of the highest level at which it
+        // stood.
         if gap > self.resolution * stood.max(0.1 * self.first) {
             return Some(stood + gap / 3.0);
         }

@@ -277,7 +277,7 @@ impl Domain {
             (ValueKind::Number, Written::Float(value)) => Some(Value::Number(*value)),
             (ValueKind::Number, Written::Integer(value)) => value.map(|v| Value::Number(v as f64)),
             (ValueKind::Number, Written::Text(text)) => {
-                // If the base uses another of the dimensions that the field allows, it has no number here.
+                // If the base states the field in another of its allowed dimensions, there is no base value.
                 Quantity::parse_as(text, &[self.dimension]).ok().map(|q| Value::Number(q.value))
             }
             (ValueKind::Text, Written::Text(text)) => Some(Value::Text(text.clone())),

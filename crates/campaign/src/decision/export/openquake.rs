@@ -65,7 +65,7 @@ pub(super) fn fragility(
     about: &str,
 ) -> String {
     let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
-    // OpenQuake holds the probability constant outside of this range, which does not change its first four digits.
+    // Outside of this range OpenQuake keeps the probability constant, which leaves its first four digits unchanged.
     let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
     let first = reaches(5e-5).fold(imls[0], f64::min);
     let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
@@ -115,8 +115,8 @@ const MOST_SCATTER: f64 = 0.99;
 /// Largest variance that interpolation between two written levels may give, as a share of m (1 − m).
 const MOST_BETWEEN: f64 = 0.999;
 
-/// Maximum relative and absolute difference between two interpolated means: that of `OpenQuake`, which is
-/// linear in the intensity, and ours, which is linear in the logarithm of the intensity.
+/// Maximum relative and absolute difference between two interpolated means: that of `OpenQuake`, which is linear in the
+/// intensity, and that of [`Ratios::at`], which is linear in the logarithm of the intensity.
 const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-7];
 
 /// One level of a vulnerability function.
@@ -195,8 +195,8 @@ impl Ratios {
         }
     }
 
-    /// Returns `true` if linear interpolation between two levels gives a valid variance and a mean close to
-    /// our own.
+    /// Returns `true` if linear interpolation between two levels gives a valid variance and a mean close to that of
+    /// [`Ratios::at`].
     fn is_fine(&self, from: Level, to: Level) -> bool {
         (1..16).map(|k| f64::from(k) / 16.0).all(|t| {
             let between = |from: f64, to: f64| from + t * (to - from);
