@@ -292,7 +292,7 @@ fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreE
         move |source| ScoreError::State { state, source }
     };
     let stack =
-        changed(&still, &protocol.stacked()).map_err(refused("as the protocol stacks it"))?;
+        changed(&still, &protocol.stacked()).map_err(refused("stacked as in the protocol"))?;
     let mut studies: Vec<(State, Direction, Study)> = Vec::new();
     for state in protocol.states(&stack) {
         let worn = changed(&stack, &state.changes).map_err(refused(&state.name))?;

@@ -200,7 +200,7 @@ fn the_order_over_constants_is_counted_in_draws_that_all_protections_share() {
         let share =
             if (10.0..=99.0).contains(&share) { format!("{share:.0}") } else { String::new() };
         let said = &found.document.verdict.sentences;
-        let words = format!("{share} % of their draws");
+        let words = format!("{share} % of the draws");
         assert!(
             said.iter().any(|one| one.replace('\u{a0}', " ").contains(&words)),
             "{words}: {said:?}"

@@ -76,7 +76,7 @@ pub enum FitError {
     NotIncreasing,
     /// The iteration did not converge.
     #[error(
-        "the fit did not converge, which data of usual size do not cause; check for intensities \
+        "the fit did not converge, which does not happen with intensities of usual magnitude; check for intensities \
          that differ by many orders of magnitude"
     )]
     NotConverged,

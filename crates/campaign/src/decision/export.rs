@@ -206,7 +206,7 @@ fn readme(notes: &[String], about: &str, foreign: &Foreign, losses: bool) -> Str
          one to the other before you combine them.\n\n\
          OpenQuake: a job names exposure_file = {EXPOSURE}, taxonomy_mapping_csv = {MAPPING}, and for scenario_damage \
          contents_fragility_file = {FRAGILITY}.{risk} The exposure is a template with one stack at 0 E, 0 N: replace its \
-         place and number. Its contents are wine (m3); its nonstructural value is barrels.\n\n\
+         coordinates and its number. Its contents are wine (m3); its nonstructural value is barrels.\n\n\
          Pelicun: load pelicun-fragility.csv as a damage model. Demand-Directional is 1: the demand in the direction of \
          the performance group is used unchanged.\n",
         notes.concat(),

@@ -269,7 +269,7 @@ pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
     Figure::new(
         "contributions",
         "Contributions to the annual rate of collapse, by ranges of intensity. Weak shaking is more frequent; strong \
-         shaking fells more stacks.",
+         shaking makes more stacks collapse.",
         Plot {
             x: axis(measure).log(),
             y: Axis::new("share of the rate", ""),

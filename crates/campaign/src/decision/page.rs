@@ -89,10 +89,10 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(heading("Influence of the varied quantities"));
         blocks.push(Block::Table(tables::indices(&decision.sensitivities)));
         blocks.push(text(
-            "The first index is the share of the variance that would vanish if the quantity were known; the total index is the \
-             share that would remain if all other quantities were known. The total index exceeds the first by the \
-             effect of interactions. Demands are recorded until the collapse. A quantity without effect in \
-             these blocks may have an effect in others, so that no interval ends at zero.",
+            "The first-order index is the share of the variance that would vanish if the quantity were known; the \
+             total index is the share that would remain if all other quantities were known. The total index exceeds \
+             the first-order index by the effect of interactions. Demands are recorded until the collapse. A \
+             quantity without effect in these blocks may have an effect in others, so that no interval ends at zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
@@ -104,10 +104,10 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     blocks.push(heading("Measures of shaking as predictors of collapse"));
     blocks.push(Block::Table(tables::measures(decision)));
     blocks.push(text(
-        "Dispersion is the scatter that a measure leaves unexplained: the smaller it is, the fewer records are needed. \
-         Concordance is the chance that of two cases, one collapsed and one standing, the collapsed one had the stronger \
-         shaking by this measure (0.5 is no better than chance). A small p in the last columns says that the other measure \
-         still adds information: this one is then not sufficient.",
+        "Dispersion is the scatter that a measure leaves unexplained: the smaller it is, the fewer records are \
+         needed. Concordance is the chance that of two cases, one collapsed and one standing, the collapsed one had \
+         the stronger shaking by this measure (0.5 is no better than chance). A small p in the last columns means \
+         that the measure under \"tested against\" adds information: the measure of the row is then not sufficient.",
     ));
     blocks.push(heading("Motions"));
     blocks.push(Block::Table(motions(decision, made)));
@@ -193,7 +193,7 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
         });
     }
     said.push(format!(
-        "Test of monotony: the raw fractions {}.",
+        "Test of monotonicity: the raw fractions {}.",
         if curve.monotony.deviance == 0.0 {
             "never decrease with intensity".to_owned()
         } else {
@@ -238,7 +238,7 @@ fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
             }),
             ("95 % interval", unit, &|of| Cell::maybe(interval(of))),
             ("dispersion β", "", &|of| Cell::number(fitted(of).map(|of| of.dispersion), 2)),
-            ("order violated (p)", "", &|of| Cell::number(violated(of), 2)),
+            ("fraction decreases (p)", "", &|of| Cell::number(violated(of), 2)),
             (&format!("{} that return", cases.curves_are()), "", &|of| count(returned(of))),
             ("remark", "", &|of| Cell::text(remark(of))),
         ],
@@ -330,10 +330,9 @@ fn assumptions() -> Vec<Block> {
             "The assumed cost of a burst barrel is US$4 to US$20 per bottle of 0.75 L for its wine, plus US$400 to \
              US$1,200 for the barrel, regardless of its size."
                 .into(),
-            "A burst barrel loses all its wine; the volume follows from the size and the fill of the barrel in \
-             the scenario. Partly filled barrels are taken to burst like full ones. Barrels that do not burst \
-             lose nothing here, although bungs may leak. Damage to neighboring stacks, racks and buildings is \
-             not counted."
+            "A burst barrel loses all its wine; the volume follows from the size and the fill of the barrel in the \
+             scenario. Partly filled barrels are assumed to burst like full ones. Barrels that do not burst lose \
+             nothing here, although bungs may leak. Damage to neighboring stacks, racks and buildings is not counted."
                 .into(),
             "Only cases that were followed until nothing moved are counted. In a plane model, every barrel \
              represents all barrels behind it in its row."
@@ -350,7 +349,7 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
         Cell::number((used > 0.0).then(|| 1.0 / used), 2)
     };
     let table = Table::of(
-        format!("Annual rates at the site of {}, for one stack.", site.hazard.file),
+        format!("Annual rates for one stack, with the hazard curve in {}.", site.hazard.file),
         &site.limits,
         &[
             ("limit state", "", &|of| Cell::text(capital(&of.limit.words()))),
@@ -384,9 +383,10 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
         text(lost),
         Block::Figure(figures::contributions(site, measure)),
         text(
-            "The interval covers the uncertainty of the curve only; the hazard is taken as exact. Between the rows of the hazard \
-             table the rate is interpolated on logarithmic scales. Shaking weaker than the first row is taken to have no \
-             effect, and shaking stronger than the last row to have the effect of the last row.",
+            "The interval covers the uncertainty of the curve only; the hazard is taken as exact. Between the rows \
+             of the hazard table the rate is interpolated on logarithmic scales. Shaking weaker than the first row \
+             is assumed to have no effect, and shaking stronger than the last row is assumed to have the effect of \
+             the last row.",
         ),
     ]
 }

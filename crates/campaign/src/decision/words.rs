@@ -165,8 +165,8 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
             // The headline states the median, unless it warns against the curve.
             said.push(if curve.violates_order() {
                 format!(
-                    "A fitted curve, which cannot show this, has a median {} of {} ({} with 95 % confidence) \
-                     and a dispersion of {dispersion}.",
+                    "A fitted curve, which cannot decrease, has a median {} of {} ({} with 95 % confidence) and a \
+                     dispersion of {dispersion}.",
                     measure.label,
                     measure.words(fit.curve.median),
                     measure.range(*interval)
@@ -202,7 +202,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         let rate = &site.limits[0];
         let annual = rate.fitted.as_ref().unwrap_or(&rate.raw).low;
         said.push(format!(
-            "At the site of {} this means {}, with a chance of {} in {} years{}.",
+            "With the hazard curve in {}, this means {}, with a chance of {} in {} years{}.",
             site.hazard.file,
             recurrence(annual),
             percent(rate.chance),
@@ -234,9 +234,10 @@ pub(super) fn warnings(
     }
     if cases.fallen_at_rest() > 0 {
         said.push(format!(
-            "{} of {} cases do not stand under their own weight: they count as collapsed at every level of shaking, with the \
-             level that fails and all above it on the floor. A fitted curve tends to zero with the shaking, but their \
-             chance of collapse does not: use the raw fractions.",
+            "In {} of {} cases, the stack does not stand under its own weight: these cases count as collapsed at \
+             every strength of shaking, with the level of barrels that fails and all levels above it on the floor. A \
+             fitted curve tends to zero as the shaking becomes weaker, but the chance of collapse in these cases \
+             does not: use the raw fractions.",
             cases.fallen_at_rest(),
             cases.all.len()
         ));
@@ -350,8 +351,8 @@ fn of_site(cases: &Cases, losses: Option<&Losses>, site: &Site) -> Vec<String> {
     }
     if of.at_first > 0.01 {
         said.push(format!(
-            "The hazard table begins too late: the shaking of its first row already fells {} of the stacks, and weaker shaking \
-             is not counted. Add rows of weaker shaking.",
+            "The hazard table begins too late: the shaking of its first row already makes {} of the stacks collapse, \
+             and weaker shaking is not counted. Add rows of weaker shaking.",
             percent(of.at_first)
         ));
     }

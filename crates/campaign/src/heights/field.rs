@@ -20,11 +20,13 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     blocks.push(Block::Table(recorded(all)));
     blocks.push(Block::List(vec![
         "Observed near Napa: peak accelerations above 0.5 g and velocities above 50 cm/s (USGS 2015). Half of the \
-         18,000 barrels of one store fell, and in one of its rooms almost every stack (Wines & Vines 2014). Most stacks that \
-         collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as reported by Wines & Vines 2017)."
+         18,000 barrels of one store fell, and almost every stack in one of its rooms collapsed (Wines & Vines \
+         2014). Most stacks that collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as \
+         reported by Wines & Vines 2017)."
             .into(),
-        "This is a weak check. No shares by height were published, the shaking at the stores was not recorded, and the \
-         stacks stood in rows that knock each other down, which fells more stacks and is not modeled here."
+        "This is a weak check. No shares by height were published, the shaking at the stores was not recorded, and \
+         the stacks stood in rows, where a falling stack can knock down its neighbors: this makes more stacks fall, \
+         and is not modeled here."
             .into(),
         if all.request.in_space {
             "Each run is in space, under all components of its motion; those of the record are scaled by one factor."

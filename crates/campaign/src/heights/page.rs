@@ -203,7 +203,7 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     let shares = format!("{:.0} to {:.0} %", 100.0 * from, 100.0 * to);
     if let Some(levels) = highest {
         return format!(
-            " {uncertain} up to {levels} levels do: the probability is {shares} (95 % range)."
+            " {uncertain} up to {levels} levels have a low risk: the probability of collapse is {shares} (95 % range)."
         );
     }
     let decides = height
@@ -217,7 +217,8 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
         format!("; in {} up to {levels} levels do", named(velocity))
     });
     format!(
-        " {uncertain} not even two levels do: the probability is {shares} (95 % range){}{decides}{weaker}.",
+        " {uncertain} not even two levels have a low risk: the probability of collapse is {shares} (95 % range)\
+         {}{decides}{weaker}.",
         inserted(height.direction)
     )
 }
@@ -252,8 +253,8 @@ fn weaker(all: &Heights, velocity: f64) -> String {
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
-/// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24
-/// motions none fell (the probability is at most 12 % with 95 % confidence)".
+/// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24 motions
+/// none fell (the probability of collapse is at most 12 % with 95 % confidence)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -265,7 +266,7 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
         count => format!("no more than {count} of any height fell"),
     };
     format!(
-        "in {} motions {fell} (the probability is at most {} with 95 % confidence)",
+        "in {} motions {fell} (the probability of collapse is at most {} with 95 % confidence)",
         stripe.cases,
         bound(interval.high)
     )
@@ -335,10 +336,10 @@ fn blocks(all: &Heights) -> Vec<Block> {
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
-            "Each cell shows the share of stacks that collapse{}, and in brackets the range \
-             of the true chance; each end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range \
-             ends at {:.0} % or below, so that a higher chance is rated low in at most one of 20 studies. ! \
-             medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
+            "Each cell shows the share of stacks that collapse{}, and in brackets the range of the true chance; each \
+             end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
+             below, so that a higher chance is rated low in at most one of 20 studies. ! medium: at most {:.0} %. ✗ \
+             high: more. These limits were chosen by judgment.",
             in_planes(all, ", in the direction with the higher bound", ""),
             100.0 * LOW.0,
             100.0 * LOW.1,
@@ -346,10 +347,11 @@ fn blocks(all: &Heights) -> Vec<Block> {
         )),
         Block::Table(over_constants_table(all)),
         text(
-            "The range contains the chance of collapse of a stack with a probability of 95 % if its friction, stiffness and \
-             damping are drawn from their distributions; it includes the error of sampling. The brackets above are \
-             for a stack whose constants are drawn anew. A constant decides if it changes the chance by a fifth or more. \
-             Measure it, and state the value in a scenario of your own.",
+            "With a probability of 95 %, the range contains the chance of collapse of a stack whose friction, \
+             stiffness and damping are drawn once from their distributions; it includes the sampling error. The \
+             brackets in the table above are for stacks whose constants are drawn anew for every run. A constant \
+             decides if the chance changes by 20 percentage points or more over the range of that constant. Measure \
+             this constant, and state its value in a scenario of your own.",
         ),
         text(
             "To find the row of your site, ask for the peak ground velocity of your design earthquake, or read it from a \
@@ -444,9 +446,9 @@ fn static_margins(all: &Heights) -> Table {
     };
     Table::of(
         format!(
-            "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt of the floor, \
-             with the friction and the seats of the catalog{}. If the shaking has pulses that last as long as the stack \
-             takes to tip over, a slightly larger acceleration makes it collapse.",
+            "Static margin: the largest steady horizontal acceleration that a stack bears, and the equivalent tilt \
+             of the floor, with the friction and the seats of the catalog{}. In shaking with pulses that last as \
+             long as the stack takes to tip over, an acceleration slightly above the margin makes the stack collapse.",
             in_planes(
                 all,
                 "",
@@ -466,7 +468,7 @@ fn static_margins(all: &Heights) -> Table {
                 Cell::text(height.static_margin.map_or_else(|| "above 1 g".to_owned(), gravities))
             }),
             ("tilt", "degrees", &|height| Cell::number(height.static_margin.map(tilt), 2)),
-            ("some collapse from", "", &|height| Cell::text(first(height))),
+            ("weakest shaking with collapses", "", &|height| Cell::text(first(height))),
         ],
     )
 }
@@ -579,20 +581,21 @@ fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
             "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
-             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and pulses of \
-             near faults){}, each scaled to every level of PGV{}.",
+             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and near-fault \
+             pulses){}, each scaled to every level of PGV{}.",
             all.request.synthetic,
             if all.request.records.is_empty() { "" } else { ", and the given records" },
             in_planes(
                 all,
                 "",
-                ". A record has all its components, a synthetic motion one; the horizontal direction is drawn for every run"
+                ". A record has all its components, a synthetic motion has one; the horizontal direction is drawn \
+                 for every run"
             )
         ),
         format!(
-            "Full barrels, `{}` of the catalog. Friction, stiffness and damping of the seats are drawn for every run around \
-             the values of the catalog, with the dispersions of a scenario without changes. They are \
-             assumptions; wet floors and painted racks differ. Measure your own.",
+            "Full barrels, `{}` of the catalog. Friction, stiffness and damping of the seats are drawn for every run \
+             around the values of the catalog, with the default dispersions of a scenario. Values and dispersions \
+             are assumptions; wet floors and painted racks differ. Measure your own.",
             all.request.barrel
         ),
         format!(

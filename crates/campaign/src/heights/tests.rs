@@ -110,9 +110,10 @@ fn every_headline_says_the_rack_and_the_direction() {
     assert_eq!(
         page.verdict.headline,
         "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), across the barrels and \
-         along them: in 24 motions none fell (the probability is at most 12 % with 95 % confidence); in severe shaking \
-         (36 cm/s) not even two levels do, along the barrels. Allowing for the uncertain friction, stiffness and damping \
-         of the seats, up to 3 levels do: the probability is 0 to 12 % (95 % range)."
+         along them: in 24 motions none fell (the probability of collapse is at most 12 % with 95 % confidence); in \
+         severe shaking (36 cm/s) not even two levels do, along the barrels. Allowing for the uncertain friction, \
+         stiffness and damping of the seats, up to 3 levels have a low risk: the probability of collapse is \
+         0 to 12 % (95 % range)."
     );
     // One collapse in 24 leaves up to 18 % possible, which is not rated low.
     let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
@@ -159,10 +160,10 @@ fn in_space_there_is_one_direction_and_no_word_of_planes() {
     let page = document(&made_by(request, falls));
     assert_eq!(
         page.verdict.headline,
-        "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), shaken in all directions: \
-         in 24 motions none fell (the probability is at most 12 % with 95 % confidence); in severe shaking (36 cm/s) not \
-         even two levels do. Allowing for the uncertain friction, stiffness and damping of the seats, up to 3 levels do: \
-         the probability is 0 to 12 % (95 % range)."
+        "Up to 5 levels on two-barrel racks have a low risk in very strong shaking (24 cm/s), shaken in all \
+         directions: in 24 motions none fell (the probability of collapse is at most 12 % with 95 % confidence); in \
+         severe shaking (36 cm/s) not even two levels do. Allowing for the uncertain friction, stiffness and damping \
+         of the seats, up to 3 levels have a low risk: the probability of collapse is 0 to 12 % (95 % range)."
     );
     let text = markdown(&page, "figures").text.replace('\u{a0}', " ");
     assert!(
@@ -181,7 +182,7 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     let headline = document(&some).verdict.headline;
     assert!(headline.contains("Up to 4 levels"), "{headline}");
     let over =
-        "damping of the seats, up to 3 levels do: the probability is 0 to 12 % (95 % range).";
+        "damping of the seats, up to 3 levels have a low risk: the probability of collapse is 0 to 12 % (95 % range).";
     assert!(headline.ends_with(over), "{headline}");
     // The same range in the table and in the JSON.
     let text = markdown(&document(&some), "figures").text.replace('\u{a0}', " ");
@@ -202,8 +203,8 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
         height.effects.iter_mut().flatten().for_each(|effect| effect.range[1] = 0.4);
     }
     let headline = document(&wide).verdict.headline;
-    let over = "not even two levels do: the probability is 0 to 40 % (95 % range), along the barrels, and the friction of \
-                barrels on racks decides.";
+    let over = "not even two levels have a low risk: the probability of collapse is 0 to 40 % (95 % range), along \
+                the barrels, and the friction of barrels on racks decides.";
     assert!(headline.ends_with(over), "{headline}");
     // Weaker shaking in which they do not exceed the limit is named.
     for height in &mut wide.heights {

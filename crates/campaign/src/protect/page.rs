@@ -118,7 +118,7 @@ fn known(all: &Ranking, one: &Ranked) -> String {
             one.motions
         );
     }
-    let runs = if is_site(all) { "" } else { "in " };
+    let runs = if is_site(all) { "" } else { "with a probability of " };
     format!(
         " It collapses {runs}{} under {} motions; the upper bound is {high} (95 % confidence).",
         collapse(all, mean),
@@ -141,8 +141,9 @@ fn sentences(all: &Ranking) -> Vec<String> {
     if let Some((best, saved)) = best.and_then(|best| Some((best, best.saved_together?))) {
         let shown = |x: f64| significant(x, 2);
         said.push(format!(
-            "It keeps {} barrels from falling on average ({} to {} with 95 % confidence, for all {} protections that were \
-             tried simultaneously). The mean for the best of many protections tends to be somewhat too favorable.",
+            "It keeps {} barrels from falling on average ({} to {} with 95 % confidence, simultaneously for all {} \
+             protections that were tried). The mean for the best of many protections tends to be somewhat too \
+             favorable.",
             shown(saved.mean),
             shown(saved.low),
             shown(saved.high),
@@ -191,14 +192,14 @@ fn order(all: &Ranking, best: &Ranked) -> Option<String> {
     let next = next.filter(|(next, _)| next.protection.kind != Kind::AsItIs);
     let next = next.map_or_else(String::new, |(next, share)| {
         format!(
-            ", and than with the next of the ranking ({}) in {}",
+            ", and fewer than with the next protection of the ranking ({}) in {}",
             next.protection.name,
             percent(share)
         )
     });
     Some(format!(
-        "The friction, stiffness and damping of the seats are uncertain: in {} of their draws, in which the error of sampling \
-         is drawn as well, fewer barrels fall than with the stack as it is{next}.",
+        "The friction, stiffness and damping of the seats are uncertain: in {} of the draws of these constants and \
+         of the sampling error, fewer barrels fall with this protection than with the stack as it is{next}.",
         percent(better)
     ))
 }
@@ -262,7 +263,7 @@ fn table(all: &Ranking) -> Table {
             ("cost of a stack", "US$", &|one| Cell::text(cost(one))),
             ("barrels elsewhere", "", &|one| Cell::text(one.protection.moved.to_string())),
             (collapses, "", &|one| Cell::text(collapse(one))),
-            ("the same, over the uncertain constants", "", &|one| Cell::maybe(over(one))),
+            ("range over the uncertain constants", "", &|one| Cell::maybe(over(one))),
             ("better than as it is, in draws of the constants", "", &|one| {
                 Cell::maybe(one.better_than_as_it_is.map(percent))
             }),
@@ -276,7 +277,7 @@ fn table(all: &Ranking) -> Table {
                 Cell::maybe(shown(&one.saved_together))
             }),
             ("fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
-            ("weaker", "", &|one| Cell::text(one.direction.words())),
+            ("weaker direction", "", &|one| Cell::text(one.direction.words())),
             ("motions", "", &|one| Cell::text(one.motions.to_string())),
         ],
     )
@@ -284,17 +285,17 @@ fn table(all: &Ranking) -> Table {
 
 fn legend(all: &Ranking) -> String {
     format!(
-        "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections with \
-         fewer motions were dropped early, because a cheaper protection is significantly better or because half \
-         of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more precise \
-         than the difference of two means. The next column has an interval that holds for all {} protections at \
-         once; it decides whether a protection helps significantly, since the best of many protections looks \
-         better than it is. All intervals allow for the small number of motions. Numbers are for the direction \
-         of shaking in which more barrels fall. The range over the uncertain constants contains the frequency of \
-         collapse with a probability of 95 % if friction, stiffness and damping of the seats are drawn from their \
-         distributions, error of sampling included. A draw has the same constants for all protections; a \
-         protection is better in it if fewer barrels fall. The number of barrels that fall in a collapse \
-         is the mean at each level, whatever the constants are.",
+        "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. \
+         Protections with fewer motions were dropped early, because a cheaper protection is significantly better or \
+         because half of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more \
+         precise than the difference of two means. The next column has an interval that holds for all {} protections \
+         at once; it decides whether a protection helps significantly, since the best of many protections looks \
+         better than it is. All intervals allow for the small number of motions. Numbers are for the direction of \
+         shaking in which more barrels fall. With a probability of 95 %, the range over the uncertain constants \
+         contains the frequency of collapse if friction, stiffness and damping of the seats are drawn from their \
+         distributions, sampling error included. Each draw of the constants applies to all protections; a protection \
+         is better in a draw if fewer barrels fall with it. The number of barrels that fall in a collapse is the \
+         mean at each level, whatever the constants are.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -340,8 +341,8 @@ fn chart(all: &Ranking) -> Figure {
     Figure::new(
         "cost-and-loss",
         format!(
-            "Barrels that fall against the cost of a protection, {}, for the protections that were run in all rounds. Vertical \
-             bars: 95 % intervals. The table names the protections.",
+            "Number of barrels that fall as a function of the cost of a protection, {}, for the protections that \
+             were run in all rounds. Vertical bars: 95 % intervals. The table names the protections.",
             per(all)
         ),
         Plot {
@@ -374,14 +375,14 @@ fn rests_on(all: &Ranking) -> Vec<String> {
         "Motions: the given records, each scaled to every level of peak ground velocity.".to_owned()
     } else {
         "Motions: both components of South Napa 2014 at Napa College with the vertical component, and synthetic \
-         motions (earthquakes of M 6 at 8 km and M 7 at 20 km, pulses of near faults), each scaled to every \
-         level of peak ground velocity."
+         motions (earthquakes of M 6 at 8 km and M 7 at 20 km, near-fault pulses), each scaled to every level of \
+         peak ground velocity."
             .to_owned()
     };
     vec![
         motions,
-        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with its \
-         dispersions. All protections draw the same quantiles."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, \
+         with the dispersions of the scenario. All protections draw the same quantiles."
             .into(),
         "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
          table. Labor, lost time and injuries are not counted."

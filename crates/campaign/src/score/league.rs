@@ -86,7 +86,7 @@ pub fn league(
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
     }
-    let refused = |source| ScoreError::State { state: "as the protocol stacks it".into(), source };
+    let refused = |source| ScoreError::State { state: "stacked as in the protocol".into(), source };
     let scenario = &changed(scenario, &protocol.stacked()).map_err(refused)?;
     let (mut ready, mut not_scored) = (Vec::<(Contender, Prepared)>::new(), Vec::new());
     for contender in contenders(scenario) {
@@ -285,7 +285,7 @@ fn table(league: &League) -> Table {
             ("rack or device", "", &|(_, one, _)| Cell::text(&one.name)),
             ("RockScore", "cm/s", &|(.., sheet)| Cell::text(sheet.score().to_string())),
             ("interval of sampling", "cm/s", &|(.., sheet)| Cell::maybe(interval(sheet))),
-            ("over the uncertain constants", "cm/s", &|(.., sheet)| {
+            ("range over the uncertain constants", "cm/s", &|(.., sheet)| {
                 Cell::maybe(range(sheet.range()))
             }),
             ("higher than the next, in draws", "", &|(at, ..)| {
@@ -305,15 +305,15 @@ fn table(league: &League) -> Table {
 
 fn legend(scenario: &Scenario) -> String {
     let space = if Direction::of(scenario) == Some(Direction::Space) {
-        " In space the ground moves in all directions, so that these scores cannot be compared with those of planes."
+        " In space the ground moves in all directions, so that these scores cannot be compared with scores in planes."
     } else {
         ""
     };
     format!(
         "A score compares racks and devices under the same motions; it does not predict the behavior of a particular \
-         cellar. The interval of sampling (95 %, clustered by motion) is that of the weakest state and direction; there \
-         is none where no curve can be fitted. The range over the uncertain constants contains the score of a stack \
-         with a probability of 95 % if the friction, stiffness and damping of its seats are drawn from their \
-         distributions, error of sampling included. A draw has the same constants for all rows.{space}"
+         cellar. The interval of sampling (95 %, clustered by motion) is that of the weakest state and direction; \
+         there is none where no curve can be fitted. With a probability of 95 %, the range over the uncertain \
+         constants contains the score of a stack if the friction, stiffness and damping of its seats are drawn from \
+         their distributions, sampling error included. Each draw of the constants applies to all rows.{space}"
     )
 }

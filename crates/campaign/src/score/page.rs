@@ -27,12 +27,11 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Figure(scale_of(sheet)),
             Block::Table(table(sheet)),
             text(
-                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood \
-                 for all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all \
-                 velocities, rounded down, is the score. \
-                 The range over the uncertain constants contains the velocity of a stack with a probability of 95 % if \
-                 its friction, stiffness and damping are drawn from their distributions; it includes the \
-                 error of sampling.",
+                "The velocity at which one in ten collapses is that of the lognormal curve of maximum likelihood for \
+                 all runs, with its 95 % interval (clustered by motion) in brackets. The smallest of all velocities, \
+                 rounded down, is the score. With a probability of 95 %, the range over the uncertain constants \
+                 contains the velocity of a stack whose friction, stiffness and damping are drawn from their \
+                 distributions; it includes the sampling error.",
             ),
             Block::Figure(chart(sheet)),
             heading("The protocol"),
@@ -77,8 +76,8 @@ fn scale_of(sheet: &Sheet) -> Figure {
     let known = sheet.protocol.name.split(',').next() == Some(Protocol::rockscore().name.as_str());
     let others = if known { references() } else { Vec::new() };
     let caption = if known {
-        "The score of this stack, and those of the racks of the catalog without devices; the latter are from one motion in \
-         four of the protocol."
+        "The score of this stack, and those of the racks of the catalog without devices; the latter are computed \
+         with every fourth motion of the protocol."
     } else {
         "The score of this stack."
     };
@@ -164,9 +163,16 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
 fn over_constants(sheet: &Sheet) -> Option<String> {
     let [low, high] = sheet.range().filter(|_| !sheet.draws().is_empty())?;
     let decides = sheet.decisive().map(|one| {
-        let at = |at: &ShareAt| format!("{} at {}", percent(at.share), one.words(at.value));
+        let at = |at: &ShareAt| {
+            format!("{} for a value of {}", percent(at.share), one.words(at.value))
+        };
         let ends = one.low_median_high().map_or_else(String::new, |[from, _, to]| {
-            format!(": at {} cm/s {} collapse, {}", sheet.score().max(1), at(from), at(to))
+            format!(
+                ": the share of stacks that collapse at {} cm/s is {} and {}",
+                sheet.score().max(1),
+                at(from),
+                at(to)
+            )
         });
         format!("; the {} decides{ends}", one.name)
     });
@@ -194,7 +200,7 @@ fn table(sheet: &Sheet) -> Table {
         ("state", ""),
         ("shaken", ""),
         ("one in ten collapses at", ""),
-        ("over the uncertain constants", "cm/s"),
+        ("range over the uncertain constants", "cm/s"),
     ];
     columns.extend(heads.iter().map(|head| (head.as_str(), "")));
     let mut table = Table::new(
@@ -287,16 +293,17 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
             }
         ),
         format!(
-            "The motions: {} velocity pulses of Mavroeidis and Papageorgiou (2003; γ 1.5, 90°) of {} s, both components of \
-             South Napa 2014 at Napa College with its vertical, and {} synthetic ones (half M 6 at 8 km, a quarter M 7 at \
-             20 km, a quarter with pulses of near faults), each scaled to peak ground velocities of {} cm/s.",
+            "The motions: {} velocity pulses of Mavroeidis and Papageorgiou (2003; γ 1.5, 90°) of {} s, both \
+             components of South Napa 2014 at Napa College with the vertical component, and {} synthetic motions \
+             (half of them M 6 at 8 km, a quarter M 7 at 20 km, a quarter with near-fault pulses), each scaled to \
+             peak ground velocities of {} cm/s.",
             protocol.periods.len(),
             list(&protocol.periods, 1.0),
             protocol.synthetic,
             list(&protocol.velocities, 100.0)
         ),
-        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with its \
-         dispersions; all racks get the same quantiles and the same motions."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, \
+         with the dispersions of the scenario; all racks get the same quantiles and the same motions."
             .into(),
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
          one at a time."

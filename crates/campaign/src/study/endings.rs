@@ -100,9 +100,9 @@ impl Endings {
         let mut said = Vec::new();
         if self.cut > 0 {
             said.push(format!(
-                "{} of {} cases were cut short by run.duration while the ground still moved, by up to {:.1} s; \
-                 {} of them stood until then, and the effect of the rest of their motions is not known. Omit \
-                 run.duration to run every motion to its end.",
+                "{} of {} cases were cut short by run.duration while the ground still moved, and up to {:.1} s of a \
+                 motion were not run; {} of the stacks stood until then, and the effect of the rest of their motions \
+                 is not known. Omit run.duration to run every motion to its end.",
                 self.cut, self.judged, self.longest_cut, self.open
             ));
         }

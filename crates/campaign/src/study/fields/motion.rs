@@ -109,7 +109,7 @@ table! {
     /// Synthetic motions.
     synthetic = Kind::Table(&SYNTHETIC), Default::Nothing;
     /// Horizontal components of the records; each component is a separate motion.
-    components = Kind::Texts, Default::Derived("the one of `each`, or the first horizontal component");
+    components = Kind::Texts, Default::Derived("the component that `each` names, or the first horizontal component");
     /// Processing of every record: all fields of [motion] except those for its source and its scale.
     each = Kind::Table(&MOTION), Default::Nothing;
     /// Scaling of the motions, used if there is no [intensity].
