@@ -36,7 +36,8 @@ fn the_same_study_gives_the_same_page_to_the_byte() {
 
 #[test]
 fn an_island_of_collapse_is_reported_with_its_levels_and_not_smoothed_away() {
-    // Everything between 0.3 and 0.5 m/s falls, little stands again above, all falls at the top.
+    // Stacks fall under all records from 0.3 to 0.5 m/s, under one record from 0.6 to 0.8 m/s, and under all again at
+    // the top.
     let island = study(|record, level| {
         let falls = (0.3..0.55).contains(&level) || level > 0.85 || (record == 0 && level > 0.3);
         if falls { 2 } else { 0 }
@@ -218,7 +219,7 @@ fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
 fn shares_of_one_change_at_a_time_are_reported_at_each_level_with_intervals_that_count_motions() {
     let mut collected = ordinary();
     let mut columns = collected.table.columns().to_vec();
-    // Every record is drawn one friction; another cask is tried on all of them.
+    // One friction is drawn for every record, and each of these is run with two kinds of cask.
     let cask = |k: usize| Some(if k.is_multiple_of(2) { 1.0 } else { 2.0 });
     let rows: Vec<usize> = (0..96).flat_map(|row| [row, row]).collect();
     for column in &mut columns {

@@ -108,7 +108,8 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
                 );
                 if name == FUNCTIONS[0] {
                     let ours = losses.fallen(0.01 * x) / 6.0;
-                    // The allowed difference, and a little more since the exporter tests it at other points.
+                    // The tolerance is slightly larger than that of the exporter, which tests the difference at other
+                    // points.
                     let off = (m - ours).abs();
                     assert!(off < 3e-3 * ours + 2e-7, "{name} at {x} cm/s: {m} and {ours}");
                 }
@@ -317,7 +318,8 @@ fn openquake_computes_the_damage_that_we_compute() {
         let states: Vec<f64> = names
             .map(|curve| row[&format!("contents-{}", curve.limit.name().replace('-', "_"))])
             .collect();
-        // OpenQuake gives the share in each damage state; ours is the probability of that state or a more severe one.
+        // OpenQuake gives the share in each damage state, and `ours` is the probability of that state or a more severe
+        // one.
         let theirs: Vec<f64> = (0..states.len()).map(|k| states[k..].iter().sum()).collect();
         println!("OpenQuake at {:.0} cm/s: {theirs:.4?}, ours {ours:.4?}", 100.0 * x);
         for (theirs, ours) in theirs.iter().zip(&ours) {

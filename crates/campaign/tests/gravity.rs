@@ -6,8 +6,8 @@ use barrelstack::variants::planes;
 use barrelstack_campaign::Study;
 use barrelstack_campaign::study::Tally;
 
-/// Stacks along the barrels on seats as soft as one contact node of the paper, hardly shaken, with one rack slightly out
-/// of place: stacks of four levels stand, those of six and eight do not.
+/// Stacks along the barrels under very weak shaking. Every seat is as soft as one contact node of the paper, and one
+/// rack is slightly out of place: stacks of four levels stand, those of six and eight do not.
 const STUDY: &str = r#"
 schema = 1
 title = "levels along the barrels"

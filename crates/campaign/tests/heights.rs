@@ -82,14 +82,14 @@ fn ranges_over_constants_are_the_same_wherever_they_are_stated() {
             assert_eq!(decides.as_str(), height.decisive(velocity).map(|one| one.name));
         }
     }
-    // The page states the range in the direction in which it reaches further.
+    // The page states the range in the direction in which its upper end is higher.
     for velocity in VELOCITIES {
         let ranges = found.heights.iter().filter_map(|height| height.at(velocity)?.range);
         let [low, high] = ranges.reduce(|a, b| if b[1] >= a[1] { b } else { a }).unwrap();
         let words = format!("{:.0}–{:.0} %", 100.0 * low, 100.0 * high);
         assert!(page.contains(&words), "{words}");
     }
-    // More shaking widens what the constants may do, or leaves nothing to stand.
+    // In stronger shaking the upper end of the widest range is higher.
     let highest =
         |at: usize| found.heights.iter().map(move |h| h.effects[at].as_ref().unwrap().range[1]);
     assert!(highest(0).fold(0.0, f64::max) < highest(5).fold(0.0, f64::max));

@@ -81,7 +81,8 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
     assert_eq!(json(&found), json(&resumed));
     assert_eq!(html(&found.document), html(&resumed.document));
 
-    // The headline states what the motions prove for the recommended stack, or for the stack as it is.
+    // The headline states the confidence and the number of motions for the recommended stack, or for the stack as it
+    // is.
     let headline = &found.document.verdict.headline;
     assert!(
         headline.contains("(95 % confidence)") && headline.contains(" motions")
@@ -195,7 +196,7 @@ fn the_order_over_constants_is_counted_in_draws_that_all_protections_share() {
         assert_eq!(one.better_than_next, next);
     }
     if let Some(best) = found.best() {
-        // A share near none or all has more digits in the sentence.
+        // A share near 0 or 100 % has more digits in the sentence.
         let share = 100.0 * best.better_than_as_it_is.unwrap();
         let share =
             if (10.0..=99.0).contains(&share) { format!("{share:.0}") } else { String::new() };

@@ -1,4 +1,4 @@
-//! Studies of ten thousand samples: size of the page, bins, and the test of monotony.
+//! Studies of ten thousand samples: size of the page, bins, and the test of monotonicity.
 
 use crate::common::{integer, made, number, text};
 use barrelstack_campaign::decision::{Decision, Request, decide};
@@ -43,7 +43,7 @@ fn ordered(level: f64) -> f64 {
     barrelstack_fragility::Lognormal { median: 0.5, dispersion: 0.4 }.probability(level)
 }
 
-/// Returns the probability of [`ordered`], increased by 0.5 from 0.25 to 0.35 m/s, an island of collapse.
+/// Returns the probability of [`ordered`], increased by 0.5 in the range from 0.25 to 0.35 m/s (an island of collapse).
 ///
 /// Weaker islands are not always found: with an increase of 0.3, 19 of 20 are found among ten thousand samples and 7 of
 /// 20 among 2,400 (`validation/README.md`).

@@ -103,7 +103,7 @@ fn sampled() -> Protocol {
 fn the_range_over_constants_is_that_of_the_least_row_in_every_draw() {
     let folder = tempfile::tempdir().unwrap();
     let sheet = scored(&demo(&[]), &sampled(), folder.path()).unwrap();
-    // By brute force: sort the least velocity of every draw, and count a fortieth off at each end.
+    // By brute force: sort the smallest velocity of every draw, and omit one fortieth of the draws at each end.
     let count = sheet.rows[0].draws.len();
     assert!(count > 1000 && sheet.rows.iter().all(|row| row.draws.len() == count));
     let mut least: Vec<f64> = (0..count)
@@ -116,7 +116,7 @@ fn the_range_over_constants_is_that_of_the_least_row_in_every_draw() {
     assert!((first - f64::from(low)).abs() < 2.0, "{low} {first}");
     assert!((last - f64::from(high)).abs() < 2.0, "{high} {last}");
     assert!(low <= sheet.score() && sheet.score() <= high, "{low} {} {high}", sheet.score());
-    // The same numbers in the sentence, on the page and in the JSON.
+    // The numbers are the same in the sentence, on the page and in the JSON.
     let document = serde_json::to_value(sheet.to_document()).unwrap();
     assert_eq!(document["range"], serde_json::json!([low, high]));
     let said = format!("the score is between {low} and {high} with a probability of 95 %");

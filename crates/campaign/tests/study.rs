@@ -14,7 +14,7 @@ use barrelstack_campaign::study::{
 /// A short run, after [`HEAD`]: a case of a few milliseconds.
 const RUN: &str = "duration = \"0.4 s\"\nstop_after_collapse = \"0.01 s\"\n";
 
-/// Pulse that fells the stack of [`HEAD`] at high intensity.
+/// Pulse under which the stack of [`HEAD`] collapses at high intensity.
 const PULSE: &str = "\
 [[motion]]
 name = \"pulse\"
@@ -87,7 +87,8 @@ fn one_at_a_time_has_the_base_and_each_other_value_once() {
     let drawn = "[[factor]]\nfield = \"interface.barrel-rack.friction.coefficient\"\n\
                  distribution = { kind = \"uniform\", from = 0.2, to = 0.6 }\n";
     let study = study(&format!("{PULSE}{TWO_FACTORS}{drawn}[design]\nkind = \"one-at-a-time\""));
-    // The base; two other frictions if 0.4 is that of the base, else three; one other number of levels; two quantiles.
+    // The base, the listed frictions other than that of the base (two or three), one other number of levels, and two
+    // quantiles.
     let base = 1;
     let table = run(&study);
     let friction = numbers(&table, "friction");
@@ -163,7 +164,8 @@ fn points_of_sobol_fill_every_cell_and_more_of_them_keep_the_earlier_rows() {
         ((4.0 * f) as usize, (4.0 * (level / 0.01).ln() / 200_f64.ln()) as usize)
     };
     let pairs = numbers(&few, "f").into_iter().zip(numbers(&few, "level"));
-    // The axes of a level and of the first factor are a (0, 2)-sequence: one of 16 points in each of 4 by 4 cells.
+    // The axes of the level and of the first factor are a (0, 2)-sequence: of 16 points, one lies in each of 4 by 4
+    // cells.
     assert_eq!(pairs.map(cell).collect::<BTreeSet<_>>().len(), 16);
     let more = run(&sampled("kind = \"sobol\"\ncount = 24\nchunk = 8"));
     assert_eq!(rows(&more)[..16], rows(&few)[..]);
@@ -258,7 +260,7 @@ fn monte_carlo_stops_after_the_first_chunk_that_is_enough_whatever_the_threads()
     );
     let (_, [low, high]) = Tally::of(table).collapse().unwrap();
     assert!(high - low <= 0.4, "{low} {high}");
-    // The stop rule is not met without the last chunk.
+    // The stopping rule is not satisfied without the last chunk.
     let mut before = Tally::default();
     let outcomes = table.texts("outcome").unwrap();
     outcomes[..table.rows() - 4].iter().for_each(|outcome| before.add(outcome.as_deref().unwrap()));

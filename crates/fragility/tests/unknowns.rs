@@ -1,4 +1,4 @@
-//! Coverage of the range that unknown constants leave to a share of failures: simulated on known truths.
+//! Coverage of the range of a share of failures over unknown constants, simulated for known shares.
 //!
 //! `cargo test --release -p barrelstack-fragility --test all unknowns -- --nocapture` prints the table of
 //! `validation/statistics.md`.
@@ -13,7 +13,7 @@ use barrelstack_motion::Random;
 
 const LEVEL: f64 = 0.95;
 
-/// Numbers of constants and of trials. Stacks have four constants, those on posts have five.
+/// Numbers of constants and of trials. Stacks have four constants; stacks of racks on posts have five.
 const SIZES: [(usize, u32); 3] = [(4, 32), (4, 64), (5, 64)];
 
 /// Standard normal number (Box and Muller 1958).
@@ -25,7 +25,7 @@ fn deviate(random: &mut Random) -> f64 {
 /// The true share of failures as a function of the constants and of the half of the trials.
 type Truth = Box<dyn Fn(&[f64], bool) -> f64>;
 
-/// Draws a truth of a kind.
+/// Draws a true share of the given kind.
 fn truth(kind: &str, unknowns: usize, random: &mut Random) -> Truth {
     let a: Vec<f64> = (0..unknowns).map(|_| 0.8 * deviate(random)).collect();
     let b = deviate(random);
@@ -72,10 +72,10 @@ fn trials(
     (0..count).map(trial).collect()
 }
 
-/// At least 90 % of true shares lie in the stated range, whatever the kind of the truth.
+/// At least 90 % of all true shares lie in the stated range.
 #[test]
 fn the_range_over_unknowns_contains_the_true_share() {
-    // Of 25 truths, the share that a range with a coverage of 90 % contains scatters by 6 percentage points.
+    // With 25 true shares, an observed coverage of 90 % has a standard deviation of 6 percentage points.
     let (truths, least) = if cfg!(debug_assertions) { (25, 84.0) } else { (200, 90.0) };
     for (unknowns, count) in SIZES {
         let (mut held, mut all) = (0, 0);
@@ -113,7 +113,7 @@ fn the_range_over_unknowns_contains_the_true_share() {
     }
 }
 
-/// The constant that decides is found, and its effect is that of the truth.
+/// The constant that decides is found, and its effect is the true one.
 #[test]
 fn the_constant_that_decides_comes_first() {
     let mut random = Random::new(5);
@@ -125,7 +125,7 @@ fn the_constant_that_decides_comes_first() {
     for sign in [-1.0, 1.0] {
         let (found, _) = fitted.at(2, sign * 1.645, LEVEL);
         let exact = normal((0.3 + sign * 1.5 * 1.645) / (1.0_f64 + 0.16).sqrt());
-        // Measured: 0.041 at the lower end, where the prior is felt.
+        // Measured: 0.041 at the lower end, where the prior distribution has an influence.
         assert!((found - exact).abs() < 0.06, "{found} {exact}");
     }
     let difference = |unknown| fitted.difference(unknown, [-1.645, 1.645], LEVEL);
@@ -161,20 +161,20 @@ fn correlated_constants_move_together() {
         // Ends are rounded outward to hundredths. Measured: 0.006 and 0.016.
         assert!((range.high - exact).abs() < 0.03 && (range.low - (1.0 - exact)).abs() < 0.03);
         assert!((low - at).abs() < 0.03);
-        // The variance of a constant that the other leaves is 1 − ρ² of its own.
+        // If one constant is known, the variance of the other is 1 − ρ² times its own variance.
         let all = fitted.influences(LEVEL);
         println!("{all:?}");
         assert!((all[0].total - all[1].total).abs() < 0.1 && all[2].total < 0.03, "{all:?}");
         assert!(if along > 0.0 { all[0].total < 0.2 } else { all[0].total > 0.4 }, "{all:?}");
     }
-    // Without correlation, the values are those of independent constants to the bit.
+    // Without correlation, the values are bit-identical to those of independent constants.
     let unit = (0..3).map(|i| (0..3).map(|j| f64::from(u8::from(i == j))).collect()).collect();
     let same = independent.clone().correlated(unit);
     assert_eq!(same.shares(), independent.shares());
     assert_eq!(same.influences(LEVEL), independent.influences(LEVEL));
 }
 
-/// A share that rises to both sides is not taken for one that does not change.
+/// A share that rises on both sides of the median of a constant is distinguished from a constant share.
 #[test]
 fn a_share_with_its_minimum_in_the_middle_keeps_it() {
     let mut random = Random::new(7);
@@ -189,7 +189,7 @@ fn a_share_with_its_minimum_in_the_middle_keeps_it() {
     assert!(rise.low > 0.2, "{rise:?}");
 }
 
-/// Too little to fit gives nothing.
+/// Too few runs, or runs without constants, give no fit.
 #[test]
 fn few_trials_have_no_range() {
     let trial = DrawnRun { deviates: vec![0.1], second_half: false, failed: true };
@@ -225,7 +225,7 @@ fn over_motions(eta: f64) -> f64 {
     normal(eta / (1.0_f64 + 0.25).sqrt())
 }
 
-/// Values of the constants and an intensity, and the argument of the probability of failure there.
+/// Function that returns the argument of the probability of failure, for values of the constants and an intensity.
 type Eta = Box<dyn Fn(&[f64], f64) -> f64>;
 
 fn eta(kind: &str, random: &mut Random) -> Eta {
@@ -242,14 +242,14 @@ fn eta(kind: &str, random: &mut Random) -> Eta {
         "strong shaking" => Box::new(move |z, x| sum(z, x) + x * z[2]),
         // The strongest shaking is less dangerous than the curve states.
         "not monotone" => Box::new(move |z, x| sum(z, x) - if x > 0.9 { 1.5 } else { 0.0 }),
-        // Nothing fails up to half of the intensities.
+        // Nothing fails at the lower half of the intensities.
         "strong" => Box::new(move |z, x| sum(z, x) - 2.5),
         _ => Box::new(move |_, x| b + 2.2 * (x / 0.4).ln()),
     }
 }
 
-/// At least 90 % of true shares lie in the range, at every intensity and with either shape, although the runs of a motion
-/// are alike; so do intensities at which one in ten fails.
+/// At least 90 % of true shares lie in the range, at every intensity and with either shape, although the runs under a
+/// motion are correlated. The same holds for the intensity at which one in ten fails.
 #[test]
 fn the_range_at_an_intensity_contains_the_true_share() {
     let truths = if cfg!(debug_assertions) { 8 } else { 100 };
@@ -303,7 +303,7 @@ fn the_range_at_an_intensity_contains_the_true_share() {
     }
 }
 
-/// The share of draws in which one structure is stronger equals the share of constants for which it is.
+/// The share of draws in which one structure is stronger equals the share of constants for which it is stronger.
 #[test]
 fn the_order_of_two_structures_is_that_of_brute_force() {
     let one = |z: &[f64], x: f64| 2.2 * (x / 0.4).ln() + 0.2 + 0.9 * z[0];
@@ -330,7 +330,7 @@ fn the_order_of_two_structures_is_that_of_brute_force() {
     assert_eq!(share_less(&first, &first), 0.5);
 }
 
-/// Intensities without runs have no share of their own, and too little to fit gives nothing.
+/// Intensities without runs have no share of their own. Too few runs, or runs without constants, give no fit.
 #[test]
 fn only_intensities_with_runs_have_a_share_of_their_own() {
     let mut random = Random::new(8);
