@@ -207,7 +207,7 @@ impl Ranking {
         &mut self,
         report: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<bool, ProtectError> {
-        // The players show planes.
+        // The animations of the page show planes only.
         let Some(best) = self.best().filter(|best| best.direction != Direction::Space) else {
             return Ok(true);
         };
@@ -319,7 +319,8 @@ pub fn protect(
             let first = candidates.len();
             candidates.extend(search.candidates(pairs));
             let added: Vec<usize> = (first..candidates.len()).collect();
-            // Pairs run under the motions of the first round, as the single protections did, and half of all continue.
+            // Pairs run under the motions of the first round, as the single protections did, and half of all candidates
+            // continue.
             search.round(&mut candidates, &added, 0)?;
             open.extend(added);
             open = contenders(&candidates, &open, &weights);

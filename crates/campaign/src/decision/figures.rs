@@ -70,8 +70,8 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let dots = raw(curve, measure.scale, "raw fractions with 95 % intervals", 1);
     let series = line.into_iter().chain([dots]).collect();
     let caption = format!(
-        "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, not smoothed, with Wilson's \
-         interval.{}",
+        "Chance of {} against {}. Dots: the share of cases that fail at each level or in each bin, not smoothed, \
+         with Wilson's interval.{}",
         curve.limit.words(),
         measure.label,
         if curve.fit.is_ok() {
@@ -212,8 +212,9 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let series = vec![Series::bars("lowest to highest share of collapse", bars)];
     Figure::new(
         "tornado",
-        "Effect of the varied quantities: the share of collapse at their least and their most favorable value \
-         (or third of their values), over all motions and levels. The vertical line is the share of all cases.",
+        "Effect of the varied quantities: the share of collapse at the least favorable and at the most favorable \
+         value of each (or third of its values), over all motions and levels. The vertical line is the share of all \
+         cases.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
             y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),

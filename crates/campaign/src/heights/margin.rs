@@ -76,7 +76,7 @@ mod tests {
             margins(&request, &stacks, &going).unwrap().into_iter().map(Option::unwrap).collect();
         println!("{found:?} m/s²");
         for ((levels, direction), margin) in stacks[..3].iter().zip(&found) {
-            // An acceleration that grows to a share of the margin and stays near it for ten seconds.
+            // An acceleration that grows to a share of the margin and stays near that value for ten seconds.
             let falls = |share: f64| {
                 let text = format!(
                     "schema = 1\n{}[motion.pulse]\nkind = \"half-sine\"\namplitude = \"{} m/s^2\"\nperiod = \"80 s\"\n\

@@ -163,7 +163,8 @@ fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
     if all.request.in_space { space } else { planes }
 }
 
-/// Returns a direction as an insertion, such as ", along the barrels"; empty in space, where there is only one.
+/// Returns a direction as an insertion, such as ", along the barrels"; empty in space, where there is only one
+/// direction.
 fn inserted(direction: Direction) -> String {
     match direction {
         Direction::Plane(view) => format!(", {}", view.words()),
@@ -304,7 +305,7 @@ fn sentences(all: &Heights) -> Vec<String> {
             in_planes(all, " in their weaker direction", "")
         ));
     }
-    // A height without a margin stands at 1 g.
+    // A stack without a static margin stands even at 1 g.
     let least = |height: &&Height| height.static_margin.unwrap_or(f64::INFINITY);
     let weakest = all.heights.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
     if let Some((height, margin)) = weakest.and_then(|height| Some((height, height.static_margin?)))
@@ -621,8 +622,8 @@ pub(super) fn warnings(all: &Heights) -> Vec<String> {
     for height in &all.heights {
         for fall in height.by_velocity.monotony.significant(0.05) {
             said.push(format!(
-                "{} levels shaken {}: {} of {} collapse at {}, but only {} of {} at {} (p = {}). Stronger shaking is not \
-                 always worse for this stack; this does not make the stack safe.",
+                "Stacks of {} levels, shaken {}: {} of {} collapse at {}, but only {} of {} at {} (p = {}). Stronger \
+                 shaking is not always worse for this stack; this does not make the stack safe.",
                 height.levels,
                 height.direction.words(),
                 fall.from.failures,

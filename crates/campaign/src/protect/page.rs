@@ -260,8 +260,8 @@ fn table(all: &Ranking) -> Table {
         &all.all,
         &[
             ("protection", "", &|one| name(one)),
-            ("cost of a stack", "US$", &|one| Cell::text(cost(one))),
-            ("barrels elsewhere", "", &|one| Cell::text(one.protection.moved.to_string())),
+            ("cost per stack", "US$", &|one| Cell::text(cost(one))),
+            ("barrels stored elsewhere", "", &|one| Cell::text(one.protection.moved.to_string())),
             (collapses, "", &|one| Cell::text(collapse(one))),
             ("range over the uncertain constants", "", &|one| Cell::maybe(over(one))),
             ("better than as it is, in draws of the constants", "", &|one| {
@@ -323,7 +323,8 @@ fn chart(all: &Ranking) -> Figure {
         y.push(fallen_at(one));
     }
     let style = SeriesStyle { index: Some(0), ..SeriesStyle::default() };
-    let frontier = Series { style, ..Series::new("frontier: fewest fall for the cost", x, y) };
+    let frontier =
+        Series { style, ..Series::new("frontier: fewest fallen barrels for the cost", x, y) };
     let series = [(true, "best for their cost"), (false, "others")]
         .into_iter()
         .enumerate()
@@ -346,7 +347,7 @@ fn chart(all: &Ranking) -> Figure {
             per(all)
         ),
         Plot {
-            x: Axis::new("cost of a stack", "US$"),
+            x: Axis::new("cost per stack", "US$"),
             y: Axis::new(fallen, ""),
             series,
             ..Plot::default()

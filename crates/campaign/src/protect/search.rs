@@ -111,7 +111,7 @@ impl Search<'_> {
         }
         let of: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
         let done = AtomicU64::new(0);
-        // Each study runs on one thread, and as many studies at once as there are cores.
+        // Each study runs on one thread, and as many studies run at once as there are cores.
         let options = RunOptions { threads: Some(NonZero::<usize>::MIN), ..*self.options };
         let work = |(.., folder, study): &(usize, usize, PathBuf, Study)| {
             let before = AtomicU64::new(0);

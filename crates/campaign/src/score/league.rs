@@ -90,7 +90,7 @@ pub fn league(
     let scenario = &changed(scenario, &protocol.stacked()).map_err(refused)?;
     let (mut ready, mut not_scored) = (Vec::<(Contender, Prepared)>::new(), Vec::new());
     for contender in contenders(scenario) {
-        // Many stacks are settled before the first run.
+        // Many stacks are settled before the first run, so the caller may cancel here as well.
         if report(0, 1).is_break() {
             return Err(StudyError::Stopped.into());
         }

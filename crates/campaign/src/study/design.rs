@@ -369,7 +369,7 @@ impl Study {
         let group = self.correlations.iter().position(|group| group.contains(factor));
         let Some(group) = group else { return own };
         let along = self.correlations[group].coefficient;
-        // The quantiles are finite.
+        // The lower bound keeps the quantiles finite.
         let [own, common] = [own, common(group)].map(|u| normal_quantile(u.max(f64::MIN_POSITIVE)));
         normal(along.sqrt() * common + (1.0 - along).sqrt() * own)
     }

@@ -135,7 +135,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     top.integer("schema")?;
     let title = top.optional_text("title")?.unwrap_or_else(|| opened.stem());
     let seed = u64::from(top.integer("seed")?);
-    // The reader of scenarios reads the base later; here it only has to be a table.
+    // The reader of scenarios reads the base later; here the base only has to be a table.
     let base = top.table("base")?;
     let sets = top.sections("motion")?;
     if let Some(motion) = base.get("motion").filter(|_| !sets.is_empty()) {

@@ -84,7 +84,7 @@ mod tests {
 
     use super::{StopRule, Tally};
 
-    /// Simulates studies with a stop rule, tested after every chunk of 16 cases.
+    /// Simulates studies with a stopping rule, tested after every chunk of 16 cases.
     ///
     /// Returns the fraction of studies whose interval covers the probability, and the mean of the reported share.
     fn stopped(probability: f64, rule: StopRule) -> [f64; 2] {
@@ -112,8 +112,9 @@ mod tests {
             for (half_width, least) in [(0.1, 100), (0.05, 100), (0.03, 100), (0.05, 32)] {
                 let [covered, share] = stopped(probability, StopRule { half_width, least });
                 println!("| {probability} | {half_width} ({least}) | {covered:.3} | {share:.4} |");
-                // Measured: at least 0.936. For 2000 studies with a coverage of 95 %, the fraction has a standard deviation
-                // of 0.5 %; without a stop rule, Wilson's interval covers some probabilities in 93 % only.
+                // Measured: at least 0.936. For 2000 studies with a coverage of 95 %, the fraction has a standard
+                // deviation of 0.5 %; without a stopping rule, Wilson's interval covers some probabilities in only 93 %
+                // of the studies.
                 assert!(covered > 0.93, "{probability} {half_width} {covered}");
                 // Measured: too low by at most 0.0059, at a half-width of 0.05, since a study with few collapses stops sooner.
                 assert!((share - probability).abs() < 0.2 * half_width, "{probability} {share}");
