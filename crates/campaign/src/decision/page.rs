@@ -239,7 +239,9 @@ fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
             ("95 % interval", unit, &|of| Cell::maybe(interval(of))),
             ("dispersion β", "", &|of| Cell::number(fitted(of).map(|of| of.dispersion), 2)),
             ("fraction decreases (p)", "", &|of| Cell::number(violated(of), 2)),
-            (&format!("{} that return", cases.curves_are()), "", &|of| count(returned(of))),
+            (&format!("{} with survival above a failure", cases.curves_are()), "", &|of| {
+                count(returned(of))
+            }),
             ("remark", "", &|of| Cell::text(remark(of))),
         ],
     )

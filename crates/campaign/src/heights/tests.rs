@@ -181,8 +181,7 @@ fn what_is_low_is_also_stated_over_the_uncertain_constants() {
     let some = made(|levels, _, velocity| if levels < 5 && velocity < 0.3 { 0 } else { 24 });
     let headline = document(&some).verdict.headline;
     assert!(headline.contains("Up to 4 levels"), "{headline}");
-    let over =
-        "damping of the seats, up to 3 levels have a low risk: the probability of collapse is 0 to 12 % (95 % range).";
+    let over = "damping of the seats, up to 3 levels have a low risk: the probability of collapse is 0 to 12 % (95 % range).";
     assert!(headline.ends_with(over), "{headline}");
     // The same range in the table and in the JSON.
     let text = markdown(&document(&some), "figures").text.replace('\u{a0}', " ");

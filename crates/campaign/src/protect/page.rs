@@ -45,11 +45,11 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
     }
 }
 
-/// Returns the situation to which the estimates refer, such as "a year at this site" or "in shaking of 25,
-/// 50, 75 cm/s".
+/// Returns the situation to which the estimates refer, such as "per year at this site" or "in shaking of 25, 50, 75
+/// cm/s".
 fn per(all: &Ranking) -> String {
     match &all.request.shaking {
-        Shaking::Site(_) => "a year at this site".to_owned(),
+        Shaking::Site(_) => "per year at this site".to_owned(),
         Shaking::Levels(levels) => {
             let shown: Vec<String> = levels
                 .iter()
@@ -253,7 +253,7 @@ fn table(all: &Ranking) -> Table {
     };
     Table::of(
         format!(
-            "The stack as it is and all {} protections that were tried, {}; 95 % intervals in brackets.",
+            "The stack as it is and all {} protections that were tried, with results {}; 95 % intervals in brackets.",
             all.tries(),
             per(all)
         ),

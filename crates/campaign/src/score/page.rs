@@ -149,13 +149,19 @@ fn headline(sheet: &Sheet) -> String {
 
 fn sentences(sheet: &Sheet) -> Vec<String> {
     let Some(weakest) = sheet.weakest() else { return Vec::new() };
-    let mut said =
-        vec![format!("Weakest: {}, shaken {}.", weakest.state.name, weakest.direction.words())];
+    let mut said = vec![format!(
+        "Weakest state and direction: {}, shaken {}.",
+        weakest.state.name,
+        weakest.direction.words()
+    )];
     said.extend(over_constants(sheet));
     let new = sheet.rows.iter().filter(|row| row.state == sheet.rows[0].state);
     let new: Vec<String> =
         new.map(|row| format!("{} {}", bears(row.capacity), row.direction.words())).collect();
-    said.push(format!("As good as new: {}.", new.join(", ")));
+    said.push(format!(
+        "Velocity at which one in ten collapses, as good as new: {}.",
+        new.join(", ")
+    ));
     said
 }
 
@@ -163,9 +169,8 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
 fn over_constants(sheet: &Sheet) -> Option<String> {
     let [low, high] = sheet.range().filter(|_| !sheet.draws().is_empty())?;
     let decides = sheet.decisive().map(|one| {
-        let at = |at: &ShareAt| {
-            format!("{} for a value of {}", percent(at.share), one.words(at.value))
-        };
+        let at =
+            |at: &ShareAt| format!("{} for a value of {}", percent(at.share), one.words(at.value));
         let ends = one.low_median_high().map_or_else(String::new, |[from, _, to]| {
             format!(
                 ": the share of stacks that collapse at {} cm/s is {} and {}",
