@@ -95,9 +95,9 @@ pub struct Height {
     pub by_acceleration: LimitCurve,
     /// Mean share of the barrels that fall, for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
-    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the
-    /// friction and the seats of the catalog; `None` if the stack stands even at 1 g. In space it is the smaller of those
-    /// across and along the barrels.
+    /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the friction and the
+    /// seats of the catalog; `None` if the stack stands even at 1 g. In space it is the smaller of the margins across
+    /// and along the barrels.
     pub static_margin: Option<f64>,
     /// Effect of the uncertain constants of the seats on the share of collapses, for each stripe of `by_velocity`; `None`
     /// if a run has no verdict, or if there are too few runs.
@@ -114,8 +114,8 @@ pub struct AtLevel {
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
-    /// Range of the share of collapses over the uncertain constants of the seats, with a probability of 95 %, sampling
-    /// error included; `None` if it is unknown.
+    /// Range that contains, with a probability of 95 %, the share of collapses, given the uncertain constants of the
+    /// seats and the sampling error; `None` if it is unknown.
     pub range: Option<[f64; 2]>,
 }
 

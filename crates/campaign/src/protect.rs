@@ -1,10 +1,10 @@
 //! Ranking of protections of a stack by benefit and cost.
 //!
-//! A protection is a lower stack, another rack, a device, or a pair of these. All protections are run under
-//! the same motions and with the same quantiles of friction, so that their results differ by their effects
-//! and not by sampling. The first round tries all protections; later rounds try only the contenders, under
-//! further motions. Each round of a protection in one direction is a study in its own folder, so that an
-//! interrupted ranking resumes from there.
+//! A protection is a lower stack, another rack, a device, or a pair of these. All protections are run under the same
+//! motions and with the same quantiles of friction, so that differences between their results come from the protections
+//! and not from sampling. The first round tries all protections; later rounds try only the contenders, under further
+//! motions. Each round of a protection in one direction is a study in its own folder, so that an interrupted ranking
+//! resumes from there.
 
 mod json;
 mod options;
@@ -129,14 +129,15 @@ pub struct Ranked {
     /// Description of the worst state of maintenance, and the number of barrels that fall in it; `None` if no
     /// such state was tried.
     pub worn: Option<(String, Estimate)>,
-    /// Range of the probability of collapse, or of its annual rate, over the uncertain constants of the seats, with a
-    /// probability of 95 %, sampling error included. `None` if it is unknown, and for a protection that was not run in
-    /// all rounds.
+    /// Range that contains, with a probability of 95 %, the probability of collapse, or its annual rate, given the
+    /// uncertain constants of the seats and the sampling error. `None` if it is unknown, and for a protection that was
+    /// not run in all rounds.
     pub range: Option<[f64; 2]>,
     /// Number of barrels that fall, in every draw of the uncertain constants and of the regression. A draw has the same
-    /// constants for all protections. Empty where `range` is `None`, and without uncertain constants.
+    /// constants for all protections. Empty if `range` is `None`, and without uncertain constants.
     pub draws: Vec<f64>,
-    /// Share of the draws in which fewer barrels fall than with the unprotected stack; equal numbers count by half.
+    /// Share of the draws in which fewer barrels fall than with the unprotected stack; a draw with equal numbers counts
+    /// as one half.
     pub better_than_as_it_is: Option<f64>,
     /// Share of the draws in which fewer barrels fall than with the next protection of the ranking.
     pub better_than_next: Option<f64>,

@@ -129,8 +129,8 @@ pub struct Scored {
 }
 
 impl Scored {
-    /// Returns the range of the velocity (m/s) over the uncertain constants, with a probability of 95 %; the interval of
-    /// sampling if no constant is drawn.
+    /// Returns the range (m/s) that contains the velocity with a probability of 95 %, given the uncertain constants and
+    /// the sampling error. If no constant is drawn, it is the 95 % interval of the velocity.
     pub fn range(&self) -> Option<Interval> {
         if self.draws.is_empty() {
             return self.capacity.interval().filter(|_| self.certain);
@@ -192,8 +192,8 @@ impl Sheet {
         (0..count).map(least).collect()
     }
 
-    /// Returns the range of the score (cm/s) over the uncertain constants, with a probability of 95 %, sampling error
-    /// included; rounded outward. Without uncertain constants it is the interval of sampling of the weakest row.
+    /// Returns the range (cm/s) that contains the score with a probability of 95 %, given the uncertain constants and
+    /// the sampling error; rounded outward. Without uncertain constants it is the 95 % interval of the weakest row.
     pub fn range(&self) -> Option<[u32; 2]> {
         let draws = self.draws();
         let found =

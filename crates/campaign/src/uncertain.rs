@@ -134,7 +134,7 @@ impl Sample {
         self.runs.iter().map(|run| run.intensity)
     }
 
-    /// `true` if no constant is drawn, so that the range over the constants is the interval of sampling.
+    /// `true` if no constant is drawn, so that the range of a share is its confidence interval.
     pub(crate) fn is_certain(&self) -> bool {
         self.constants.is_empty()
     }
@@ -169,8 +169,9 @@ fn drawn(study: &Study) -> Vec<Drawn> {
 }
 
 impl Sample {
-    /// Returns the effect of the constants at each intensity, in the order of `stripes`. Without uncertain constants the
-    /// range of an intensity is `sampled`, the interval of sampling; `None` if the effect is unknown.
+    /// Returns the effect of the constants at each intensity, in the order of `stripes`. Without uncertain constants,
+    /// the range at an intensity is the confidence interval that `sampled` returns. An element is `None` if the effect
+    /// at its intensity is unknown.
     pub(crate) fn at_levels(
         &self,
         stripes: &[Stripe],

@@ -61,9 +61,9 @@ described! {
         /// Direction of the shaking: across or along the barrels, or in space, in a horizontal direction that is drawn for
         /// every run.
         pub direction: &'static str ["transverse", "longitudinal", "spatial"] = height.direction.name(),
-        /// Static margin: largest steady horizontal acceleration under which the stack stands, with the
-        /// friction and the seats of the catalog; null if the stack stands at 1 g. In space it is the smaller of those
-        /// across and along the barrels.
+        /// Static margin: largest steady horizontal acceleration under which the stack stands, with the friction and
+        /// the seats of the catalog; null if the stack stands at 1 g. In space it is the smaller of the margins across
+        /// and along the barrels.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
         /// Results at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),
@@ -86,9 +86,9 @@ described! {
         pub interval: [Option<f64>; 2] as "1" = bounds(known(at.0)),
         /// Mean share of the barrels that fall.
         pub fallen_share: f64 as "1" = *at.1,
-        /// Range of the share of stacks that collapse, over the uncertain constants of the seats (friction, stiffness,
-        /// damping), with a probability of 95 %, sampling error included. Null if a run of this stack has no verdict, or
-        /// if there are too few runs.
+        /// Range that contains, with a probability of 95 %, the share of stacks that collapse, given the uncertain
+        /// constants of the seats (friction, stiffness, damping) and the sampling error. Null if a run of this stack
+        /// has no verdict, or if there are too few runs.
         pub range: Option<[f64; 2]> as "1" = at.2.map(|effect| effect.range),
         /// Share of stacks that collapse if all uncertain constants have their stated values; null if `range` is null.
         pub share_as_stated: Option<f64> as "1" = at.2.map(|effect| effect.as_stated),

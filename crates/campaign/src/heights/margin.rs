@@ -11,8 +11,8 @@ use crate::run::RunFailure;
 use crate::scenario::View;
 use crate::study::StudyError;
 
-/// Returns the static margin (m/s²) of a stack: `None` if the stack stands even at 1 g, zero if it falls
-/// under its own weight. In space it is the smaller of those across and along the barrels.
+/// Returns the static margin (m/s²) of a stack: `None` if the stack stands even at 1 g, zero if it falls under its own
+/// weight. In space it is the smaller of the margins across and along the barrels.
 fn margin(
     request: &Request,
     (levels, direction): (u32, Direction),
@@ -90,7 +90,7 @@ mod tests {
         }
         // The margin of the higher stack is smaller.
         assert!(found[2] < found[1], "{found:?}");
-        // In space the margin is the smaller one of those across and along the barrels.
+        // In space the margin is the smaller of the margins across and along the barrels.
         assert_eq!(found[3], found[0].min(found[4]));
     }
 }

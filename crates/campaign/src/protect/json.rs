@@ -60,12 +60,12 @@ described! {
         pub barrels_moved: u32 = one.protection.moved,
         /// Probability of collapse, or number of collapses per year.
         pub collapse: Interval = Interval::of(&one.collapse),
-        /// Range of `collapse` over the uncertain constants of the seats (friction, stiffness, damping), with a
-        /// probability of 95 %, sampling error included. Null if a run has no verdict, if there are too few runs, or if
-        /// the protection was not run in all rounds.
+        /// Range that contains `collapse` with a probability of 95 %, given the uncertain constants of the seats
+        /// (friction, stiffness, damping) and the sampling error. Null if a run has no verdict, if there are too few
+        /// runs, or if the protection was not run in all rounds.
         pub range: Option<[f64; 2]> as "that of `collapse`" = one.range,
-        /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack,
-        /// which has the same constants; the error of sampling is drawn as well. Null where `range` is null, and without
+        /// Share of the draws of the uncertain constants and of the sampling error in which fewer barrels fall than
+        /// with the unprotected stack, which has the same constants in each draw. Null if `range` is null, and without
         /// uncertain constants.
         pub better_than_as_it_is: Option<f64> as "1" = one.better_than_as_it_is,
         /// Share of the draws in which fewer barrels fall than with the next protection of the list; computed like

@@ -51,7 +51,7 @@ pub(super) struct Runs {
 /// Effect of the uncertain constants on a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Over {
-    /// Range of the probability of collapse, or of its annual rate, with a probability of 95 %.
+    /// Range that contains, with a probability of 95 %, the probability of collapse, or its annual rate.
     pub(super) range: Option<[f64; 2]>,
     /// Number of barrels that fall, in every draw of the constants and of the regression; empty if it is unknown.
     pub(super) fallen: Vec<f64>,

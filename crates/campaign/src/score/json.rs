@@ -18,12 +18,12 @@ described! {
         pub rack: Option<String> = sheet.scenario.stack().map(|stack| stack.rack.base.to_owned()),
         /// Score: the smallest velocity over all states and directions, rounded down.
         pub score: u32 as "cm/s" = sheet.score(),
-        /// Range of the score over the uncertain constants of the seats (friction, stiffness, damping), with a probability
-        /// of 95 %, sampling error included; rounded outward. Without uncertain constants it is the interval of
-        /// sampling. Null if a run has no verdict, or if there are too few runs.
+        /// Range that contains the score with a probability of 95 %, given the uncertain constants of the seats
+        /// (friction, stiffness, damping) and the sampling error; rounded outward. Without uncertain constants it is
+        /// the 95 % interval for the sampling error alone. Null if a run has no verdict, or if there are too few runs.
         pub range: Option<[u32; 2]> as "cm/s" = sheet.range(),
-        /// Constant that decides the result in the weakest state and direction: shares of collapse at the velocity of the
-        /// score, as a function of the constant; null if no constant decides.
+        /// Constant that decides the result in the weakest state and direction, with the shares of collapse at the
+        /// velocity of the score as a function of that constant; null if no constant decides.
         pub decides: Option<Unknown> = sheet.decisive().cloned(),
         /// Number of levels of the stack.
         pub levels: u32 = sheet.protocol.levels,
