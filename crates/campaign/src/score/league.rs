@@ -284,7 +284,7 @@ fn table(league: &League) -> Table {
         &[
             ("rack or device", "", &|(_, one, _)| Cell::text(&one.name)),
             ("RockScore", "cm/s", &|(.., sheet)| Cell::text(sheet.score().to_string())),
-            ("interval of sampling", "cm/s", &|(.., sheet)| Cell::maybe(interval(sheet))),
+            ("confidence interval", "cm/s", &|(.., sheet)| Cell::maybe(interval(sheet))),
             ("range over the uncertain constants", "cm/s", &|(.., sheet)| {
                 Cell::maybe(range(sheet.range()))
             }),
@@ -311,7 +311,7 @@ fn legend(scenario: &Scenario) -> String {
     };
     format!(
         "A score compares racks and devices under the same motions; it does not predict the behavior of a particular \
-         cellar. The interval of sampling (95 %, clustered by motion) is that of the weakest state and direction; \
+         cellar. The confidence interval (95 %, clustered by motion) is that of the weakest state and direction; \
          there is none where no curve can be fitted. With a probability of 95 %, the range over the uncertain \
          constants contains the score of a stack if the friction, stiffness and damping of its seats are drawn from \
          their distributions, sampling error included. Each draw of the constants applies to all rows.{space}"
