@@ -117,7 +117,7 @@ fn the_page_sets_outcomes_and_demands_side_by_side() {
     let inputs = table(&document, "Differences");
     assert_eq!(inputs.rows.len(), 1);
     let text = markdown(&document, "figures").text;
-    assert!(text.contains("The runs differ in one input: stack.levels, 4 and 2."), "{text}");
+    assert!(text.contains("The runs differ in one input, stack.levels: 4 and 2."), "{text}");
     assert!(text.contains("A, four: ") && text.contains("B, two: "), "{text}");
 }
 

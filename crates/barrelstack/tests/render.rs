@@ -26,7 +26,7 @@ fn a_reader_can_add_up_the_energy_balance() {
     let line = |label: &str| &plot.series.iter().find(|series| series.label == label).unwrap().y;
     let parts = ["motion", "height", "contacts and devices", "lost to friction", "lost to damping"]
         .map(line);
-    let (all, given) = (line("sum of all of these"), line("work of the ground"));
+    let (all, given) = (line("sum of stored and dissipated energy"), line("work of the ground"));
     let largest =
         parts.iter().flat_map(|part| part.iter()).fold(0.0_f64, |most, e| most.max(e.abs()));
     assert!(largest > 10.0, "barrels fall: {largest} kJ");

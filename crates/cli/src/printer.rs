@@ -186,7 +186,7 @@ pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
 /// Returns the command that compares the remedy with the stack.
 pub(crate) fn side_by_side(summary: &AnySummary) -> Option<String> {
     let command = summary.remedy()?.comparison.as_ref()?;
-    Some(format!("To compare them side by side: {command}"))
+    Some(format!("To compare the stack with and without the change: {command}"))
 }
 
 /// Prints the answer as text; `changes` are the values changed on the command line.

@@ -157,7 +157,7 @@ impl Block {
 }
 
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
-pub(crate) const FINE: &str = "The numbers behind it";
+pub(crate) const FINE: &str = "The numbers behind the verdict";
 
 /// Returns the sentence that stands on paper in place of content of the page on screen. It names the figures and tables of
 /// the content, which are counted before and after it.

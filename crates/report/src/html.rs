@@ -209,7 +209,7 @@ impl<'a> Writer<'a> {
         if !verdict.command.is_empty() {
             // Without non-breaking spaces, because the command is meant to be copied.
             let command = escape::html(&verdict.command);
-            let to = self.t("To compare them side by side:");
+            let to = self.t("To compare the stack with and without the change:");
             self.put(&format!("<p class=\"command\">{to} <code>{command}</code></p>\n"));
         }
         if !verdict.fine.is_empty() {

@@ -47,7 +47,7 @@ pub fn markdown(document: &Document, figure_dir: &str) -> MarkdownBundle {
     }
     writer.line("");
     if !verdict.command.is_empty() {
-        let to = t("To compare them side by side:");
+        let to = t("To compare the stack with and without the change:");
         writer.line(&format!("{to}\n\n    {}\n", verdict.command));
     }
     if !document.warnings.is_empty() {

@@ -253,7 +253,7 @@ impl<'a> Flow<'a> {
             self.paragraph("page-text", &verdict.sentences.join(" "));
         }
         if !verdict.command.is_empty() {
-            let to = self.t("To compare them side by side:");
+            let to = self.t("To compare the stack with and without the change:");
             self.paragraph("page-text", &format!("{to} {}", verdict.command));
         }
         if !verdict.fine.is_empty() {

@@ -91,8 +91,8 @@ fn advice_stands_under_the_headline_and_the_numbers_behind_it_are_folded() {
     assert!(page.contains("id=\"word-0\">how far the top moves") && !page.contains("uplift"));
     let text = markdown(&doc, "").text;
     let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part} in {text}"));
-    assert!(at("**Three levels would have stood.**") < at("## The numbers behind it"));
-    assert!(at("## The numbers behind it") < at("0.37"));
+    assert!(at("**Three levels would have stood.**") < at("## The numbers behind the verdict"));
+    assert!(at("## The numbers behind the verdict") < at("0.37"));
     assert!(at("- **drift**: how far the top moves") > at("Its drift") && !text.contains("uplift"));
 }
 

@@ -191,9 +191,9 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let (change, [low, high]) = (points(pair.reduction.abs()), [low, high].map(points));
             let difference = if change < 1.0 {
-                "the shares differ by less than one point".to_owned()
+                "the shares differ by less than one percentage point".to_owned()
             } else {
-                format!("the share of {second} is {change} points {word}")
+                format!("the share of {second} is {change} percentage points {word}")
             };
             let motions = if one_motion([first, other]) {
                 " under the same motions"
@@ -206,8 +206,8 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
             format!(
-                "Of the same {} variants{motions}{}, {} collapse with both, {} with A only and {} with \
-                 {second} only: {difference} (95 % interval {low} to {high}{clear}).{lost}",
+                "Of the same {} variants{motions}{}, {} collapse in both runs, {} in A only and {} in \
+                 {second} only: {difference} (95 % interval {low} to {high} points{clear}).{lost}",
                 pair.pairs(),
                 place(first, pair),
                 pair.both,
@@ -325,7 +325,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let mut fine = Vec::new();
     fine.push(match differing {
         [one] => format!(
-            "The runs differ in one input: {}, {}.",
+            "The runs differ in one input, {}: {}.",
             one.path,
             listed(one.values.iter().map(|value| {
                 value
@@ -377,15 +377,15 @@ fn players(sides: &[Side]) -> Players {
         })
         .collect();
     // Drawings of bodies in space change with their rotation, so they have no single outline.
-    let overlay = (!sides.iter().any(Side::is_spatial)).then(|| "A in the others".to_owned());
+    let overlay = (!sides.iter().any(Side::is_spatial)).then(|| "outlines of A".to_owned());
     let dashed = overlay.as_ref().map_or_else(String::new, |label| {
-        format!(" With “{label}” switched on, dashed outlines show A at the same time.")
+        format!(" With “{label}” switched on, dashed lines in all other pictures show the bodies of A at the same time.")
     });
     Players {
         id: "players".into(),
         caption: format!(
-            "The computed motion of the runs, on one clock and to one scale. A run that has ended holds its last \
-             frame.{dashed}{}",
+            "The computed motion of the runs, at the same times and to the same scale. A run that has ended keeps showing \
+             its last frame.{dashed}{}",
             panes.iter().map(|pane| report::legend(&pane.scene)).max().unwrap_or_default()
         ),
         panes,

@@ -41,7 +41,7 @@ pub(super) fn players(
     Players {
         id: "players".into(),
         caption: format!(
-            "The computed motion of the stack, across and along its barrels, on one clock and to one scale. Arrows show contact forces, each on the body that it pushes up.{}",
+            "The computed motion of the stack, across and along its barrels, at the same times and to the same scale. Arrows show contact forces, each on the body that it pushes up.{}",
             drawing::legend(scene)
         ),
         panes: both.into(),
@@ -92,7 +92,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let mut table = Table::new(
-        "Ranges span the 5th to the 95th percentile of the variants; the range of all variants is in brackets.",
+        "Ranges span the 5th to the 95th percentile of the variants; the range of all variants is in parentheses.",
         &[("", "")],
     );
     table.columns.extend(
@@ -122,8 +122,9 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     });
     row("first fall", &|spread| {
         spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
-            let within = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
-            within + &spread.counted("the first loss")
+            let time = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
+            let counted = spread.counted("the first loss");
+            if counted.is_empty() { time } else { format!("{time}, counted{counted}") }
         })
     });
     row("barrels fallen in a collapse", &|spread| {
@@ -132,7 +133,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
             format!("{within} ({}){}", span(least, most, 0), spread.counted("the first loss"))
         })
     });
-    row("by mode", &|spread| {
+    row("collapses by mode", &|spread| {
         let modes = spread.modes.iter().map(|(mode, count)| format!("{mode} {count}"));
         Some(modes.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty())
     });

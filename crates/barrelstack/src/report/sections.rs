@@ -291,8 +291,8 @@ fn stresses(run: &Run) -> Vec<Block> {
         blocks.insert(
             0,
             Block::Paragraph(
-                "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from where \
-                 it acts. A node is assumed to bear on half of the distance to each of its neighbors, and a contact without nodes on 1 cm at full scale; the stress is the force divided by that length. Gray area: stress at rest. Area behind it: largest stress until the first loss of seat."
+                "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from the \
+                 point at which it acts. It is the force divided by the length of boundary on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at a contact without nodes, 1 cm at full scale. Gray area: stress at rest. Area behind the gray area: largest stress until the first loss of seat."
                     .into(),
             ),
         );
@@ -356,8 +356,9 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let table = interface_table(
-        "Force on the upper body, or on the body that is named first: the largest magnitude in any step until the first \
-         loss of seat, and in any step of the run, falls included; positive up and to the right.",
+        "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
+         Two largest forces are given, each with the largest magnitude of any step: one until the first loss of seat, and one \
+         over the whole run, falls included.",
         &summary.interfaces,
     );
     let recording = &run.recording;
@@ -443,13 +444,13 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let mut series = vec![line("work of the ground", &["ground work"], ground)];
     series.extend(parts.iter().map(|(label, names, index)| line(label, names, color(*index))));
     let all: Vec<&str> = parts.iter().flat_map(|(_, names, _)| names.iter().copied()).collect();
-    series.push(line("sum of all of these", &all, color(10)));
+    series.push(line("sum of stored and dissipated energy", &all, color(10)));
     vec![
         Block::Paragraph(balanced(balance)),
         history(
             run,
             "energy",
-            "Change of energy since the start. The balance holds where the sum of all of these follows the edge of the shaded area, which is the work of the ground. A falling body converts potential energy to kinetic energy, which friction and damping dissipate.",
+            "Change of energy since the start. The balance holds where the sum of stored and dissipated energy follows the edge of the shaded area, which is the work of the ground. A falling body converts potential energy to kinetic energy, which friction and damping dissipate.",
             Axis::new("energy", "kJ"),
             series,
         ),

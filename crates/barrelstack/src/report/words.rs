@@ -171,7 +171,7 @@ fn shaking(motion: &MotionSummary) -> String {
         (false, true) => "horizontal and vertical",
         (false, false) => "horizontal only",
     };
-    format!("The motion is {name}, {components}.")
+    format!("The ground motion is {name} ({components}).")
 }
 
 /// Returns further details: strength of the motion, number of the shown variant, and how the

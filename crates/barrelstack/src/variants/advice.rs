@@ -158,13 +158,13 @@ impl Remedy {
         let series = [
             bars,
             points("all variants", 2, true),
-            points("rejected early: the variants counted until then", 1, false),
+            points("rejected early: share of the variants counted by then", 1, false),
         ];
         let mark = |at: f64, label: &str| Mark { at: percent(at), label: label.into() };
         let limit = mark(1.0 - self.required_share, "limit");
         Figure::new(
             "remedy",
-            "Share of the same variants that falls after each change, in the direction in which more fall.",
+            "Share of the variants that fall after each change, in the direction in which more fall. All changes are tried with the same variants.",
             Plot {
                 x: Axis { range: Some([-2.0, 102.0]), ..Axis::new("variants that fall", "%") },
                 y: Axis::named(self.tried.iter().map(name).collect()),
@@ -181,9 +181,9 @@ impl Remedy {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
-            "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share of a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
-             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included; a draw has the same constants for all changes, and a change is better in it if fewer stacks fall. \
-             Straps are assumed not to slip on what they tie.",
+            "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share that falls after a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
+             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included. The last column is the share of these draws in which fewer stacks fall after the change than without it; a draw has the same constants for all changes. \
+             Straps are assumed not to slip on the barrels and racks that they tie.",
             100.0 * self.required_share,
             self.candidates
         );
@@ -198,7 +198,7 @@ impl Remedy {
             &[
                 ("change", "", &|one| Cell::text(name(one))),
                 ("fall", "", &|one| Cell::text(falls(one))),
-                ("share that falls, interval", "", &|one| {
+                ("share that falls, with its 95 % interval", "", &|one| {
                     Cell::maybe(one.share.zip(one.interval).map(|(share, interval)| {
                         format!("{} ({})", percent(share), interval.map(percent).join(" to "))
                     }))
@@ -207,7 +207,7 @@ impl Remedy {
                 ("range over uncertain constants", "", &|one| {
                     Cell::maybe(one.range.map(|range| range.map(percent).join(" to ")))
                 }),
-                ("better than as it is, in draws", "", &|one| {
+                ("draws in which fewer fall than as it is", "", &|one| {
                     Cell::maybe(one.better_than_as_it_is.map(percent))
                 }),
             ],

@@ -225,7 +225,7 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
         worst(&placed).and_then(|(_, spread)| measure(spread)).into_iter().collect();
     let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
     let sentence = |(view, spread): &(View, &Spread)| {
-        format!("Where it falls {}: {}.", view.words(), course(spread))
+        format!("In the variants in which the stack falls {}, {}.", view.words(), course(spread))
     };
     sentences.extend(falls.filter(|_| planes.len() > 1).map(sentence));
     sentences
@@ -246,9 +246,9 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
         number => format!("variant {number}"),
     };
     let decides = planes.iter().find(|(view, _)| Some(view.name()) == summary.view);
-    let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!("{} ", view.words()));
+    let plane = decides.filter(|_| planes.len() > 1).map(|(view, _)| format!("{}, ", view.words()));
     sentences.push(format!(
-        "The run that is shown is {}{typical}; {}the gentlest is {}, the worst {}.",
+        "The run that is shown is {}{typical}; {}{} is the gentlest and {} the worst.",
         named(summary.variant),
         plane.unwrap_or_default(),
         named(spread.gentlest),
@@ -261,7 +261,7 @@ pub(crate) fn fine(summary: &Summary, scenario: &Scenario) -> Vec<String> {
         _ => "has no verdict".to_owned(),
     };
     let places = format!(
-        "in position by up to {} mm and in mass by {} %",
+        "in position by up to {} mm and in mass by {} % (one standard deviation)",
         tenths(1e3 * imperfections.placement),
         tenths(100.0 * imperfections.mass)
     );
@@ -298,7 +298,7 @@ pub fn fate(spread: &Spread) -> String {
 /// 6.4 s; 4 to 8 of 10 barrels fall".
 pub fn course(spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
-        return "before it is shaken".to_owned();
+        return "the stack falls before it is shaken".to_owned();
     }
     let when = spread.first_loss.map_or_else(String::new, |first| {
         let shaken = spread.collapsed - spread.cannot_stand;
@@ -607,25 +607,25 @@ mod tests {
         one.range = Some([0.17, 1.0]);
         one.decides = vec![unknown([0.1, 0.6])];
         let said = headline(&[(View::Transverse, &spread(64, 3)), (View::Longitudinal, &one)]);
-        let range = "Depending on the friction, stiffness and damping of the seats, which are uncertain, 17 to 100 % fall \
-             along the barrels; ";
-        let decides = "the stiffness of seats decides: 96 % at 1.1 MN/m, 59 % at 8.0 MN/m.";
+        let range = "Depending on the friction, stiffness and damping of the seats, which are uncertain, 17 to 100 % of such \
+             stacks fall in the direction along the barrels; ";
+        let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left = "On average, this leaves a range of 55 percentage points instead of 83.";
+        let left = "On average, the measurement leaves a range of 55 percentage points instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // An effect that may be none decides nothing, nor does a small one that is certain.
         one.decides = vec![unknown([-0.1, 0.6])];
         let said = headline(&[(View::Longitudinal, &one)]);
-        assert!(said.contains(&format!("{range}none of these decides alone.")), "{said}");
+        assert!(said.contains(&format!("{range}no single one of these constants decides the outcome.")), "{said}");
         // A share with its minimum in the middle is stated there, too.
         one.decides = vec![unknown([0.1, 0.6])];
         one.decides[0].shares[4].share = 0.25;
         let said = headline(&[(View::Longitudinal, &one)]);
-        assert!(said.contains("96 % at 1.1 MN/m, 25 % at 3.0 MN/m, 59 % at 8.0 MN/m."), "{said}");
+        assert!(said.contains("96 % fall at 1.1 MN/m, 25 % fall at 3.0 MN/m, 59 % fall at 8.0 MN/m."), "{said}");
         one.range = Some([0.94, 1.0]);
         let said = headline_in_space(&one);
-        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: 94 to 100 % fall.";
+        let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: 94 to 100 % of such stacks fall.";
         assert!(said.contains(little), "{said}");
         // What narrows nothing is not recommended.
         one.range = Some([0.4, 1.0]);

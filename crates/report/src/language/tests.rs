@@ -123,7 +123,7 @@ fn frame() -> Vec<String> {
         "Table",
         "Figure",
         "Events",
-        "To compare them side by side:",
+        "To compare the stack with and without the change:",
         "1 warning",
         "2 warnings",
         "7 more events",

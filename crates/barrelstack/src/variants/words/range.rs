@@ -3,40 +3,41 @@
 use super::{Placed, percent};
 use crate::variants::{ShareAt, Spread};
 
-/// Widest range of shares for which the uncertain constants are said to matter little.
+/// Largest width of the range of shares for which the sentence states that the uncertain constants matter little.
 const NARROW: f64 = 0.1;
 
-/// Smallest distance of the share at the median from those at both ends for which it is stated, too.
+/// Smallest amount by which the share at the median lies outside the shares at both ends for the sentence to state it,
+/// too.
 const BEYOND: f64 = 0.1;
 
 /// Describes the range of the share over the uncertain constants, and the decisive constant, such as
-/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 %
-/// fall along the barrels; the stiffness of seats decides: …".
+/// "Depending on the friction, stiffness and damping of the seats, which are uncertain, 31 to 100 % of such stacks
+/// fall in the direction along the barrels; the stiffness of seats decides the outcome: …".
 pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
     let [low, high] = spread.range?;
-    let place = view.map_or_else(String::new, |view| format!(" {}", view.words()));
+    let place = view.map_or_else(String::new, |view| format!(" in the direction {}", view.words()));
     let (from, to) = (percent(low), percent(high));
     let range = format!("{} to {to}", from.trim_end_matches(" %"));
     if high - low <= NARROW {
         return Some(format!(
-            "The friction, stiffness and damping of the seats are uncertain, but matter little: {range} fall{place}."
+            "The friction, stiffness and damping of the seats are uncertain, but matter little: {range} of such stacks fall{place}."
         ));
     }
     let decisive = spread.decisive().and_then(|one| Some((one, one.low_median_high()?)));
     let which = decisive.map_or_else(
-        || "none of these decides alone".to_owned(),
+        || "no single one of these constants decides the outcome".to_owned(),
         |(one, [low, median, high])| {
-            // The median is stated where the share does not change in one direction.
+            // The share at the median is stated if it lies well outside the shares at both ends.
             let (least, most) = (low.share.min(high.share), low.share.max(high.share));
             let between = least - BEYOND < median.share && median.share < most + BEYOND;
             let stated = [Some(low), Some(median).filter(|_| !between), Some(high)];
-            let words = |at: &ShareAt| format!("{} at {}", percent(at.share), one.words(at.value));
+            let words = |at: &ShareAt| format!("{} fall at {}", percent(at.share), one.words(at.value));
             let stated: Vec<String> = stated.into_iter().flatten().map(words).collect();
-            format!("the {} decides: {}", one.name, stated.join(", "))
+            format!("the {} decides the outcome: {}", one.name, stated.join(", "))
         },
     );
     Some(format!(
-        "Depending on the friction, stiffness and damping of the seats, which are uncertain, {range} fall{place}; {which}."
+        "Depending on the friction, stiffness and damping of the seats, which are uncertain, {range} of such stacks fall{place}; {which}."
     ))
 }
 
@@ -46,7 +47,7 @@ pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
     Some(format!(
-        "To narrow that range, measure the {}: {}. On average, this leaves a range of {:.0} percentage points instead of {:.0}.",
+        "To narrow the range of the share that falls, measure the {}: {}. On average, the measurement leaves a range of {:.0} percentage points instead of {:.0}.",
         one.name,
         one.test()?,
         100.0 * left,
