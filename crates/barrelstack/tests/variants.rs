@@ -373,7 +373,10 @@ fn a_page_of_both_planes_has_the_inputs_as_given_and_a_part_for_engineers_of_eac
     let said = answer_document(&answer).verdict.sentences.join(" ");
     let view = own.run.assembly.view.unwrap().words();
     assert!(
-        said.contains(&format!("{}, in the run that is shown, the ground motion is ", capital(view))),
+        said.contains(&format!(
+            "{}, in the run that is shown, the ground motion is ",
+            capital(view)
+        )),
         "{said}"
     );
 }

@@ -55,7 +55,10 @@ fn records_are_called_as_people_call_them_and_pages_say_nothing_of_the_machine()
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let said = stdout(&output);
         assert!(said.starts_with(&format!("Four barrels on two levels, {title}\n")), "{said}");
-        assert!(said.contains(&format!("the ground motion is {motion} (horizontal only).")), "{said}");
+        assert!(
+            said.contains(&format!("the ground motion is {motion} (horizontal only).")),
+            "{said}"
+        );
         let page = fs::read_to_string(out.join("report.html")).unwrap();
         assert!(!page.contains(&place), "{}", page.split(&place).next().unwrap().len());
         assert!(page.contains("my-site.AT2"), "the file is named");

@@ -89,7 +89,7 @@ fn text(text: impl Into<String>) -> Block {
 
 fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     let mut blocks =
-        vec![Block::heading(2, "Published against ours"), Block::Table(overview(rows))];
+        vec![Block::heading(2, "Published results and our results"), Block::Table(overview(rows))];
     blocks.push(text(
         "A number agrees if it is within ±20 % of the published number; a finding agrees if the \
          same event occurs. Some numbers also have a wider band that the project accepts, since \
@@ -223,8 +223,8 @@ fn stand_in(results: &Results) -> String {
         _ => summary.outcome.kind.to_owned(),
     };
     format!(
-        "This is not the paper's motion, so its numbers cannot be compared. Under {} the six \
-         barrels give: with μ 0.4 {} and {} cm of residual slip, with μ 0.1 {} and {} cm.",
+        "This is not the paper's motion, so the results cannot be compared with the paper's numbers. Under {} the six \
+         barrels with μ 0.4 have the outcome: {}, with a residual slip of {} cm; with μ 0.1: {}, with {} cm.",
         results.motion.name(),
         what(six),
         slip(six),

@@ -275,13 +275,13 @@ fn eight(results: &Results) -> Vec<Comparison> {
         ),
         finding(
             "section 4",
-            "eight barrels: the top barrels go",
+            "eight barrels: the top barrels fall",
             "to each side of the stack",
             if sides { "to each side" } else { "to the same side" },
             sides,
             format!(
-                "At its own fall B4.1 is {} m from its place and B4.2 {} m, negative to the left; fallen \
-                 barrels roll on.",
+                "Horizontal displacement of each barrel at the time of its fall, positive to the right: {} m for B4.1 and {} m for \
+                 B4.2. Fallen barrels roll on.",
                 significant(places[0], 3),
                 significant(places[1], 3)
             ),
@@ -293,7 +293,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
             if others.is_empty() { "nothing".into() } else { others.join(", ") },
             others.is_empty(),
             format!(
-                "Until the second barrel of the top level has fallen. At that time, the ground \
+                "Falls are counted until the second barrel of the top level has fallen. At that time, the ground \
                  still moves and the run continues; the paper does not state when its run ends.{}",
                 alone.unwrap_or_default()
             ),
@@ -347,7 +347,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 .map(|a| format!("{} g", significant(a / barrelstack_motion::STANDARD_GRAVITY, 3)))
                 .join(" and "),
             (accelerations[0] / accelerations[1] - 1.0).abs() < 1e-9,
-            "half scale and full scale",
+            "peak accelerations at half scale and at full scale",
         ),
         finding(
             "section 4, Fig. 7b",
@@ -416,9 +416,9 @@ fn parameters(results: &Results) -> Vec<Comparison> {
             format!("{same_mode} of {members} in the same mode"),
             same_mode == members,
             format!(
-                "The top level falls in {} of {members}, one of its barrels before all others in {}; the \
-                 first fall is at {} s, drift {} %, stress amplification {}. Two mechanisms compete: in the case \
-                 as stated R4 leaves its seat first and alone, while R3 has walked {} cm of the {} cm of its reach; \
+                "The top level falls in {} of {members} runs, and one of its barrels falls before all other barrels in {} of them. The \
+                 first fall is at {} s, the drift is {} %, and the stress amplification is {}. Two mechanisms compete: in the case \
+                 as stated R4 leaves its seat first and alone, when R3 has walked {} cm of its reach of {} cm; \
                  in the other mode R3 leaves its seat and carries level 4 along.{racks}",
                 count(&ensemble::top_falls),
                 count(&ensemble::top_falls_first),
@@ -444,7 +444,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         agreement: Agreement::NotCompared,
         why: format!(
             "The calibrated values are 10 % and 16 % greater than the measured ones: 9.8 kN/cm / 1.10, 22.0 N s/cm / \
-             1.16. The paper gives no result for the measured values; with the calibrated ones: {}, first fall {}.",
+             1.16. The paper gives no result for the measured values. With the calibrated values, the result is: {}, first fall {}.",
             mode_of(base),
             base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
         ),
@@ -456,7 +456,7 @@ fn along(results: &Results) -> Vec<Comparison> {
     let summary = &results.along.summary;
     let outcome = &summary.outcome;
     let fall =
-        outcome.first_fall.map(|t| format!(" The first barrel has fallen at {}.", seconds(t)));
+        outcome.first_fall.map(|t| format!(" The first barrel falls at {}.", seconds(t)));
     vec![
         finding(
             "section 4",
@@ -477,7 +477,7 @@ fn along(results: &Results) -> Vec<Comparison> {
             outcome.time,
             Some((3.0, 6.0, "3 to 6 s")),
             format!(
-                "A rail has passed the end of the barrel below.{}{}",
+                "Time at which a rail passes the end of the barrel below.{}{}",
                 fall.unwrap_or_default(),
                 reasons(results.study(Subject::Along), 4.5)
             ),

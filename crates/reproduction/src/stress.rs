@@ -31,38 +31,38 @@ type Definition = (&'static str, fn(&Run) -> Option<f64>, &'static str);
 /// Definitions of the stress amplification of barrel 1.
 const DEFINITIONS: [Definition; 7] = [
     (
-        "largest stress over largest at rest",
+        "the largest stress divided by the largest stress at rest",
         |run| envelope(run, 1)?.amplification(),
-        "the largest value of the envelope over the largest stress at rest, at two points of the boundary",
+        "the largest value of the envelope divided by the largest stress at rest; the two may occur at different points of the boundary",
     ),
     (
-        "mean of ratios",
+        "the mean of the ratios of the largest stress to the stress at rest",
         |run| envelope(run, 1)?.mean_ratio(),
         "the ratio of the envelope to the stress at rest at each point, averaged over the boundary that is loaded at rest",
     ),
     (
-        "mean of the envelope over the mean at rest",
+        "the mean of the envelope divided by the mean stress at rest",
         average,
-        "both averaged over the boundary that is loaded at rest",
+        "envelope and stress at rest, both averaged over the boundary that is loaded at rest",
     ),
     (
-        "mean of the envelope where it is loaded over the mean at rest",
+        "the mean of the envelope over its loaded part, divided by the mean stress at rest",
         |run| envelope(run, 1)?.mean_of_envelope(),
         "the envelope averaged over the boundary that is loaded at any time, the stress at rest \
          averaged over the boundary that is loaded at rest",
     ),
     (
-        "upper boundary: largest force over force at rest",
+        "the largest force on the upper boundary divided by the force at rest",
         |run| of_boundary(run, true),
-        "the vertical force of the rack above",
+        "the vertical force of the rack above on the barrel",
     ),
     (
-        "lower boundary: largest force over force at rest",
+        "the largest force on the lower boundary divided by the force at rest",
         |run| of_boundary(run, false),
         "the vertical force of the barrel on its own rack",
     ),
     (
-        "all forces: largest sum over sum at rest",
+        "the largest sum of all forces divided by their sum at rest",
         |run| envelope(run, 1)?.total_amplification(),
         "the sum of all normal forces on the barrel at one instant, which is the integral of the stress",
     ),
@@ -78,7 +78,7 @@ pub(super) fn average(run: &Run) -> Option<f64> {
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,
-        quantity: format!("{case}, barrel 1, by definition: {name}"),
+        quantity: format!("{case}, barrel 1, amplification defined as {name}"),
         published: "not stated".to_owned(),
         ours: value(run).map_or_else(|| "–".to_owned(), |value| significant(value, 3)),
         difference: None,

@@ -612,17 +612,24 @@ mod tests {
         let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left = "On average, the measurement leaves a range of 55 percentage points instead of 83.";
+        let left =
+            "On average, the measurement leaves a range of 55 percentage points instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // An effect that may be none decides nothing, nor does a small one that is certain.
         one.decides = vec![unknown([-0.1, 0.6])];
         let said = headline(&[(View::Longitudinal, &one)]);
-        assert!(said.contains(&format!("{range}no single one of these constants decides the outcome.")), "{said}");
+        assert!(
+            said.contains(&format!("{range}no single one of these constants decides the outcome.")),
+            "{said}"
+        );
         // A share with its minimum in the middle is stated there, too.
         one.decides = vec![unknown([0.1, 0.6])];
         one.decides[0].shares[4].share = 0.25;
         let said = headline(&[(View::Longitudinal, &one)]);
-        assert!(said.contains("96 % fall at 1.1 MN/m, 25 % fall at 3.0 MN/m, 59 % fall at 8.0 MN/m."), "{said}");
+        assert!(
+            said.contains("96 % fall at 1.1 MN/m, 25 % fall at 3.0 MN/m, 59 % fall at 8.0 MN/m."),
+            "{said}"
+        );
         one.range = Some([0.94, 1.0]);
         let said = headline_in_space(&one);
         let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: 94 to 100 % of such stacks fall.";
