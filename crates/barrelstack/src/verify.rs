@@ -431,7 +431,7 @@ impl Verification {
             let count = self.repeats.len();
             sentences.push(if self.robust.outcome() {
                 format!(
-                    "The outcome is robust in {}: it is the same in all {count} repeats, with a finer step or with barrels \
+                    "The outcome ({}) is robust: it is the same in all {count} repeats, with a finer step or with barrels \
                      displaced by a nanometer.",
                     self.parts().join(", ")
                 )

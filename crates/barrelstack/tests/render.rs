@@ -24,8 +24,14 @@ fn a_reader_can_add_up_the_energy_balance() {
     let (_, figure) = figures(&document).into_iter().find(|(name, _)| name == "energy").unwrap();
     let FigureKind::Plot(plot) = figure.kind else { panic!("no plot") };
     let line = |label: &str| &plot.series.iter().find(|series| series.label == label).unwrap().y;
-    let parts = ["motion", "height", "contacts and devices", "lost to friction", "lost to damping"]
-        .map(line);
+    let parts = [
+        "kinetic",
+        "potential",
+        "stored in contacts and devices",
+        "lost to friction",
+        "lost to damping",
+    ]
+    .map(line);
     let (all, given) = (line("sum of stored and dissipated energy"), line("work of the ground"));
     let largest =
         parts.iter().flat_map(|part| part.iter()).fold(0.0_f64, |most, e| most.max(e.abs()));

@@ -25,7 +25,7 @@ const QUESTIONS: [&str; 5] = [
     "eight barrels: drift within 4 to 7 %",
     "six barrels: both upper levels rock off after 8.5 to 12 s",
     "along the barrels: the rack of the second level slides off first",
-    "along the barrels: this rack slides off within 3 to 6 s",
+    "along the barrels: this rack slides off after 3 to 6 s",
 ];
 
 /// For each finding, `true` if a sample reproduces it; `None` if the finding needs the paper's
@@ -108,8 +108,8 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
 pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(
-            "The neighborhood of the reconstructed rack: {} racks whose lengths and angles differ from it by \
-             ±5 % at most, k and c by ±10 %, and both coefficients of friction by ±5 %, spread evenly.",
+            "The neighborhood of the reconstructed rack: {} racks, spread evenly. Lengths, angles and both coefficients of \
+             friction differ from those of the reconstructed rack by at most 5 %, k and c by at most 10 %.",
             kept.len()
         ),
         &[("finding", ""), ("racks that reproduce the finding", "")],

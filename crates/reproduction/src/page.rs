@@ -106,15 +106,15 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     blocks.extend(along(results));
     if results.studies.is_empty() {
         blocks.push(text(
-            "The studies were left out: the effects of single quantities, and contact parameters changed by 10 %.",
+            "The studies were left out. They show the effects of single quantities, and of contact parameters changed by 10 %.",
         ));
     } else {
         blocks.push(Block::heading(2, "Contact parameters changed by 10 %"));
         blocks.extend(ensemble::blocks(&results.eight.summary, &results.ensemble));
         blocks.push(text(
             "Two mechanisms compete: the top level slides off alone, or level 3 slides off and carries the \
-             top level along, as in the six barrels. Different bodies move up to the first fall, so no \
-             definition of the mode makes the two mechanisms one. Which of them occurs depends on the rack, \
+             top level along, as in the six barrels. Until the first fall, different bodies move in the two mechanisms, so no \
+             definition of the mode covers both. Which of them occurs depends on the rack, \
              which the paper's text does not describe:",
         ));
         blocks.push(racks::block(&results.racks));

@@ -148,9 +148,9 @@ fn effect(sides: &[Side]) -> Option<String> {
     let straps = |side: &Side| side.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
     let levels = |side: &Side| side.stated.stack().map(|stack| stack.levels);
     let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
-        (true, false, true) => "with straps".to_owned(),
-        (true, true, false) => "without straps".to_owned(),
-        _ => format!("with {} in place of {}", second.name, first.name),
+        (true, false, true) => "With straps".to_owned(),
+        (true, true, false) => "Without straps".to_owned(),
+        _ => format!("With {} in place of {}", second.name, first.name),
     };
     let clause = |(at, pair): (usize, &Paired)| {
         let ([from, to], of) = (pair.collapsed(), pair.pairs());
@@ -166,7 +166,7 @@ fn effect(sides: &[Side]) -> Option<String> {
     let named =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
     let clauses: Vec<String> = named.map(clause).collect();
-    Some(format!("{}, {cause}.", clauses.join("; ")))
+    Some(format!("{cause}, {}.", clauses.join("; ")))
 }
 
 /// Returns the plane of a pair, such as " across the barrels"; empty unless both planes were

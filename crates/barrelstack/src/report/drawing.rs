@@ -94,7 +94,7 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
 pub fn legend(scene: &Scene) -> String {
     let mut legend = String::new();
     if !scene.ties.is_empty() {
-        legend += " Bands with a buckle are straps and ties (in a free scene, all force elements); a broken one disappears.";
+        legend += " Bands with a buckle are straps and ties (in a free scene, all force elements); a broken strap or tie disappears.";
     }
     let devices = scene.bodies.iter().filter(|body| body.role == Role::Device);
     let (wine, others): (Vec<_>, Vec<_>) =

@@ -432,9 +432,9 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     };
     let color = |index: usize| SeriesStyle { index: Some(index), ..SeriesStyle::default() };
     let parts: [(&str, &[&str], usize); 5] = [
-        ("motion", &["kinetic"], 0),
-        ("height", &["potential"], 1),
-        ("contacts and devices", &["elastic", "stick"], 3),
+        ("kinetic", &["kinetic"], 0),
+        ("potential", &["potential"], 1),
+        ("stored in contacts and devices", &["elastic", "stick"], 3),
         ("lost to friction", &["friction"], 2),
         ("lost to damping", &["damped", "viscous"], 5),
     ];

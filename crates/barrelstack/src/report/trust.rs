@@ -28,7 +28,7 @@ pub fn trust(found: &Verification) -> Vec<Block> {
     let skipped: Vec<String> = found
         .skipped
         .iter()
-        .map(|one| format!("The repeat “{}” was not made: {}.", one.change, one.reason))
+        .map(|one| format!("Repeat without a result: {} ({}).", one.change, one.reason))
         .collect();
     if !skipped.is_empty() {
         blocks.push(Block::List(skipped));
