@@ -19,8 +19,8 @@ pub struct Breakage {
 }
 
 impl Breakage {
-    /// The three assumptions of breakage, in this order: few barrels burst, the central assumption, many
-    /// barrels burst.
+    /// Three alternative assumptions, in this order: few barrels burst, the central assumption, many barrels
+    /// burst.
     pub const RANGE: [Self; 3] = [
         Self { median: 7.0, dispersion: 0.6 },
         Self { median: 5.0, dispersion: 0.6 },
@@ -36,7 +36,7 @@ impl Breakage {
 /// Volume of wine in a bottle (m³).
 const BOTTLE: f64 = 0.75e-3;
 
-/// Assumed lower and upper value (US$) of a bottle of wine, for which the cellar could have sold it.
+/// Assumed lower and upper price (US$) for which the cellar could have sold a bottle of wine.
 ///
 /// A barrel of 225 L holds 25 cases of wine (The Californian 2014).
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];

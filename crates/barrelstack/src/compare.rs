@@ -100,8 +100,8 @@ pub trait Comparable: Sized {
         observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<Self, RunFailure>;
 
-    /// Returns the share of variants that collapse (for a single run, 0 or 1) where it is largest, and the plane in
-    /// which it is; `None` for the plane in space and for a free scene.
+    /// Returns the largest share of variants that collapse over all planes (for a single run, 0 or 1), and its plane;
+    /// the plane is `None` in space and for a free scene.
     fn worst(&self) -> (f64, Option<View>);
 
     /// Returns a side of a comparison, shown in a plane if the scenario has it.

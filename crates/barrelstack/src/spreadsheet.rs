@@ -16,14 +16,16 @@ const CHARACTERS: usize = 32_767;
 /// Largest number of characters in the name of a sheet.
 #[cfg(feature = "xlsx")]
 const NAME: usize = 31;
-/// Digits of a whole number that a spreadsheet program shows; longer ones are names, such as fingerprints.
+/// Largest number of digits of an integer that a spreadsheet program keeps exactly. Longer strings of digits are
+/// identifiers, such as fingerprints, and are written as text.
 const DIGITS: usize = 15;
 
 /// Returns a workbook (ECMA-376) with a sheet for each table, given with its name and its text as CSV.
 ///
-/// The first row of a sheet is the heading of the table, and stays in view. Cells of a column that contains only numbers
-/// are numbers, and all others are texts: the text `058` of a station, or a fingerprint, is kept as it is. No text is a
-/// formula. Longer texts than a cell holds are cut.
+/// The first row of a sheet is the heading of the table, and stays in view when the sheet is scrolled. If a column
+/// contains only numbers, its cells are written as numbers; all other cells are written as text, which keeps
+/// identifiers such as the station `058` or a fingerprint unchanged. No text becomes a formula. A text that is longer
+/// than a cell can hold is cut.
 ///
 /// ```
 /// let book = barrelstack::spreadsheet::workbook(&[("records", "station,pga (m/s2)\n058,3.5\n")])?;
@@ -47,8 +49,8 @@ pub fn workbook(tables: &[(&str, &str)]) -> Result<Vec<u8>, XlsxError> {
 
 /// Returns the table of the provenance: the given facts, then the members of the documents, by name and value.
 ///
-/// A document is the text of a JSON file; only its member `provenance` is listed, if it has one. Columns are left out, since
-/// the tables state theirs.
+/// A document is the text of a JSON file. If it has a member `provenance`, only this member is listed. The member
+/// `columns` is left out, since the tables state their columns.
 pub fn provenance(facts: &[(String, String)], documents: &[&str]) -> String {
     let mut rows = facts.to_vec();
     for text in documents {
@@ -64,7 +66,7 @@ pub fn provenance(facts: &[(String, String)], documents: &[&str]) -> String {
     "name,value\n".to_owned() + &rows.into_iter().map(row).collect::<String>()
 }
 
-/// Appends the members of a value, and their members, with their paths.
+/// Appends all members of a value, at every depth, each with its path.
 fn listed(path: &str, value: &Value, rows: &mut Vec<(String, String)>) {
     match value {
         Value::Object(members) => {
@@ -113,7 +115,7 @@ pub fn with_decimal_commas(csv: &str) -> String {
     text
 }
 
-/// The rows of a table that [`csv_field`] wrote; each has its cells.
+/// Iterates over the rows of a table whose cells [`csv_field`] wrote; returns the cells of each row.
 struct Rows<'a>(&'a str);
 
 impl Iterator for Rows<'_> {
@@ -143,7 +145,7 @@ impl Iterator for Rows<'_> {
     }
 }
 
-/// Returns `true` if a text is a number, and not a name that consists of digits.
+/// Returns `true` if a text is a number, and not an identifier that consists of digits.
 fn is_number(text: &str) -> bool {
     let digits = text.strip_prefix('-').unwrap_or(text);
     let whole = digits.split(['.', 'e']).next().unwrap_or_default();
@@ -161,7 +163,7 @@ fn fill(sheet: &mut Worksheet, csv: &str) -> Result<(), XlsxError> {
     let mut rows = Rows(csv);
     let heading = rows.next().unwrap_or_default();
     let body = rows.0;
-    // A column of numbers has at least one, and only empty cells besides.
+    // In a column of numbers, every cell that is not empty is a number, and there is at least one such cell.
     let mut numbers: Vec<Option<bool>> = vec![None; heading.len()];
     for row in Rows(body) {
         for (column, cell) in numbers.iter_mut().zip(&row).filter(|(_, cell)| !cell.is_empty()) {
@@ -192,10 +194,10 @@ fn fill(sheet: &mut Worksheet, csv: &str) -> Result<(), XlsxError> {
     Ok(())
 }
 
-/// Returns the text of a cell, not longer than a cell holds.
+/// Returns the text of a cell, cut to the number of characters that a cell can hold.
 #[cfg(feature = "xlsx")]
 fn content(text: &str) -> String {
-    // In CSV an apostrophe marks what would be a formula as text; here the type of the cell does.
+    // In CSV, an apostrophe marks a text that would otherwise be a formula. Here the type of the cell marks it.
     let marked =
         text.strip_prefix('\'').filter(|rest| rest.starts_with(['=', '+', '-', '@', '\t', '\r']));
     marked.unwrap_or(text).chars().take(CHARACTERS).collect()

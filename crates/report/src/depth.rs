@@ -135,11 +135,11 @@ pub struct Depth {
     pub events: Vec<Event>,
     /// The instant at which the player opens.
     pub moment: Option<Moment>,
-    /// With poses of its own: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
+    /// With [`DepthPoses::Free`]: for each [`Trace`](crate::Trace) of the planar scene, the index of the body whose
     /// center it follows.
     pub paths: Vec<usize>,
-    /// With poses of its own: for each frame, contact forces, each as its point (m) and its components (N). A force of
-    /// zero is not drawn. Forces pack best if a contact keeps its place in the list.
+    /// With [`DepthPoses::Free`]: for each frame, contact forces, each as its point (m) and its components (N). A force
+    /// of zero is not drawn. Forces pack best if a contact keeps its place in the list.
     pub forces: Vec<Vec<[Point3; 2]>>,
     /// For each pane of the player, the indices of the axes that point right and up in it; the panes show the forces in
     /// these axes.

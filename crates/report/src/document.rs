@@ -78,17 +78,19 @@ pub struct Verdict {
 /// Length (bytes) of a headline that is shown as one heading.
 const ONE_HEADING: usize = 180;
 
-/// Least length (bytes) of the sentences that open a longer headline.
+/// Minimum length (bytes) of the opening sentences of a headline that is divided.
 const OPENING: usize = 30;
 
 impl Verdict {
-    /// Returns the sentences of the headline that open a page, and the other ones, which follow in smaller type.
+    /// Returns the sentences of the headline that open a page, and the remaining sentences, which follow in smaller
+    /// type.
     pub(crate) fn opening(&self) -> (&str, &str) {
         opening(&self.headline, ONE_HEADING)
     }
 }
 
-/// Returns the sentences that open a text longer than `whole` (bytes), and the other ones.
+/// Returns the opening sentences of a text that is longer than `whole` (bytes), and the remaining sentences. A shorter
+/// text is returned undivided, with an empty remainder.
 pub(crate) fn opening(text: &str, whole: usize) -> (&str, &str) {
     let end = text.match_indices(". ").map(|(at, _)| at + 1).find(|end| *end >= OPENING);
     match end.filter(|_| text.len() > whole) {
@@ -159,8 +161,8 @@ impl Block {
 /// Summary line of the collapsed section that contains [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind the verdict";
 
-/// Returns the sentence that stands on paper in place of content of the page on screen. It names the figures and tables of
-/// the content, which are counted before and after it.
+/// Returns the sentence that replaces, on paper, content that only the page on screen shows. The sentence states the
+/// numbers of the figures and tables of this content; the two counters are those before and after the content.
 pub(crate) fn elsewhere(what: &str, [before, after]: [Counter; 2], language: Language) -> String {
     let numbers =
         [("figure", before.figures, after.figures), ("table", before.tables, after.tables)];
@@ -208,7 +210,7 @@ pub enum Block {
         /// The collapsed content.
         blocks: Vec<Block>,
     },
-    /// Content of the page on screen and of Markdown; paper states that it is there.
+    /// Content that is shown on screen and in Markdown; on paper, a sentence refers to the page.
     OnScreen {
         /// What the content is, such as "Displacements".
         what: String,

@@ -21,7 +21,7 @@ pub struct Dots {
 
 /// Number of dots in a row.
 const ROW: u32 = 64;
-/// Largest number of dots; more than that are not drawn.
+/// Largest number of dots that are drawn; no dots are drawn for more variants than this.
 const MOST: u32 = 4 * ROW;
 /// Distance between the centers of two dots (px).
 const PITCH: f64 = 10.0;

@@ -90,7 +90,7 @@ impl Scene {
         self.only(&sampled(self, rate))
     }
 
-    /// Returns the scene reduced to the frames with some indices.
+    /// Returns the scene reduced to the frames with the given indices.
     fn only(&self, kept: &[usize]) -> Self {
         let frames = &self.frames;
         let frames = Frames {

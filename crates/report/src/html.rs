@@ -359,11 +359,12 @@ impl<'a> Writer<'a> {
                     _ => class(at).to_owned(),
                 };
                 let mut text = self.glossary.marked(&number::tied(&text));
-                // Beside its name, a value is one element.
+                // Inside a card, the name of a column and the value are placed side by side, so the value must be one
+                // element.
                 if wide && text.contains('<') {
                     text = format!("<span>{text}</span>");
                 }
-                // A row becomes a card on a narrow screen, which names its values.
+                // On a narrow screen, each row becomes a card, in which each value has the name of its column.
                 let column = table.columns[at].heading();
                 let name = if wide && !column.is_empty() {
                     format!(" data-name=\"{}\"", escape::html(&column))

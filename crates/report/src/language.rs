@@ -79,7 +79,7 @@ impl FromStr for Language {
     }
 }
 
-/// A code that stands for no language of pages.
+/// Error: a code that is not that of a language of pages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownLanguage(String);
 
@@ -119,7 +119,7 @@ struct Translator {
 /// Deepest nesting of phrases.
 const DEEPEST: usize = 8;
 
-/// Largest number of readings of a text as one template that are compared.
+/// Largest number of matches of a text with one template that are compared.
 const READINGS: usize = 24;
 
 impl Translator {
@@ -171,7 +171,7 @@ impl Translator {
         whole
     }
 
-    /// Translates a phrase: a sentence, a heading, or what stands in the place of a placeholder.
+    /// Translates a phrase: a sentence, a heading, or the text in the place of a placeholder.
     fn phrase(&self, text: &str, depth: usize) -> Translated {
         if !has_words(text) || depth > DEEPEST {
             return Translated::kept(text);
@@ -215,7 +215,7 @@ impl Translator {
         best
     }
 
-    /// Returns the best reading of a text as a template; `None` if the text does not match.
+    /// Returns the best translation of a text by a template; `None` if the text does not match the template.
     fn filled(&self, template: &Template, text: &str, depth: usize) -> Option<Translated> {
         let mut best: Option<Translated> = None;
         let mut left = READINGS;
@@ -270,7 +270,7 @@ impl Translator {
         found
     }
 
-    /// Translates a text whose first letter was changed, without changing it again.
+    /// Translates a text whose first letter has been changed to the other case; does not change the case again.
     fn other_case(&self, flipped: &str, depth: usize) -> Option<Translated> {
         if let Some(fixed) = self.catalog.entry(flipped) {
             return Some(Translated { text: fixed.to_owned(), missing: Vec::new() });
@@ -294,7 +294,7 @@ fn joined(parts: Vec<Translated>, word: &str) -> Translated {
     let mut whole = Translated::default();
     for (at, part) in parts.into_iter().enumerate() {
         if at > 0 {
-            // Before the sound i, Spanish says e and not y.
+            // Before the sound of i, the Spanish word for "and" is "e" instead of "y".
             let next = part.text.to_lowercase();
             let sound = next.starts_with('i') || next.starts_with("hi");
             whole.text += if word == " y " && sound { " e " } else { word };

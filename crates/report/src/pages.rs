@@ -87,7 +87,7 @@ struct Flow<'a> {
     y: f64,
     names: Names,
     counter: Counter,
-    /// Collapsed content, for the appendix, with the numbers before it.
+    /// Collapsed content, for the appendix: its summary line, its blocks, and the counters before it.
     folded: Vec<(&'a str, &'a [Block], Counter)>,
     tags: Tags,
     /// Index of the current structure element.
@@ -406,7 +406,7 @@ impl<'a> Flow<'a> {
     /// falls, the picture shows an instant during the falls.
     fn still(&self, player: &Player) -> Figure {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
-        // At the second fall the first one is visible too.
+        // At the time of the second fall, the first fall is visible, too.
         let first = falls.next();
         let Some(fall) = falls.next().or(first).filter(|_| self.counter.figures == 0) else {
             return player.paper_figure(&self.document.blocks).in_language(self.document.language);

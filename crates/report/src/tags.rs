@@ -46,7 +46,7 @@ impl Tags {
         self.elements[place].role
     }
 
-    /// Records that content of an element is on a page under a marked-content identifier.
+    /// Records that a page shows content of an element under a marked-content identifier.
     pub(crate) fn paint(&mut self, place: usize, page: usize, number: i32) {
         self.elements[place].kids.push(Kid::Painted { page, number });
     }

@@ -63,7 +63,7 @@ pub enum ReproduceError {
         /// Reason.
         source: Box<RunFailure>,
     },
-    /// A case returned no result.
+    /// The run of a case returned no result.
     #[error("{case}: the run was lost")]
     Lost {
         /// The case.

@@ -37,8 +37,8 @@ const RACKS: [Rack; 4] = [
         (rack.node_spacing, rack.mass) = (0.005, 30.0);
     }),
     (
-        "cradle ±31.1°, feet ±6.39 cm and 7.79 cm high, clearance 14.76 cm, beam 4 cm, pitch 76.36 cm, 30 kg, sticks \
-         twice as stiff",
+        "cradle ±31.1°, feet ±6.39 cm and 7.79 cm high, clearance 14.76 cm, beam 4 cm, pitch 76.36 cm, 30 kg, \
+         tangential stiffness doubled",
         |stack| {
             cradle(stack, 31.1);
             let rack = &mut stack.rack;

@@ -140,7 +140,7 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
         [("−10 kg", &|s| s.rack.mass -= 10.0), ("+10 kg", &|s| s.rack.mass += 10.0)],
     );
     change(
-        "stick stiffness 1 × normal".to_owned(),
+        "tangential stiffness 1 × normal".to_owned(),
         [
             ("half", &|s| vary::stick_stiffness(s, 0.5)),
             ("double", &|s| vary::stick_stiffness(s, 2.0)),
@@ -292,7 +292,7 @@ mod tests {
                     });
                 }
             }
-            // Ten quantities, and the sine's start if there is a sine; the fill has only one other value.
+            // Ten quantities, and the start of the sine if there is a sine; the fill has only one changed value.
             assert_eq!(prints.len(), if subject == Subject::Six { 19 } else { 21 });
         }
     }

@@ -54,7 +54,7 @@ pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.rack_ground.roughen(factor);
 }
 
-/// Multiplies the ratio of tangential to normal stiffness of all sticks by `factor`.
+/// Multiplies the ratio of tangential to normal stiffness of all contacts by `factor`.
 pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {

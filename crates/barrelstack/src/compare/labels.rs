@@ -73,7 +73,7 @@ pub fn labels_by(names: &[String], differing: &[Difference]) -> Vec<String> {
     distinct(names.iter().enumerate().map(name))
 }
 
-/// Numbers names that occur again.
+/// Appends a number to every name that has occurred before, such as "four levels (2)".
 fn distinct(names: impl Iterator<Item = String>) -> Vec<String> {
     let mut named: Vec<String> = Vec::new();
     for name in names {
@@ -112,7 +112,7 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
 
 /// Describes an input and its value, such as "rack-ground friction 0.1".
 fn other(one: &Difference, at: usize) -> String {
-    // These parts occur in all paths of a kind, so they carry no information.
+    // These parts occur in the paths of all inputs of a kind, so they carry no information.
     let empty = ["interface", "coefficient", "stack", "run"];
     let parts: Vec<&str> = one.path.split('.').filter(|part| !empty.contains(part)).collect();
     let name = parts.join(" ").replace('_', " ");

@@ -496,7 +496,7 @@ fn histories(sides: &[Side]) -> Vec<Block> {
     blocks
 }
 
-/// Plots histories over time, each of which is given together with its run.
+/// Plots histories over time; `lines` pairs each history with its run.
 fn history(
     sides: &[Side],
     id: &str,

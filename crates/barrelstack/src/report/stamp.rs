@@ -4,14 +4,14 @@ use barrelstack_input::system;
 use barrelstack_motion::Utc;
 use barrelstack_report::Stamp;
 
-/// States on all pages that the process writes from now on the date, which is that of
-/// `SOURCE_DATE_EPOCH` or of the clock, and the commit from which the program was built.
+/// Makes all pages that the process writes from now on state the date, and the commit from which the
+/// program was built. The date is that of `SOURCE_DATE_EPOCH`, if this variable is set, or of the clock.
 ///
 /// The variable `BARRELSTACK_COMMIT` replaces the commit. It is read when the program runs, not only
 /// when it is built, so that the pages of two builds can be compared bit for bit, as the tests do.
 ///
 /// # Errors
-/// A message if the date is unknown; each page then states it in place of the date.
+/// When the date is unknown: returns the reason, which each page then states in place of the date.
 #[expect(clippy::disallowed_methods, reason = "pages state their commit, which enters no result")]
 pub fn stamp_pages(built: &str) -> Result<(), String> {
     let commit = std::env::var("BARRELSTACK_COMMIT").unwrap_or_else(|_| built.to_owned());

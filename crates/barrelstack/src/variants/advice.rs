@@ -64,8 +64,9 @@ impl Remedy {
         format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
     }
 
-    /// States the ranges of the shares that fall with the sufficient changes over the uncertain constants, and in how
-    /// many of their draws the better one is better; empty if a range is unknown.
+    /// States, for each sufficient change, the range over the uncertain constants of the share that falls. For two
+    /// changes, also states in which share of the draws of these constants fewer stacks fall with the better change.
+    /// Returns an empty text if a range is unknown.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
@@ -134,7 +135,7 @@ impl Remedy {
         format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
     }
 
-    /// Returns a plot and a table of all changes; `as_it_is` is the share of variants of the stack as it is that fall.
+    /// Returns a plot and a table of all changes; `as_it_is` is the share of variants that fall without a change.
     pub fn blocks(&self, as_it_is: Option<f64>, in_planes: bool) -> Vec<Block> {
         if self.tried.is_empty() {
             return Vec::new();
@@ -142,7 +143,7 @@ impl Remedy {
         vec![Block::Figure(self.figure(as_it_is)), Block::Table(self.table(in_planes))]
     }
 
-    /// Plots the share of variants that falls after every change; `as_it_is` is the share of the stack as it is.
+    /// Plots the share of variants that falls after every change; `as_it_is` is this share without a change.
     fn figure(&self, as_it_is: Option<f64>) -> Figure {
         let percent = |share: f64| 100.0 * share;
         let counted = |one: &Tried| percent(f64::from(one.failed) / f64::from(one.variants.max(1)));

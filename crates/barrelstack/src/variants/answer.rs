@@ -190,7 +190,7 @@ fn answered(
     };
     let alone = matches!(choice, RunChoice::Alone(_));
     let varied = !alone && planes.iter().any(|plane| plane.count() > 0);
-    // Fail early: check that the nominal case can be run, and its memory, before running variants.
+    // Fail early: check that the nominal case can be run, and that memory suffices, before running variants.
     for plane in planes.iter().filter(|_| varied) {
         check(&plane.scenario)?;
     }

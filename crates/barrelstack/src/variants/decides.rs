@@ -153,9 +153,10 @@ impl Drawn {
     }
 }
 
-/// Returns the constants that may decide whether a seat is lost: friction, stiffness and damping of
-/// seats. The constants of impacts and of bodies that have fallen, sticks and the position of rails
-/// count as sampling error, like positions and masses.
+/// Returns the constants that may decide whether a seat is lost: friction, stiffness and damping of seats.
+///
+/// The variation of all other drawn quantities counts as sampling error: of the constants of impacts and of fallen
+/// bodies, of the tangential stiffness, and of the positions of rails, racks and barrels and their masses.
 fn drawn(laws: &StackInterfaces, spread: &Unknowns, posts: bool) -> Vec<Drawn> {
     let seat = laws.barrel_rack;
     let lognormal = |dispersion: f64, deviate: f64| libm::exp(dispersion * deviate);
@@ -356,7 +357,8 @@ impl Fitted {
     }
 }
 
-/// Returns the correlations of the deviates of constants, of which those of friction are correlated.
+/// Returns the correlation matrix of the deviates of constants. `of_friction` is the correlation between any two
+/// coefficients of friction; all other deviates are independent.
 fn correlations(constants: &[Drawn], of_friction: f64) -> Vec<Vec<f64>> {
     let between = |i: usize, j: usize| match (i == j, [i, j].map(|at| constants[at].axis)) {
         (true, _) => 1.0,
@@ -449,11 +451,12 @@ mod tests {
         let names =
             |changes: &[&str]| fields(changes).iter().map(|one| one.field).collect::<Vec<_>>();
         assert_eq!(names(&[]).len(), 4);
-        // The fit stays lean: what changes the share by less than its sampling error does not enter.
+        // The fit leaves out constants that change the share by less than its sampling error.
         assert_eq!(names(&["unknowns.stick=0.5", "unknowns.rails=5 mm"]), names(&[]));
         let held = fields(&["unknowns.static_friction=0.4"]);
         let held = held.iter().find(|one| one.field == STATIC_BARREL_RACK).unwrap();
-        // The catalog states 0.30 for kinetic and static friction; 5 %, 50 % and 95 % of the excess of 0.4.
+        // The catalog states 0.30 for kinetic and static friction. The values are those at 5 %, 50 % and 95 % of the
+        // largest excess of 0.4.
         for (deviate, exact) in [(-1.644_854, 0.306), (0.0, 0.36), (1.644_854, 0.414)] {
             let found = held.at(deviate).unwrap();
             assert!((found - exact).abs() < 1e-6, "{found} {exact}");

@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn draws_are_those_of_every_earlier_program() {
-        // Computed when places and constants were still fields of one table.
+        // These values were computed when positions and constants were still fields of one table.
         let all = drawn(&[], 3);
         let stack = all.stack().unwrap();
         let body = &stack.overrides[4];

@@ -438,7 +438,7 @@ mod tests {
             (1, "Stands. Shaken across the barrels 1 of 64 variants falls (0.3–8 %)."),
         ];
         for (collapsed, sentences) in cases {
-            // Few falls have the range of all of them.
+            // For few falls, the sentence states the first and the last time instead of fractiles.
             let course =
                 if collapsed < 20 { &course.replace("5.6 and 6.4", "5.0 and 7.0") } else { course };
             assert_eq!(of(64, collapsed), format!("{sentences} {course}"));
@@ -615,14 +615,14 @@ mod tests {
         let left =
             "On average, the measurement leaves a range of 55 percentage points instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
-        // An effect that may be none decides nothing, nor does a small one that is certain.
+        // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];
         let said = headline(&[(View::Longitudinal, &one)]);
         assert!(
             said.contains(&format!("{range}no single one of these constants decides the outcome.")),
             "{said}"
         );
-        // A share with its minimum in the middle is stated there, too.
+        // If the smallest share is at the median, it is stated at the median, too.
         one.decides = vec![unknown([0.1, 0.6])];
         one.decides[0].shares[4].share = 0.25;
         let said = headline(&[(View::Longitudinal, &one)]);
@@ -634,7 +634,7 @@ mod tests {
         let said = headline_in_space(&one);
         let little = "The friction, stiffness and damping of the seats are uncertain, but matter little: 94 to 100 % of such stacks fall.";
         assert!(said.contains(little), "{said}");
-        // What narrows nothing is not recommended.
+        // A measurement that does not narrow the range is not recommended.
         one.range = Some([0.4, 1.0]);
         assert_eq!(measure(&one), None);
     }

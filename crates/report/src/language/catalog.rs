@@ -7,7 +7,7 @@ pub(super) struct Catalog {
     /// All entries as written, for texts without a placeholder and for scripts.
     entries: HashMap<&'static str, &'static str>,
     templates: Vec<Template>,
-    /// Templates by a word that every text of the template contains.
+    /// Indices of templates, by a word that occurs in every text that matches the template.
     by_word: HashMap<&'static str, Vec<usize>>,
     /// Templates without such a word.
     wordless: Vec<usize>,
@@ -59,7 +59,7 @@ impl Catalog {
         Self { entries, templates, by_word, wordless }
     }
 
-    /// Returns the translation of a text that is an entry as it stands.
+    /// Returns the translation of a text that is itself an entry, without placeholders.
     pub(super) fn entry(&self, text: &str) -> Option<&'static str> {
         self.entries.get(text).copied()
     }
@@ -146,7 +146,8 @@ impl Template {
         matches!(self.source.first(), Some(Part::Text(_)))
     }
 
-    /// Returns the words that are whole in every text of the template.
+    /// Returns the words that occur as whole words in every text that matches the template: those that do not touch a
+    /// placeholder.
     fn words(&self) -> Vec<&'static str> {
         let mut found = Vec::new();
         for (at, part) in self.source.iter().enumerate() {
@@ -164,8 +165,8 @@ impl Template {
         found
     }
 
-    /// Gives `use_it` each reading of a text as this template: the texts in the places of the
-    /// placeholders, until it returns `false`.
+    /// Calls `use_it` for each match of a text with this template, with the texts in the places of the placeholders,
+    /// until `use_it` returns `false`.
     pub(super) fn readings<'a>(&self, text: &'a str, use_it: &mut dyn FnMut(&[&'a str]) -> bool) {
         let slots = self.source.iter().filter_map(|part| match part {
             Part::Slot(slot) => Some(*slot + 1),
@@ -188,7 +189,8 @@ impl Template {
     }
 }
 
-/// Reads a text as parts of a template; returns `false` when no further reading is wanted.
+/// Matches a text with parts of a template, and calls `use_it` for each match; returns `false` once `use_it` has
+/// returned `false`.
 fn read<'a>(
     parts: &[Part],
     text: &'a str,

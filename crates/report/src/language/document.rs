@@ -41,7 +41,7 @@ impl Document {
             let unknown = [word, meaning].into_iter().filter(|text| catalog.entry(text).is_none());
             missing.extend(unknown.map(|text| (*text).to_owned()));
         }
-        // A word in such a place is not a name, even if it begins with a capital.
+        // In a heading, a capitalized word is not taken for a name, which would need no translation.
         walk(&self.blocks, &mut |block| {
             let heads: Vec<&String> = match block {
                 Block::Heading { text, .. } => vec![text],
