@@ -497,12 +497,12 @@ impl Verification {
         };
         row("outcome", outcome);
         if let Some(late) = self.robust.first_fall_within {
-            row("first fall", format!("within {} in all", shortly(late)));
+            row("first fall", format!("within {} in all repeats", shortly(late)));
         }
         // Without repeats there is no judgment.
         match self.robust.barrels_fallen {
             _ if !self.judged() => {}
-            [least, most] if least == most => row("barrels fallen", format!("{most} in all")),
+            [least, most] if least == most => row("barrels fallen", format!("{most} in all runs")),
             [least, most] => row("barrels fallen", format!("not robust: {least} to {most}")),
         }
         for repeat in &self.repeats {

@@ -196,8 +196,8 @@ impl EventKind {
         }
     }
 
-    /// Returns the word in a language. A fall is translated by the entry "falls", because the entry "fall" is the plural
-    /// verb in headings of tables, which is a different word in other languages.
+    /// Returns the word in a language. A fall is translated by the entry "falls", because the entry "fall" is the
+    /// plural verb in headings of tables, which is a different word in other languages.
     pub(crate) fn word_in(self, language: Language) -> &'static str {
         match (self, language) {
             (_, Language::English) => self.word(),

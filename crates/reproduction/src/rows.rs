@@ -266,7 +266,7 @@ fn eight(results: &Results) -> Vec<Comparison> {
         ),
         finding(
             "section 4",
-            "eight barrels: which falls first",
+            "eight barrels: order in which the top barrels fall",
             "11, then 10",
             format!("{}; mirrored {}", order(summary), order(mirrored)),
             order(summary) == "11, then 10" || order(mirrored) == "11, then 10",
@@ -359,14 +359,14 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 format!("{} mm apart at most", significant(1e3 * apart, 3))
             },
             apart < 1e-3 && full.outcome.first == half.outcome.first,
-            "Largest distance between the two positions of any body, at full scale, up to the \
+            "Largest distance between the positions of a body in the two runs, scaled to full scale, until the \
              first loss of seat. The paper compares \
              its model with photographs of the test; here both runs are of the model, and similitude makes \
              them equal except for rounding.",
         ),
         number(
             "section 4",
-            "the test at half scale: top level gone after",
+            "the test at half scale: both top barrels have fallen after",
             (2.0, "s"),
             second,
             None,

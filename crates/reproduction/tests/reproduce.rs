@@ -75,7 +75,7 @@ fn the_benchmarks_agree() {
         "eight barrels: what falls besides the top level",
         "eight barrels: stress amplification",
         "half scale at t* against full scale at √2 t*",
-        "the test at half scale: top level gone after",
+        "the test at half scale: both top barrels have fallen after",
         "along the barrels: collapse",
     ] {
         assert_eq!(row(quantity).agreement, Agreement::Agrees, "{:?}", row(quantity));

@@ -189,7 +189,7 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
             )
         });
         format!(
-            "{place} motion that is shown reaches {:.2} g and {:.0} cm/s{whole}.",
+            "{place} ground motion that is shown reaches {:.2} g and {:.0} cm/s{whole}.",
             motion.pga / STANDARD_GRAVITY,
             100.0 * motion.pgv
         )

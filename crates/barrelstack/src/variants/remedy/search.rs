@@ -301,7 +301,7 @@ mod tests {
         let plan = Plan { heights: 1, straps: 0, variants: 64, planes: 2 };
         let mut blocks = Vec::new();
         let mut run = |_, block: Range<u32>| {
-            // In the first plane, one variant collapses; in the second plane, another variant also has no verdict.
+            // In both planes, the first variant collapses; in the second plane, the second variant has no verdict.
             let mut verdicts = vec![vec![Some(false); block.len()]; 2];
             (verdicts[0][0], verdicts[1][0], verdicts[1][1]) = (Some(true), Some(true), None);
             blocks.push(block);
