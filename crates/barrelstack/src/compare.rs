@@ -44,7 +44,7 @@ pub struct Side {
     pub cut: Option<f64>,
     /// Time (s) of the first loss of a seat.
     pub collapse_time: Option<f64>,
-    /// The moving picture.
+    /// The moving picture of the run, as a pane of the player.
     pub pane: Pane,
     /// Histories of the ground motion, the first of which is an acceleration.
     pub ground: Vec<History>,

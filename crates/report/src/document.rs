@@ -75,7 +75,7 @@ pub struct Verdict {
     pub tone: Tone,
 }
 
-/// Length (bytes) of a headline that is shown as one heading.
+/// Maximum length (bytes) of a headline that is shown as one heading.
 const ONE_HEADING: usize = 180;
 
 /// Minimum length (bytes) of the opening sentences of a headline that is divided.

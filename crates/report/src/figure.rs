@@ -62,7 +62,7 @@ impl Figure {
         Self { id: id.into(), caption: caption.into(), kind: picture.into(), language }
     }
 
-    /// Returns the figure with the words that the picture adds in a language; other texts stay.
+    /// Returns the figure in a language: the words that the picture adds are translated, and other texts are kept.
     #[must_use]
     pub(crate) fn in_language(self, language: Language) -> Self {
         Self { language, ..self }
@@ -251,7 +251,7 @@ impl Counter {
         self.tables
     }
 
-    /// Passes over blocks that are written later.
+    /// Counts the figures and tables of blocks that are written later, so that the numbers continue after them.
     pub(crate) fn skip(&mut self, blocks: &[Block]) {
         walk(blocks, &mut |block| match block {
             Block::Figure(_) | Block::Player(_) | Block::Players(_) => self.figures += 1,

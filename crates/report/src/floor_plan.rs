@@ -270,7 +270,8 @@ impl FloorPlan {
         }
         legend.push(format!("one character is {} m wide", number::significant(cell, 2)));
         let wide = |entry: &String| entry.chars().count() as f64 + 2.0;
-        // The edges of the plan, and the comma and the blank after the last entry of a line.
+        // A line of the legend may be as wide as the plan with its two edges. `wide` counts a blank after the last entry,
+        // which is not written.
         let mut legend = wrapped(legend, COLUMNS + 2.0 + 1.0, wide).into_iter().peekable();
         while let Some(line) = legend.next() {
             let comma = if legend.peek().is_some() { "," } else { "" };
@@ -319,7 +320,7 @@ fn shade(share: f64) -> Option<usize> {
     step.checked_sub(1)
 }
 
-/// Breaks entries into lines that are no wider than a width, unless a single entry is.
+/// Breaks entries into lines that are no wider than a width, unless a single entry is wider.
 fn wrapped<T>(entries: Vec<T>, width: f64, wide: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
     let (mut lines, mut used) = (Vec::new(), f64::INFINITY);
     for entry in entries {

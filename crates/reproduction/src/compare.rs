@@ -48,7 +48,7 @@ pub struct Comparison {
     pub difference: Option<f64>,
     /// The wider band that the project accepts, in words, if there is one.
     pub band: Option<&'static str>,
-    /// Agreement of the two.
+    /// Agreement of our result with the published result.
     pub agreement: Agreement,
     /// Explanation of the difference, or method of measurement.
     pub why: String,

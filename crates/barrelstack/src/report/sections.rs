@@ -123,7 +123,7 @@ fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>)
     }
 }
 
-/// Appends a section of level 3 that is left out on paper.
+/// Appends a section with a heading of level 3; the section is left out on paper.
 fn on_screen(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
     let mut own = Vec::new();
     section(&mut own, 3, title, content);

@@ -19,7 +19,7 @@ use crate::summary::{Summary, Unfinished};
 /// Progress of an answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Advance {
-    /// Number of finished variants.
+    /// Progress of the variants.
     Variants {
         /// Number of finished variants.
         done: usize,

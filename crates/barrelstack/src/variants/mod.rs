@@ -125,7 +125,7 @@ impl Plane {
     }
 
     /// Returns the time (s) after the first loss of a seat at which trials end; `None` if they are
-    /// followed to rest.
+    /// followed until everything is at rest.
     pub fn counted_for(&self) -> Option<f64> {
         Some(after_collapse(&self.trial(0))).filter(|time| time.is_finite())
     }

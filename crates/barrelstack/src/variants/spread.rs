@@ -103,7 +103,7 @@ described! {
     }
 }
 
-/// Number of values below which a range is that of all values.
+/// Number of values below which a sentence states the range of all values instead of fractiles.
 pub const FEW: u32 = 20;
 
 impl Range {
