@@ -270,8 +270,8 @@ impl FloorPlan {
         }
         legend.push(format!("one character is {} m wide", number::significant(cell, 2)));
         let wide = |entry: &String| entry.chars().count() as f64 + 2.0;
-        // A line of the legend may be as wide as the plan with its two edges. `wide` counts a blank after the last entry,
-        // which is not written.
+        // A line of the legend may be as wide as the plan with its two edges. `wide` counts a blank after the last
+        // entry, which is not written.
         let mut legend = wrapped(legend, COLUMNS + 2.0 + 1.0, wide).into_iter().peekable();
         while let Some(line) = legend.next() {
             let comma = if legend.peek().is_some() { "," } else { "" };
