@@ -47,8 +47,8 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
     for row in &found().comparisons {
         let six = row.quantity.starts_with("six barrels");
         // The paper states the measured parameters but no result for them.
-        let unstated =
-            row.quantity.ends_with("measured k and c") || row.quantity.contains("amplification defined as");
+        let unstated = row.quantity.ends_with("measured k and c")
+            || row.quantity.contains("amplification defined as");
         assert_eq!(row.agreement == Agreement::NotCompared, six || unstated, "{}", row.quantity);
         if six {
             assert_eq!(row.difference, None, "{}", row.quantity);

@@ -379,7 +379,9 @@ fn players(sides: &[Side]) -> Players {
     // Drawings of bodies in space change with their rotation, so they have no single outline.
     let overlay = (!sides.iter().any(Side::is_spatial)).then(|| "outlines of A".to_owned());
     let dashed = overlay.as_ref().map_or_else(String::new, |label| {
-        format!(" With “{label}” switched on, dashed lines in all other pictures show the bodies of A at the same time.")
+        format!(
+            " With “{label}” switched on, dashed lines in all other pictures show the bodies of A at the same time."
+        )
     });
     Players {
         id: "players".into(),
