@@ -18,8 +18,8 @@ use crate::summary::{self, Count, Mean, ShockAnswer};
 use crate::words::{failed, followed, longest_cut, mean_share, span, survival};
 
 described! {
-    /// Survival of aftershocks of several strengths. The main shock of every variant is run once, and each aftershock
-    /// starts where it has left the bodies, at rest.
+    /// Survival of aftershocks of several strengths. The main shock of every variant is run once; each aftershock
+    /// starts from the poses in which the main shock has left the bodies, at rest.
     #[derive(Clone, Debug)]
     pub struct AftershockSummary {
         /// Name and version of this layout.
@@ -40,12 +40,13 @@ described! {
         pub broken: Vec<u32>,
         /// Number of variants that finished; null unless the work was stopped early.
         pub unfinished: Option<Unfinished>,
-        /// The main shock; null if no run counts.
+        /// The main shock; null if no run is counted.
         pub main: Option<ShockAnswer>,
-        /// The aftershocks, the weakest first; empty if no run counts.
+        /// The aftershocks, the weakest first; empty if no run is counted.
         pub aftershocks: Vec<Strength>,
-        /// Stacks that stand after the main shock in at least one variant, in the order in which to inspect them: those
-        /// that fall most often under the weakest aftershock first, and of equal ones those that moved farthest.
+        /// Stacks that stand after the main shock in at least one variant, in the order in which to inspect them:
+        /// those that fall most often under the weakest aftershock come first; among equals, those that fall more
+        /// often under the next one, and finally those that moved farthest.
         pub inspection: Vec<Margin>,
         /// Warnings, one sentence each.
         pub warnings: Vec<String>,
@@ -73,11 +74,13 @@ described! {
     pub struct Margin {
         /// Name of the stack.
         pub name: String,
-        /// Variants in which it stands after the main shock.
+        /// Variants in which the stack stands after the main shock.
         pub stands: Count,
-        /// For each aftershock, the variants in which it falls, out of those in which it stands after the main shock.
+        /// For each aftershock, the variants in which the stack falls, out of those in which it stands after the main
+        /// shock.
         pub falls: Vec<Count>,
-        /// Distribution of its largest horizontal movement in the main shock, in the variants in which it stands.
+        /// Distribution of the largest horizontal movement of the stack in the main shock, over the variants in which
+        /// the stack stands.
         pub moved: Option<Range> as "m",
     }
 }
@@ -87,12 +90,12 @@ type OfVariant = Vec<Case>;
 
 /// Runs the main shock of all variants of a cellar, and each of several aftershocks after it.
 ///
-/// Strengths are factors of the motion of the cellar, or of a record in its place. The observer receives the progress and
-/// may stop the work; the results until then are returned.
+/// Each strength is a factor by which the motion of the cellar is multiplied, or `record` if it is given. The
+/// observer receives the progress and may stop the work; the results obtained until then are returned.
 ///
 /// # Errors
-/// If there is no strength, the cellar states a sequence, its motion is not scaled in proportion, the plan is wrong, or a
-/// stack cannot be built or does not stand.
+/// If `strengths` is empty, the cellar already has a sequence of shocks, the scale of its motion cannot be multiplied
+/// by a factor, the plan is wrong, or a stack cannot be built or does not stand.
 pub fn aftershocks(
     cellar: &Cellar,
     strengths: &[f64],
@@ -137,7 +140,7 @@ fn summarized(
 ) -> AftershockSummary {
     let valid = |of: &&OfVariant| of.iter().all(|case| case.valid);
     let counted: Vec<&OfVariant> = found.iter().filter(valid).collect();
-    // A stack that falls under one strength and not under another is compared in the same variants.
+    // All strengths are compared in the same variants: those that are valid under every strength.
     let cases = |at: usize| -> Vec<&Case> { counted.iter().map(|of| &of[at]).collect() };
     let shocks = |at: usize| {
         let all = cases(at);
@@ -246,7 +249,7 @@ fn headline(summary: &AftershockSummary) -> String {
     )
 }
 
-/// Returns a factor with the motion that it scales.
+/// Returns a phrase that names a factor and the motion that it scales.
 fn strength(summary: &AftershockSummary, factor: f64) -> String {
     let of = if summary.factor_of == "record" { "its record" } else { "the main shock" };
     format!("{factor} times the strength of {of}")
@@ -326,7 +329,8 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     [strengths, stacks]
 }
 
-/// Returns the tables of the strengths and of the stacks, in each strength, with one number in each cell, for programs.
+/// Returns, for programs, the table of the strengths and the table of every stack under every strength, with one
+/// number in each cell.
 fn numbers(summary: &AftershockSummary) -> [Table; 2] {
     let number = |value: f64| Cell::Number(value, 6);
     let share = |one: &Strength, of: fn(&Mean) -> f64| {

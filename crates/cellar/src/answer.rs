@@ -45,11 +45,11 @@ pub fn answer(
     answer_with(cellar, choice, None, observer)
 }
 
-/// Answers as [`answer`] does, with the results of variants in a folder: those that are there are not run again, and new
-/// ones are added as soon as they are finished.
+/// Works like [`answer`], and keeps the results of the variants in a folder: variants whose results are already there
+/// are not run again, and new results are added as soon as they are finished.
 ///
 /// # Errors
-/// As for [`answer`]; also if a file of the folder is that of another cellar, or cannot be written.
+/// As for [`answer`]; also if a file of the folder belongs to another cellar, or cannot be written.
 pub fn answer_with(
     cellar: &Cellar,
     choice: RunChoice,
@@ -93,9 +93,9 @@ pub fn answer_with(
     Ok(Answer { prepared, cases, case, shown, summary })
 }
 
-/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns the number of results of the part
-/// that are in the folder at the end, the number of variants whose computation failed, which are not kept, and the number
-/// of all variants of the part.
+/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns three numbers for the
+/// part: results in the folder at the end, variants whose computation failed (their results are not kept), and all
+/// variants.
 ///
 /// # Errors
 /// As for [`answer_with`].

@@ -22,7 +22,7 @@ pub(crate) fn result(
     interrupted: bool,
 ) -> RoomRun {
     let body_of = |owner: Owner| match owner {
-        // Bodies of results are without the grounds of the stacks before.
+        // The bodies of a result do not include the ground of any stack.
         Owner::Stack((stack, body)) => world.stacks[stack].first + body - stack - 1,
         Owner::Obstacle(obstacle) => obstacle,
     };
@@ -106,7 +106,7 @@ pub(crate) fn result(
     run
 }
 
-/// Returns the bodies of a stack, which is a member of an island.
+/// Returns the bodies of a stack at the end of the run; `member` is the index of the stack in its island.
 fn bodies_of(of: &StackOf<'_>, stack: usize, island: &Island, member: usize) -> Vec<BodyEnd> {
     let (poses, _) = island.own(member);
     let fates = island.live.watches[member].fates.clone().at_end(&poses);

@@ -22,7 +22,7 @@ use crate::words::missing;
 pub use page::{csv, document, files, table};
 pub use usual::{Usual, usual};
 
-/// Largest number of layouts in a comparison, each of which takes the time of a room.
+/// Largest number of layouts in a comparison; each takes as long as the run of one room.
 pub const MOST: usize = 20;
 
 /// A layout with its results.
@@ -66,8 +66,8 @@ described! {
         pub layouts: Vec<LayoutAnswer>,
         /// The first layout compared with every other, variant by variant.
         pub paired: Vec<LayoutPair>,
-        /// Names of the layouts by the share of their barrels that falls, the smallest first; layouts without a valid
-        /// variant are left out.
+        /// Names of the layouts in the order of the share of their barrels that falls, the smallest first; layouts
+        /// without a valid variant are left out.
         pub order: Vec<String>,
         /// Requested changes that were not run, because they do not fit or cannot be stated.
         pub left_out: Vec<LeftOut>,
@@ -104,15 +104,17 @@ described! {
         pub by_themselves: Estimate as "1",
         /// Number of stacks that are knocked over.
         pub knocked_over: Estimate as "1",
-        /// How far a collapse spreads: stacks that fall, for each that falls by itself; null if none falls by itself.
+        /// How far a collapse spreads: number of stacks that fall, divided by the number that fall by themselves;
+        /// null if none falls by itself.
         pub spread: Option<f64> as "1",
         /// Number of barrels that fall.
         pub barrels_fallen: Estimate as "1",
         /// Share of the capacity that falls.
         pub share_lost: Estimate as "1",
-        /// Expected loss of wine, under the central assumption.
+        /// Expected loss of wine, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
-        /// Lower and upper cost of the barrels that burst and of their wine, under the central assumption.
+        /// Lower and upper estimate of the cost of the barrels that burst and of their wine, under the central
+        /// assumption on how many burst.
         pub cost: [f64; 2] as "US$",
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
@@ -122,7 +124,8 @@ described! {
         pub first_barrel: Option<Range> as "s",
         /// Largest force on a wall or column in any variant; null without walls and columns.
         pub peak_force: Option<f64> as "N",
-        /// Longest time of its motion that the run that is shown leaves out; null if it covers all.
+        /// Time by which the run that is shown ends before its motion does, the longest of a sequence; null if the
+        /// run covers its motion.
         pub cut: Option<f64> as "s",
     }
 
@@ -135,7 +138,7 @@ described! {
         pub interval: Option<[f64; 2]> as "that of the field",
     }
 
-    /// Two layouts, variant by variant.
+    /// Comparison of two layouts, variant by variant.
     #[derive(Clone, Debug, PartialEq)]
     pub struct LayoutPair {
         /// Name of the first layout.
@@ -144,7 +147,7 @@ described! {
         pub second: String,
         /// Number of pairs: variants with a valid result in both layouts.
         pub variants: u32,
-        /// Numbers of the variants that have a valid result in one of the layouts at most.
+        /// Numbers of the variants that lack a valid result in at least one of the two layouts.
         pub left_out: Vec<u32>,
         /// True if both layouts have the same motion.
         pub same_motion: bool,
@@ -158,12 +161,14 @@ described! {
         pub barrels_fallen: Change as "1",
         /// Share of the capacity that falls.
         pub share_lost: Change as "1",
-        /// Expected loss of wine, under the central assumption. This assumption is less certain than the number of barrels,
-        /// so no interval is given.
+        /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
+        /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
-        /// Lower cost of the barrels that burst and of their wine, likewise.
+        /// Lower estimate of the cost of the barrels that burst and of their wine, under the central assumption; no
+        /// interval is given.
         pub cost_low: Change as "US$",
-        /// Upper cost of the barrels that burst and of their wine, likewise.
+        /// Upper estimate of the cost of the barrels that burst and of their wine, under the central assumption; no
+        /// interval is given.
         pub cost_high: Change as "US$",
     }
 
@@ -176,8 +181,8 @@ described! {
         pub second: f64 as "that of the field",
         /// Mean in the second layout minus mean in the first.
         pub difference: f64 as "that of the field",
-        /// Bounds of the 95 % interval of the difference, from the scatter of the differences of the variants; the intervals
-        /// of all layouts hold together. Null for fewer than two pairs.
+        /// Bounds of the 95 % interval of the difference, from the scatter of the differences of the variants. The
+        /// level of 95 % holds for the intervals of all layouts together. Null for fewer than two pairs.
         pub interval: Option<[f64; 2]> as "that of the field",
     }
 
@@ -261,8 +266,9 @@ pub fn compared(
 }
 
 impl CellarComparison {
-    /// Returns the layouts in the order in which tables list them: by the share of the barrels that falls, then those without
-    /// a valid variant; each with its pair, which the first layout does not have.
+    /// Returns the layouts in the order of the tables: by the share of the barrels that falls, followed by those
+    /// without a valid variant. Each comes with its comparison to the first layout; `None` for the first layout
+    /// itself.
     pub fn ranked(&self) -> Vec<(&LayoutAnswer, Option<&LayoutPair>)> {
         let rank = |one: &LayoutAnswer| self.order.iter().position(|name| *name == one.name);
         let mut all: Vec<_> = self.layouts.iter().enumerate().collect();
@@ -277,8 +283,8 @@ fn differences<'a>(cellars: impl Iterator<Item = &'a Cellar>) -> Vec<Difference>
     differing(&cellars.map(Cellar::settings).collect::<Vec<_>>())
 }
 
-/// Loss of a room in one variant, and at most: stacks that fall by themselves and that are knocked over, barrels that fall
-/// and their share, loss of wine (m³), and lower and upper cost (US$).
+/// Loss of a room in one variant: numbers of stacks that fall by themselves and that are knocked over, number and
+/// share of the barrels that fall, loss of wine (m³), and lower and upper cost (US$).
 #[derive(Clone, Copy)]
 struct Loss {
     by_themselves: f64,
@@ -345,7 +351,7 @@ fn answer(layout: &Layout) -> LayoutAnswer {
 }
 
 impl Estimate {
-    /// Returns the mean of values between 0 and `most`.
+    /// Returns the mean of values between 0 and `most`, with its interval.
     fn of(values: impl Iterator<Item = f64>, most: f64) -> Self {
         let most = most.max(f64::MIN_POSITIVE);
         let shares: Vec<(f64, f64)> = values.map(|value| (value / most, 1.0)).collect();
@@ -359,8 +365,8 @@ impl Estimate {
 }
 
 impl Change {
-    /// Returns the change of pairs of values, of which none exceeds `most`; without an interval if `most` is not given.
-    /// The intervals of `tries` such changes hold together.
+    /// Returns the mean change of pairs of values between 0 and `most`; without an interval if `most` is `None`. The
+    /// confidence level holds for the intervals of `tries` such changes together.
     fn of(pairs: &[[f64; 2]], most: Option<f64>, tries: usize) -> Self {
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
             pairs.iter().map(of).sum::<f64>() / pairs.len().max(1) as f64
@@ -376,7 +382,7 @@ impl Change {
     }
 }
 
-/// Compares two layouts of `others` and one, variant by variant.
+/// Compares two layouts variant by variant; `others` is the number of layouts that are compared with the first.
 fn pair(first: &Layout, second: &Layout, others: usize) -> LayoutPair {
     let [own, its] = [first, second].map(losses);
     let common: Vec<[&Loss; 2]> =
@@ -411,8 +417,8 @@ fn pair(first: &Layout, second: &Layout, others: usize) -> LayoutPair {
     }
 }
 
-/// Returns the numbers of the variants of two layouts that are not counted in both. The room as stated is a variant only
-/// where nothing else was run.
+/// Returns the numbers of the variants of two layouts that are not counted in both. The room as stated counts as a
+/// variant only in a layout without other variants.
 fn left_out(layouts: [&Layout; 2], losses: [&BTreeMap<u32, Loss>; 2]) -> Vec<u32> {
     let of = |layout: &Layout| -> BTreeSet<u32> {
         let varied = layout.cases.iter().any(|case| case.variant > 0);

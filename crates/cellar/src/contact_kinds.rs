@@ -1,6 +1,6 @@
 //! Contact kinds of bodies, and the laws between bodies of different stacks.
 //!
-//! Bodies of two stacks touch as bodies of one stack that fall on each other do.
+//! Between bodies of two stacks, the contact laws are those of bodies of one stack that fall on each other.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::{Scene, SpatialScene, StackPair};
@@ -11,7 +11,7 @@ use barrelstack_space::Stack;
 /// Role of a body toward bodies of other stacks.
 #[derive(Clone, Debug, PartialEq)]
 enum Role {
-    /// It meets none.
+    /// The ground of a stack, which touches no body of another stack.
     Ground,
     Rack,
     Barrel,
@@ -58,7 +58,7 @@ impl<'a> ContactKinds<'a> {
                 };
                 let unbounded =
                     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace);
-                // Further node sets are bearings, which touch only their dishes.
+                // Further node sets belong to bearings, which touch only their dishes.
                 let surfaces = if unbounded { 0 } else { body.surfaces.len() };
                 let kind =
                     ContactKind { nodes: body.nodes.len().min(body.surfaces.len()), surfaces };
@@ -129,7 +129,7 @@ impl<'a> ContactKinds<'a> {
                 Role::Obstacle,
                 Role::Rack | Role::Barrel | Role::Device | Role::Free(_, _, false),
             ) => Some(Rule { reversed: true, laws: [0, 0] }),
-            // What is fixed to the ground meets nothing fixed, and a free scene has no laws for stacks.
+            // Fixed bodies do not touch each other, and a free scene has no contact laws for bodies of stacks.
             (Role::Free(..) | Role::Ground | Role::Obstacle, _)
             | (_, Role::Free(..) | Role::Ground) => None,
         }

@@ -34,7 +34,7 @@ impl Convex {
                 }
                 hull.push(point);
             }
-            // The last point begins the other half.
+            // The last point of one half is the first of the other.
             hull.pop();
         };
         turn(&mut points.iter().copied(), &mut hull);
@@ -64,7 +64,7 @@ impl Convex {
         self.0.iter().copied().zip(self.0.iter().copied().cycle().skip(1))
     }
 
-    /// Returns the distance of a point; negative inside, where it is that to the nearest edge.
+    /// Returns the distance of a point from the polygon; inside, minus the distance to the nearest edge.
     pub fn distance(&self, point: Point) -> f64 {
         let mut inside = f64::NEG_INFINITY;
         let mut nearest = f64::INFINITY;
@@ -84,8 +84,7 @@ impl Convex {
         if inside <= 0.0 { inside } else { nearest }
     }
 
-    /// Returns the free distance to another polygon; negative for an overlap, where it is the shortest shift that
-    /// separates them.
+    /// Returns the free distance to another polygon; if they overlap, minus the shortest shift that separates them.
     pub fn apart(&self, other: &Self) -> f64 {
         let mut separation = f64::NEG_INFINITY;
         for (one, two) in [(self, other), (other, self)] {
@@ -154,7 +153,7 @@ impl Grid {
         ]
     }
 
-    /// Marks all cells whose middle is nearer to a polygon than a distance (m) as taken.
+    /// Marks as taken all cells whose middle is closer to a polygon than a distance (m).
     pub fn take(&mut self, polygon: &Convex, distance: f64) {
         let [lower, upper] = polygon.bounds();
         if polygon.corners().len() < 3 {
@@ -178,7 +177,7 @@ impl Grid {
         }
     }
 
-    /// Marks all cells that satisfy a condition on their middle as taken.
+    /// Marks as taken all cells whose middle satisfies a condition.
     pub fn take_where(&mut self, is_taken: impl Fn(Point) -> bool) {
         for at in 0..self.taken.len() {
             self.taken[at] |= is_taken(self.middle(at));
@@ -195,7 +194,7 @@ impl Grid {
         &self.taken
     }
 
-    /// `true` if free cells lead from one that satisfies `starts` to one that satisfies `ends`.
+    /// `true` if a path of free cells leads from a cell that satisfies `starts` to a cell that satisfies `ends`.
     pub fn leads(&self, starts: impl Fn(Point) -> bool, ends: impl Fn(Point) -> bool) -> bool {
         let mut visited = self.taken.clone();
         let mut queue = VecDeque::new();

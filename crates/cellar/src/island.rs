@@ -35,15 +35,15 @@ pub(crate) enum Owner {
 pub(crate) struct Member {
     /// Index of the stack in the room.
     pub(crate) stack: usize,
-    /// Its bodies in the model of the island.
+    /// IDs of the bodies of the stack in the model of the island.
     pub(crate) bodies: Range<BodyId>,
-    /// Its elements in the model of the island.
+    /// Indices of the elements of the stack in the model of the island.
     pub(crate) elements: Range<usize>,
-    /// Placement of its own frame in that of the island.
+    /// Placement of the frame of the stack in the frame of the island.
     pub(crate) frame: Frame,
 }
 
-/// Everything of an island that does not change until it is merged.
+/// Constant data of an island, which change only when the island is merged with another.
 #[derive(Debug)]
 pub(crate) struct Fixed {
     pub(crate) members: Vec<Member>,
@@ -53,7 +53,7 @@ pub(crate) struct Fixed {
     pub(crate) owners: Vec<Owner>,
     pub(crate) model: Arc<Model<Spatial>>,
     pub(crate) drive: Ground,
-    /// Placement of the frame of the island in the room, that of its first stack.
+    /// Placement, in the room, of the frame of the island, which is the frame of its first stack.
     pub(crate) frame: Frame,
     pub(crate) simulation: Simulation,
 }
@@ -67,7 +67,7 @@ pub(crate) struct Contact {
     /// Force (N) in the frame of the island at the last step.
     pub(crate) last: Vec3,
     now: Vec3,
-    /// Sum of magnitudes (N·s).
+    /// Impulse (N·s) so far, as the sum of magnitudes.
     pub(crate) impulse: f64,
     pub(crate) peak: f64,
 }
@@ -80,11 +80,11 @@ pub(crate) struct Watch {
     /// First contact with a body of another stack: time, own body, other body.
     pub(crate) touched: Option<(f64, BodyId, StackBody)>,
     pub(crate) touched_obstacle: Option<(f64, usize)>,
-    /// Impulse (N·s) of other stacks until the first loss of seat.
+    /// Impulse (N·s) that other stacks exert until the first loss of seat.
     pub(crate) impulse: f64,
 }
 
-/// The part of an island that moves; a copy of it is a point to which the island can return.
+/// Changing state of an island; the island can return to a copy of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Live {
     pub(crate) running: Running,
@@ -92,7 +92,7 @@ pub(crate) struct Live {
     pub(crate) contacts: BTreeMap<[PartyId; 2], Contact>,
     pub(crate) ending: Option<Ending>,
     pub(crate) failure: Option<RunError>,
-    /// Lengths of the logs.
+    /// Lengths of the logs of the island at this state, to which they are cut when the island returns to it.
     kept: Vec<usize>,
     /// For every body, the largest distance (m) from its pose at the start of the window.
     pub(crate) travels: Vec<f64>,
@@ -136,7 +136,7 @@ impl Owner {
     }
 }
 
-/// Records that only grow.
+/// Logs, to which entries are only appended.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Logs {
     /// Frames of every member.
@@ -323,7 +323,8 @@ impl Island {
         state.time = time;
     }
 
-    /// Updates the distances from the start of the window; returns a body that would leave its tube within a time (s).
+    /// Updates the distances of bodies from the start of the window; returns a body that could leave its tube (the
+    /// distance that it may move in the window) within a time (s).
     fn update_travels(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
         if self.from.is_empty() {
             return None;

@@ -1,4 +1,5 @@
-//! Results of variants in a folder, so that work that was stopped goes on, and several machines share it.
+//! Results of variants in a folder, so that work that was stopped can be continued, and divided among several
+//! machines.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,7 @@ const SCHEMA: &str = "cellar-variant/1";
 #[derive(Serialize, Deserialize)]
 struct File<C> {
     schema: String,
-    /// Version of the program, whose results another version may not continue.
+    /// Version of the program that wrote the file; no other version may continue its work.
     version: String,
     cellar_hash: String,
     case: C,
@@ -62,7 +63,7 @@ impl Kept {
     /// Returns the result of a variant; `None` if it is not in the folder.
     ///
     /// # Errors
-    /// If the file cannot be read, or is that of another cellar or of another version of the program.
+    /// If the file cannot be read, or was written for another cellar or by another version of the program.
     pub fn read(&self, variant: u32) -> Result<Option<Case>, CellarFailure> {
         let path = self.path(variant);
         let bytes = match std::fs::read(&path) {

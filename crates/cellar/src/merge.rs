@@ -14,7 +14,8 @@ use crate::world::World;
 /// Islands and obstacles that become one island.
 struct Plan<'a> {
     world: &'a World<'a>,
-    /// Source and member of every stack, in the order of the names of the stacks.
+    /// Index of the source island of every stack and index of the stack among its members, in the order of the names
+    /// of the stacks.
     members: Vec<(usize, usize)>,
     /// The stack of every member.
     stacks: Vec<usize>,
@@ -47,7 +48,8 @@ impl Plan<'_> {
         stacks.chain(obstacles).collect()
     }
 
-    /// Returns what is carried over from the islands, and the members and the owners of the merged one.
+    /// Returns the states to carry over from the islands, and the members and the owners of the bodies of the merged
+    /// island.
     fn places(&self, islands: &[Island]) -> (Vec<Carry>, Vec<Member>, Vec<Owner>) {
         let (mut carries, mut members, mut owners) = (Vec::new(), Vec::new(), Vec::new());
         let mut elements = 0;
@@ -143,7 +145,7 @@ pub(crate) fn merged(
     let mut live = Live::of(carry(&model, &drive, &sources, &carries, &simulation), Vec::new());
     let (mut energy_before, mut work) = (EnergySummary::default(), Work::default());
     for island in &islands {
-        // What is stored now is stored in the merged island.
+        // Energy that is stored at the merge is counted by the merged island.
         let own = EnergySummary { kinetic: 0.0, elastic: 0.0, stick: 0.0, ..island.energy() };
         energy_before = plus(energy_before, &own);
         let own = island.work();

@@ -1,7 +1,8 @@
 //! Bodies of different islands that are near each other, and how far each may move before two of them can touch.
 //!
-//! The gap of two bodies is measured when it may have become small. From then on it shrinks by no more than the
-//! paths of the two bodies, which are summed window by window, so it is measured anew only when these have used it up.
+//! The gap between two bodies is measured when it may have become small. After a measurement, the gap shrinks by at most
+//! the lengths of the paths of the two bodies, which are summed window by window. It is measured again only when these
+//! paths may have closed it.
 
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;
@@ -11,7 +12,7 @@ use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
 use crate::island::{Island, Owner, StackBody};
 use crate::world::World;
 
-/// Distance (m) of two bodies up to which they are in the list.
+/// Largest distance (m) of two bodies that are in the list of couples.
 const MARGIN: f64 = 0.4;
 
 /// Displacement (m) of a body after which the list is rebuilt.
@@ -20,24 +21,24 @@ const STALE: f64 = 0.1;
 /// Distance (m) that a body that is near no other may move in a window; it corresponds to 45 m/s.
 pub(crate) const FREE: f64 = 0.09;
 
-/// Gap (m) that remains when two islands are merged: their next step must not be affected, and impacts must be
-/// foreseen.
+/// Least gap (m) that remains when two islands are merged, so that the merge does not affect their next step, and
+/// impacts are foreseen.
 const SLACK: f64 = 2e-3;
 
-/// Distance (m) that every body may move in a window.
+/// Least distance (m) that a body may move in a window, even a body at rest.
 const LEAST: f64 = 1e-3;
 
-/// Gap (m) up to which gaps are exact, and not only bounded from below.
+/// Gap (m) up to which gaps are measured exactly; for larger gaps, a lower bound suffices.
 const EXACT: f64 = 0.1;
 
 /// Two bodies of different parties, the second of which may be an obstacle.
 struct Couple {
     bodies: [Owner; 2],
-    /// Gap (m) when it was measured, or a lower bound of it.
+    /// Gap (m) at the last measurement, or a lower bound of it.
     gap: f64,
-    /// Lengths (m) of the paths of the two bodies until then.
+    /// Lengths (m) of the paths of the two bodies until the last measurement.
     since: [f64; 2],
-    /// Lengths (m) of the paths of the two bodies that must not be exceeded in this window.
+    /// Lengths (m) that the paths of the two bodies must not exceed in this window.
     limits: [f64; 2],
 }
 
@@ -182,8 +183,8 @@ impl Nearby {
         self.made_for = places;
     }
 
-    /// Returns groups of islands and obstacles that may meet within a time (s), and states for all other couples how
-    /// far their bodies may move.
+    /// Returns the couples, of different islands or of an island and an obstacle, that may touch within a time (s),
+    /// and sets for all other couples how far their bodies may move.
     pub(crate) fn meetings(
         &mut self,
         world: &World<'_>,
@@ -219,7 +220,7 @@ impl Nearby {
                     let step = island.fixed.simulation.time_step;
                     LEAST + 1.5 * island.speed(world, body) * (ahead + 2.0 * step)
                 }
-                // It may be woken within the window.
+                // An island at rest may be woken within the window.
                 Some(_) => LEAST,
                 None => 0.0,
             });
@@ -244,7 +245,7 @@ impl Nearby {
         meetings
     }
 
-    /// Sets how far the bodies of an island may move; returns `true` if another island or an obstacle is near.
+    /// Returns how far (m) each body of an island may move, and `true` if another island or an obstacle is near.
     pub(crate) fn limit(
         &self,
         world: &World<'_>,
@@ -270,7 +271,7 @@ impl Nearby {
         (of.fixed.owners.iter().map(tube).collect(), near)
     }
 
-    /// Returns `true` if the bodies of a couple, one of which belongs to an island, can be moved independently.
+    /// Returns `true` if the bodies of a couple, one of which belongs to `island`, are not in the same island.
     fn parted(couple: &Couple, places: &Places, island: &Island) -> bool {
         match couple.bodies {
             [Owner::Stack((one, _)), Owner::Stack((other, _))] => places[one].0 != places[other].0,
@@ -297,7 +298,7 @@ impl Nearby {
         nearest.limits[side(nearest)].is_finite().then(|| nearest.bodies[1 - side(nearest)])
     }
 
-    /// Adds the paths of the bodies of an island in a window.
+    /// Adds the distances that the bodies of an island have moved in a window to the lengths of their paths.
     pub(crate) fn add(&mut self, world: &World<'_>, island: &mut Island) {
         for (owner, travel) in island.fixed.owners.iter().zip(&mut island.live.travels) {
             self.paths[world.number(*owner)] += std::mem::take(travel);

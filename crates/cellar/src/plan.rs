@@ -45,7 +45,7 @@ impl Model {
             points.iter().map(move |point| position + turn.apply(*point))
         });
         let footprint = Convex::hull(placed.map(|point| [point.x, point.y]).collect());
-        // A footprint is stated and measured along the sides of the stack.
+        // The footprint is the bounding rectangle along the sides of the stack.
         let [lower, upper] = footprint.bounds();
         Ok(Self {
             footprint: Convex::rectangle(lower, upper),
@@ -90,7 +90,7 @@ described! {
         pub wine: f64 as "m3",
         /// Number of shocks of the motion.
         pub shocks: usize,
-        /// True if all bodies start as built; false if places from which some start are stated.
+        /// True if all bodies start as built; false if the cellar states other places from which bodies start.
         pub as_built: bool,
         /// Area of the room for each barrel.
         pub area_per_barrel: f64 as "m2",
@@ -146,7 +146,7 @@ described! {
     pub struct PlacePlan {
         /// Name of the place.
         pub name: String,
-        /// True if a path of 0.6 m leads from the place to a door; null if there is no door.
+        /// True if a path 0.6 m wide leads from the place to a door; null if there is no door.
         pub leads_out: Option<bool>,
     }
 }
@@ -492,7 +492,7 @@ fn columns(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems
     }
 }
 
-/// Returns two corners of the opening of a door, to a depth (m) inside the room.
+/// Returns two opposite corners of the floor in front of a door, to a depth (m) inside the room.
 pub(crate) fn opening(room: &RoomSpec, door: &Door, depth: f64) -> [Point; 2] {
     let [a, b] = [door.position - 0.5 * door.width, door.position + 0.5 * door.width];
     match door.side {
@@ -549,7 +549,8 @@ impl Obstacles<'_> {
         let at_door = |[x, y]: Point| {
             cellar.doors.iter().any(|door| {
                 let [a, b] = opening(&cellar.room, door, half + CELL);
-                // The middle of a person is in front of the opening, half a person from its edges.
+                // The middle of a person in front of the opening is at least half the width of a person from its
+                // edges.
                 let narrow = |low: f64, high: f64, value: f64, along: bool| {
                     let inset = if along { half - 0.5 * CELL } else { 0.0 };
                     value >= low + inset && value <= high - inset
@@ -573,7 +574,7 @@ impl Obstacles<'_> {
             .collect()
     }
 
-    /// Marks the floor that the middle of a person cannot reach next to bodies and columns.
+    /// Marks as taken the floor next to bodies and columns that the middle of a person cannot reach.
     fn take_from(&self, grid: &mut Grid) {
         let half = 0.5 * PASSAGE;
         for polygon in &self.taken {
@@ -668,7 +669,7 @@ fn section(polygon: &Convex, axis: usize, at: f64) -> Option<[f64; 2]> {
     found
 }
 
-/// Returns the plan of a body: the hull of points of its surface in a pose, from above.
+/// Returns the outline of a body from above: the hull of the points of its surface in a pose.
 pub(crate) fn outline_in_plan(points: &[Vec3], pose: &[f64; 7]) -> Convex {
     let [x, y, _, w, a, b, c] = *pose;
     let turn = Quaternion { w, v: Vec3::new(a, b, c) }.matrix();

@@ -24,7 +24,7 @@ use crate::words::{sentences, shown_run, span, span_of_shares, tone};
 /// in all variants.
 pub fn picture(answer: &Answer) -> FloorPlan {
     let Answer { prepared, cases, summary, .. } = answer;
-    // Stopped work says nothing of the fate of a stack.
+    // If the work was stopped, the fates of the stacks are unknown.
     let kind = |at: usize| match summary.shown.stacks[at].fate {
         _ if summary.unfinished.is_some() => RegionKind::Stands,
         "falls-by-itself" => RegionKind::Falls,
@@ -113,7 +113,7 @@ fn players(answer: &Answer) -> Option<Block> {
     }))
 }
 
-/// Number of sentences that support the headline before the others, which are collapsed on screen.
+/// Number of supporting sentences that are always shown below the headline; the others are collapsed on screen.
 const OPENING: usize = 3;
 
 /// Returns the report on a cellar as a document that does not depend on the output format.
@@ -170,7 +170,7 @@ pub fn document(answer: &Answer) -> Document {
     ));
     let fell = summary.room.some_fall.of_variants;
     let mut opening = sentences(summary);
-    // The tables show the rest as well.
+    // The tables also contain the results of the sentences that are collapsed.
     let fine = opening.split_off(OPENING.min(opening.len()));
     Document {
         title: summary.title.clone(),

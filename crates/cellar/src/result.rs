@@ -13,7 +13,7 @@ pub type StackRef = usize;
 /// A body at the end of a run.
 #[derive(Clone, Debug)]
 pub struct BodyEnd {
-    /// Index of its stack.
+    /// Index of the stack of the body.
     pub stack: StackRef,
     /// Name within its stack, such as `B2.1`.
     pub name: String,
@@ -23,11 +23,11 @@ pub struct BodyEnd {
     pub level: u32,
     /// Volume (m³) of the wine in a barrel.
     pub wine: f64,
-    /// Fate, along the axes of its stack.
+    /// Fate, with displacements along the axes of the stack.
     pub fate: Fate,
     /// Pose at rest before the shaking, in the room: position (m) and quaternion `w`, `x`, `y`, `z`.
     pub from: [f64; 7],
-    /// Pose at the start of the run, in the room: that of `from`, unless another start is stated.
+    /// Pose at the start of the run, in the room: equal to `from` unless the stack has another start.
     pub start: [f64; 7],
     /// Pose at the end, in the room.
     pub to: [f64; 7],
@@ -44,8 +44,8 @@ pub struct Touch {
     pub body: usize,
     /// The body of another stack.
     pub by: usize,
-    /// Impulse (N·s), the sum of magnitudes, of all bodies of other stacks on the stack until its first loss of seat,
-    /// or over the whole run if it keeps its seats.
+    /// Impulse (N·s) that all bodies of other stacks exert on the stack until its first loss of seat, or over the
+    /// whole run if it keeps its seats; as the sum of magnitudes.
     pub impulse: f64,
 }
 
@@ -66,13 +66,15 @@ pub struct StackEnd {
     pub touched_obstacle: Option<(f64, usize)>,
     /// `true` if a body of another stack touched the stack before it lost its first seat.
     pub knocked_over: bool,
-    /// Indices of its bodies in [`RoomRun::bodies`].
+    /// Indices of the bodies of the stack in [`RoomRun::bodies`].
     pub bodies: std::ops::Range<usize>,
-    /// Reason for its end.
+    /// Reason why the run of the stack ended.
     pub ending: Ending,
-    /// Time (s) of its end: when its bodies came to rest, or the end of the run.
+    /// Time (s) at which the run of the stack ended: when its bodies came to rest, or at the end of the run of the
+    /// room.
     pub end_time: f64,
-    /// Number of its bodies that still move at its end; barrels that roll away freely do not delay the end.
+    /// Number of bodies of the stack that still move when its run ends; barrels that roll away freely do not delay
+    /// the end.
     pub moving: usize,
 }
 
@@ -82,7 +84,7 @@ impl StackEnd {
         self.lost_seat.is_some_and(|(time, _)| time <= 0.0)
     }
 
-    /// `true` if the stack was at rest at its end.
+    /// `true` if the stack was at rest when its run ended.
     pub fn rests(&self) -> bool {
         self.ending == Ending::Rest && self.moving == 0
     }
@@ -97,7 +99,7 @@ pub struct Meeting {
     pub time: f64,
     /// The bodies of the first contact, in the order of the stacks, by their indices in [`RoomRun::bodies`].
     pub bodies: [usize; 2],
-    /// Impulse (N·s), the sum of magnitudes, over the whole run.
+    /// Impulse (N·s) between the two stacks over the whole run, as the sum of magnitudes.
     pub impulse: f64,
     /// Largest force (N) between the two stacks.
     pub peak: f64,
@@ -149,7 +151,7 @@ pub struct RoomRun {
     pub work: Work,
     /// Number of times that islands were merged.
     pub merges: usize,
-    /// Time (s) at which the last stack ended.
+    /// Time (s) at which the run of the last stack ended.
     pub end_time: f64,
     /// `true` if the observer stopped the run.
     pub interrupted: bool,

@@ -22,7 +22,7 @@ use crate::world::{PRESSED, World};
 /// Length (s) of a window: longer windows merge islands at larger gaps, shorter ones cost more.
 const WINDOW: f64 = 2e-3;
 
-/// Time (s) for which an island goes on at least, while a barrel of it rolls toward another stack.
+/// Least time (s) for which an island continues while one of its barrels rolls toward another stack.
 const ROLLS: f64 = 0.25;
 
 /// Time between two calls of the observer.
@@ -195,7 +195,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges islands whose bodies would have left their tubes with the nearest ones, in the order of time.
+    /// Merges each island of which a body would have left its tube with the nearest island or obstacle, in the order
+    /// of time.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {
@@ -277,7 +278,8 @@ impl<'a> Running<'a> {
         Ok(all)
     }
 
-    /// Lets islands go on, from a time (s), that rest but for a barrel that rolls toward another stack or an obstacle.
+    /// Lets islands at rest continue from a time (s) if one of their barrels still rolls toward another stack or an
+    /// obstacle.
     fn keep_rolling(&mut self, now: f64) {
         let world = self.world;
         let mut goes_on = Vec::new();
@@ -302,7 +304,7 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Returns `true` if a body on its course comes near a body of another stack or an obstacle.
+    /// Returns `true` if a body that keeps its direction comes near a body of another stack or an obstacle.
     fn will_meet(&self, island: &Island, body: BodyId) -> bool {
         let world = self.world;
         let Owner::Stack((own, of)) = island.fixed.owners[body] else { return false };
@@ -314,7 +316,7 @@ impl<'a> Running<'a> {
             let along = apart.dot(velocity);
             let aside = apart.cross(velocity).length();
             let speed = velocity.length();
-            // Some part of the other body is ahead, even if its middle is not, as for a long wall.
+            // A part of the other body can be ahead even if its middle is not, for example of a long wall.
             along > -radius * speed && aside < (reach + radius) * speed
         };
         let stacks = (0..world.stacks.len()).filter(|stack| *stack != own);

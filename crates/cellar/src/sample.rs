@@ -211,7 +211,7 @@ impl Prepared {
         Ok((room, first))
     }
 
-    /// Runs the later shocks after the first of a room, and returns the runs of all shocks as one.
+    /// Runs the shocks after the first in a room, and returns the runs of all shocks as one run.
     ///
     /// # Errors
     /// As for [`Prepared::run`].
@@ -252,7 +252,8 @@ impl Prepared {
         check_overlaps(&self.room(0)?).map_err(|failure| self.placed(failure))
     }
 
-    /// Checks the memory for the frames of all shocks, which are kept by shock and as one run.
+    /// Checks that memory suffices for the frames of all shocks, which are stored twice: for each shock, and for the
+    /// joined run.
     fn check_kept(&self, room: &Room) -> Result<(), CellarFailure> {
         if self.later.is_empty() {
             return Ok(());
@@ -267,7 +268,8 @@ impl Prepared {
         Ok(check_kept((2.0 * frames, bodies, 8), (0.0, 0))?)
     }
 
-    /// Returns the failure of a room, at the place in the file that states where the stack starts that it concerns.
+    /// Returns the failure of a room as an error at the entry of the file that states where the affected stack
+    /// starts.
     fn placed(&self, failure: RoomFailure) -> CellarFailure {
         let RoomFailure::Overlap { first, second, depth } = &failure else {
             return failure.into();
@@ -290,8 +292,8 @@ impl Prepared {
         self.cellar.host.error(&[&stated.path], message).into()
     }
 
-    /// Runs variants, several at a time; `None` for one that was interrupted. Results that are kept already are read, and
-    /// new ones are kept as soon as they are finished.
+    /// Runs variants, several at a time; the result of a variant that was interrupted is `None`. Results that are
+    /// already in the folder are read, and new results are written as soon as they are finished.
     ///
     /// The observer receives the number of finished variants, from several threads, and may stop the work.
     ///
@@ -369,7 +371,7 @@ impl Prepared {
         Grid::new([0.0; 2], [self.cellar.room.length, self.cellar.room.width], CELL)
     }
 
-    /// Returns the bodies of a run in some poses, from above.
+    /// Returns the outlines of the bodies of a run from above, in the poses that `pose` returns.
     fn outlines(&self, run: &RoomRun, pose: fn(&BodyEnd) -> &[f64; 7]) -> Vec<Convex> {
         let of = |(at, end): (usize, &StackEnd)| {
             let surfaces = &self.plan.models[self.plan.stacks[at].model].surfaces;
@@ -414,8 +416,8 @@ impl Prepared {
         }
     }
 
-    /// Returns the time (s) from which on an aisle is blocked until the end, which is the start of the shaking if stacks
-    /// and columns block it as they stand; `None` if it is passable at the end.
+    /// Returns the time (s) from which an aisle stays blocked until the end; this is the start of the shaking if
+    /// stacks and columns block the aisle as they stand. `None` if the aisle is passable at the end.
     fn blocked_at(
         &self,
         from: [f64; 2],
@@ -503,7 +505,7 @@ pub(crate) fn each<T: Send>(
     pool::map(numbers, work, &|_| ()).into_iter().collect()
 }
 
-/// Resolution (s) of the time from which on an aisle is blocked.
+/// Resolution (s) of the time from which an aisle stays blocked.
 const BLOCKED: f64 = 0.25;
 
 fn drawn(scenario: &Scenario, variant: u32) -> Result<Scenario, CellarFailure> {
@@ -570,7 +572,7 @@ fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
     Ok(all)
 }
 
-/// Sets the coefficient of the friction of a law.
+/// Sets the friction coefficient of a contact law.
 fn set_friction(law: &mut Interface, wanted: f64) {
     match &mut law.friction {
         Friction::Coulomb { coefficient, static_coefficient, .. } => {
@@ -614,17 +616,17 @@ pub struct Case {
 /// A stack in one variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StackCase {
-    /// `false` if its computation failed.
+    /// `false` if the computation of the stack failed.
     pub valid: bool,
-    /// `true` if it had fallen before the run; it does not fall again.
+    /// `true` if the stack had fallen before the run; it does not fall again.
     pub fallen_before: bool,
     /// Time (s) of the first loss of seat, if the stack falls.
     pub fell_at: Option<f64>,
-    /// `true` if it falls after a body of another stack touched it.
+    /// `true` if the stack falls after a body of another stack touched it.
     pub knocked: bool,
     /// Time (s), index of the other stack, and impulse (N·s) of the first contact with another stack.
     pub touched: Option<(f64, usize, f64)>,
-    /// Names of the two bodies of the first contact: its own, and that of the other stack.
+    /// Names of the two bodies of the first contact: the body of this stack, and that of the other stack.
     pub touching: Option<[String; 2]>,
     /// Number of barrels that fell.
     pub barrels: usize,
@@ -632,7 +634,7 @@ pub struct StackCase {
     pub burst: [f64; 3],
     /// Expected loss of wine (m³), under the same assumptions.
     pub wine: [f64; 3],
-    /// Largest horizontal displacement (m) at the end of a body that did not fall.
+    /// Largest horizontal displacement (m), at the end, of any body that did not fall.
     pub moved: f64,
 }
 
@@ -650,16 +652,17 @@ pub struct AisleCase {
     pub first: Option<f64>,
     /// Largest speed (m/s) of a barrel while its middle is above the aisle.
     pub fastest: Option<f64>,
-    /// Share of the area that is covered at the end.
+    /// Share of the area of the aisle that is covered at the end.
     pub covered: f64,
-    /// Time (s) from the start of the shaking from which on no path of the width of a person leads through.
+    /// Time (s), counted from the start of the shaking, from which no path of the width of a person leads through the
+    /// aisle any more.
     pub blocked_at: Option<f64>,
 }
 
 /// A wall or column in one variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObstacleCase {
-    /// `true` if a body struck it.
+    /// `true` if a body struck the wall or column.
     pub struck: bool,
     /// Largest force (N).
     pub peak: f64,

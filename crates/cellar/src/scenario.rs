@@ -140,7 +140,8 @@ pub struct Block {
     pub rows: u32,
     /// Number of stacks in a row, which follow each other along x.
     pub stacks: u32,
-    /// Position (m) of the near left corner of the first stack, as the footprint of the stack is bounded along x and y.
+    /// Position (m) of the near left corner of the bounding rectangle, along x and y, of the footprint of the first
+    /// stack.
     pub first: [f64; 2],
     /// Free distance (m) between the stacks of a row.
     pub spacing: f64,
@@ -424,11 +425,11 @@ impl Cellar {
         self
     }
 
-    /// Returns the cellar with an aftershock: after its motion follows the same motion, or a record in its place, scaled by a
+    /// Returns the cellar with an aftershock: its motion is followed by the same motion, or by a record, scaled by a
     /// factor.
     ///
     /// # Errors
-    /// If the cellar states a sequence, or a scale that is not proportional to the motion.
+    /// If the cellar has a sequence of shocks, or a motion whose scale cannot be multiplied by a factor.
     pub fn with_aftershock(
         mut self,
         factor: f64,
@@ -723,7 +724,7 @@ fn later_shocks(host: &Host) -> Result<Vec<MotionSpec>, ScenarioError> {
     Err(motion.inconsistent("sequence", message))
 }
 
-/// Checks what a stack may state alone, but not in a room.
+/// Rejects settings that a single stack may have, but a stack in a room may not.
 fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     if stated.stack().and_then(|stack| stack.space).is_some_and(|space| space.azimuth != 0.0) {
         let message = "stacks are turned block by block: state `azimuth` in [[block]]".to_owned();

@@ -7,8 +7,8 @@ use crate::island::plus;
 use crate::result::{BodyEnd, Meeting, ObstacleEnd, RoomFrames, RoomRun, StackEnd, Touch};
 use crate::room::Room;
 
-/// Returns a room in which every body starts, at rest and without memory of contacts, where a run has left it. The quiet
-/// between two shocks is skipped.
+/// Returns the room after a run: every body starts in the pose in which the run has left it, at rest and without
+/// contact history. The quiet time between two shocks is skipped.
 #[must_use]
 pub fn after(mut room: Room, run: &RoomRun) -> Room {
     for (placed, stack) in room.stacks.iter_mut().zip(&run.stacks) {
@@ -26,8 +26,8 @@ pub(crate) fn can_continue(run: &RoomRun) -> bool {
     !run.interrupted && run.stacks.iter().all(valid)
 }
 
-/// Returns the runs of the first shock and of the later ones as one run, whose clock runs on without the quiet between
-/// them: every shock starts at the end of the one before.
+/// Returns the runs of the first shock and of the later ones as one run. Its clock continues from shock to shock
+/// without the quiet time between them: every shock starts when the one before ends.
 pub(crate) fn joined(first: RoomRun, later: Vec<RoomRun>) -> RoomRun {
     let mut all = first.clone();
     let mut shocks = vec![first];
@@ -40,7 +40,8 @@ pub(crate) fn joined(first: RoomRun, later: Vec<RoomRun>) -> RoomRun {
     all
 }
 
-/// A stack or a body that has fallen in an earlier shock has fallen at time zero, even if it stands in its place again.
+/// Counts a stack or a body that fell in an earlier shock as fallen at time zero, even if it stands in its place
+/// again.
 fn keep_fallen(before: &RoomRun, run: &mut RoomRun) {
     for (old, new) in before.stacks.iter().zip(&mut run.stacks) {
         if let (Outcome::Collapse { .. }, Some((_, body))) = (&old.outcome, old.lost_seat) {
@@ -91,7 +92,7 @@ fn add(all: &mut RoomRun, next: &RoomRun) {
     }
 }
 
-/// Adds the end of a body of a stack that stood before the shock, or did not.
+/// Adds the end of a body in a shock; `stood` is `true` if its stack stood before the shock.
 fn add_body(all: &mut BodyEnd, next: &BodyEnd, from: f64, stood: bool) {
     let (one, two) = (all.fate, next.fate);
     let left = two.left_seat.map(|(time, loss, heading)| (from + time, loss, heading));

@@ -35,13 +35,13 @@ section! {
     body: Option<String> = Kind::Text, Default::Derived("all bodies of the stack");
     /// Displacement along x, y and z of the room.
     by: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Value("[\"0 m\", \"0 m\", \"0 m\"]");
-    /// Turn, counterclockwise from above; of a body about its center of mass, of a stack about the middle of its
+    /// Turn, counterclockwise from above: a body turns about its center of mass, a stack about the middle of its
     /// footprint.
     turn: f64 = Kind::Quantity(&[Dimension::ANGLE], Range::between(-7.0, 7.0)), Default::Value("\"0 deg\"");
 }
 
 table! {
-    /// Places from which bodies start, such as surveyed after an earthquake. The others start as built.
+    /// Places from which bodies start, such as those surveyed after an earthquake. All other bodies start as built.
     pub static START = "start";
     /// CSV file, relative to this file, with a row for each stack or body: columns `stack` and `body` (empty: the whole
     /// stack), and shifts `dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`; or poses in the frame of the stack `x (m)`,
@@ -108,15 +108,16 @@ impl StartSpec {
 pub(crate) struct StackStart {
     /// Poses of all bodies.
     pub(crate) poses: Option<Vec<[f64; 7]>>,
-    /// Shifts after that.
+    /// Shifts from these poses, in this order; without poses, from the poses at rest.
     pub(crate) shifts: Vec<Shift>,
-    /// Path in the scenario of what was stated last.
+    /// Path, in the scenario, of the last entry that moves the stack.
     pub(crate) path: String,
-    /// Line of the file of what was stated last.
+    /// Line of the file of places with the last row that moves the stack; `None` if the last entry is in the
+    /// scenario.
     pub(crate) line: Option<usize>,
 }
 
-/// Returns where every stack starts that does not start as built, by the name of the stack.
+/// Returns, by the name of the stack, where each stack starts that does not start as built.
 ///
 /// # Errors
 /// If the file cannot be read, or a stack or a body is unknown.
@@ -287,7 +288,7 @@ impl Row<'_> {
     }
 }
 
-/// Poses of the bodies of a stack, and the line of the last.
+/// Poses of the bodies of a stack, and the line of the file with the last of them.
 type Posed = (BTreeMap<usize, [f64; 7]>, usize);
 
 /// Reads a file of shifts or poses; an error states the line.

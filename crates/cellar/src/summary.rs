@@ -48,8 +48,9 @@ described! {
         /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
         /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
         pub inspection: Vec<String>,
-        /// The shocks of a sequence, in order; empty for a single shock, and if no run counts. All other values of a sequence are those of all
-        /// its shocks in one: their times run on without the quiet between them.
+        /// The shocks of a sequence, in order; empty for a single shock, and if no run is counted. For a sequence,
+        /// all other values are those of all shocks together: times continue from shock to shock, without the quiet
+        /// time between them.
         pub shocks: Vec<ShockAnswer>,
         /// The run that is shown.
         pub shown: ShownRoom,
@@ -104,22 +105,26 @@ described! {
         pub by_themselves: f64 as "1",
         /// Mean number of stacks that are knocked over: a body of another stack touched them before they lost a seat.
         pub knocked_over: f64 as "1",
-        /// Share of the stacks standing before the run that fall by themselves, over all variants; its interval treats a
-        /// room as one draw.
+        /// Share of the stacks standing before the run that fall by themselves, over all variants; its interval
+        /// treats each room as one observation.
         pub share_by_themselves: Mean,
-        /// Share of stacks that are knocked over, likewise.
+        /// Share of the stacks standing before the run that are knocked over, over all variants; its interval treats
+        /// each room as one observation.
         pub share_knocked_over: Mean,
-        /// How far a collapse spreads: stacks that fall, for each that falls by itself; null if none falls by itself.
+        /// How far a collapse spreads: number of stacks that fall, divided by the number that fall by themselves;
+        /// null if none falls by itself.
         pub spread: Option<f64> as "1",
         /// Distribution of the number of stacks that fall.
         pub stacks_fallen: Range as "1",
         /// Distribution of the number of barrels that fall.
         pub barrels_fallen: Range as "1",
-        /// Expected number of barrels that burst, if few, as assumed, or many burst at a given height of fall.
+        /// Expected number of barrels that burst, under three assumptions on the share that bursts at a given height
+        /// of fall: low, central and high.
         pub burst: [f64; 3] as "1",
-        /// Expected loss of wine, under the same assumptions.
+        /// Expected loss of wine, under the three assumptions of `burst`.
         pub wine_lost: [f64; 3] as "m3",
-        /// Lower and upper cost of the barrels that burst and of their wine, under the central assumption.
+        /// Lower and upper estimate of the cost of the barrels that burst and of their wine, under the central
+        /// assumption on how many burst.
         pub cost: [f64; 2] as "US$",
         /// Largest force on a wall or column in any variant; null without walls and columns.
         pub peak_force: Option<f64> as "N",
@@ -139,13 +144,13 @@ described! {
     pub struct RowAnswer {
         /// Number of the row.
         pub row: u32,
-        /// Number of its stacks.
+        /// Number of stacks in the row.
         pub stacks: u32,
         /// Variants in which the first stack to fall is in this row.
         pub starts: Count,
-        /// Mean number of its stacks that fall by themselves.
+        /// Mean number of stacks of the row that fall by themselves.
         pub by_themselves: f64 as "1",
-        /// Mean number of its stacks that are knocked over.
+        /// Mean number of stacks of the row that are knocked over.
         pub knocked_over: f64 as "1",
     }
 
@@ -158,27 +163,29 @@ described! {
         pub row: u32,
         /// Number in the row.
         pub number: u32,
-        /// Position of its middle.
+        /// Position of the middle of the stack.
         pub at: [f64; 2] as "m",
-        /// Variants in which it falls.
+        /// Variants in which the stack falls.
         pub falls: Count,
-        /// Variants in which it falls by itself.
+        /// Variants in which the stack falls by itself.
         pub by_itself: Count,
-        /// Variants in which it is knocked over.
+        /// Variants in which the stack is knocked over.
         pub knocked_over: Count,
-        /// Distribution of the time of its first loss of seat.
+        /// Distribution of the time of the first loss of seat of the stack.
         pub falls_at: Option<Range> as "s",
-        /// The stack that touches it first in most variants; null if none does.
+        /// Name of the other stack that most often touches this stack first; null if none touches it.
         pub touched_by: Option<String>,
-        /// Distribution of the time of its first contact with another stack.
+        /// Distribution of the time of the first contact with another stack.
         pub touched_at: Option<Range> as "s",
-        /// Distribution of the impulse of other stacks on it until it lost a seat, or over the whole run if it stands.
+        /// Distribution of the impulse that other stacks exert on the stack until it lost a seat, or over the whole
+        /// run if it stands.
         pub impulse: Option<Range> as "N s",
-        /// Mean number of barrels that fall from it.
+        /// Mean number of barrels that fall from the stack.
         pub barrels_fallen: f64 as "1",
-        /// Expected loss of its wine, under the central assumption.
+        /// Expected loss of the wine of the stack, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
-        /// Distribution of its largest horizontal movement at the end, in the variants in which it stands.
+        /// Distribution of the largest horizontal movement of a body of the stack at the end, over the variants in
+        /// which the stack stands.
         pub moved: Option<Range> as "m",
     }
 
@@ -191,11 +198,11 @@ described! {
         pub entered: Count,
         /// Distribution of the time of the first barrel in the aisle.
         pub first_barrel: Option<Range> as "s",
-        /// Variants in which no path of 0.6 m leads through the aisle at the end.
+        /// Variants in which no path 0.6 m wide leads through the aisle at the end.
         pub blocked: Count,
-        /// Distribution of the time from which on the aisle is blocked.
+        /// Distribution of the time from which the aisle stays blocked.
         pub blocked_at: Option<Range> as "s",
-        /// Distribution of the share of its area that is covered at the end.
+        /// Distribution of the share of the area of the aisle that is covered at the end.
         pub covered: Range as "1",
         /// Distribution of the largest speed of a barrel in the aisle.
         pub fastest: Option<Range> as "m/s",
@@ -206,7 +213,7 @@ described! {
     pub struct PlaceAnswer {
         /// Name of the place.
         pub name: String,
-        /// Variants in which a path of 0.6 m leads from the place to a door at the end; null without doors.
+        /// Variants in which a path 0.6 m wide leads from the place to a door at the end; null without doors.
         pub leads_out: Option<Count>,
     }
 
@@ -215,11 +222,12 @@ described! {
     pub struct ObstacleAnswer {
         /// Name of the wall or column.
         pub name: String,
-        /// Variants in which a body strikes it.
+        /// Variants in which a body strikes the wall or column.
         pub struck: Count,
-        /// Distribution of the largest force, in the variants in which a body strikes it.
+        /// Distribution of the largest force, over the variants in which a body strikes the wall or column.
         pub peak: Option<Range> as "N",
-        /// Distribution of the impulse over the whole run, bodies that lean on it included, likewise.
+        /// Distribution of the impulse over the whole run, including that of bodies that lean on the wall or column,
+        /// over the variants in which a body strikes it.
         pub impulse: Option<Range> as "N s",
     }
 
@@ -238,8 +246,8 @@ described! {
         pub stood_in: u32,
         /// Variants in which all stacks that stand before the shock survive it, out of `stood_in`.
         pub all_survive: Count,
-        /// Share of the stacks standing before the shock that survive it, over the variants in which one stands; its
-        /// interval treats a room as one draw. Null if none stands.
+        /// Share of the stacks standing before the shock that survive it, over the variants in which at least one
+        /// stands; its interval treats each room as one observation. Null if no stack stands in any variant.
         pub share_survive: Option<Mean>,
         /// Mean number of stacks that fall by themselves.
         pub by_themselves: f64 as "1",
@@ -249,7 +257,8 @@ described! {
         pub barrels_fallen: Range as "1",
         /// For each aisle, the variants in which it is blocked after the shock.
         pub blocked: Vec<Count>,
-        /// Variants in which a body still moves when the shock ends: the next shock starts from its place, at rest.
+        /// Variants in which a body still moves when the shock ends; in the next shock, the body starts from the
+        /// place that it had reached, at rest.
         pub still_moving: Count,
         /// The stacks, in the order of the plan.
         pub stacks: Vec<ShockStack>,
@@ -262,13 +271,13 @@ described! {
     pub struct ShockStack {
         /// Name of the stack.
         pub name: String,
-        /// Variants in which it stands before the shock.
+        /// Variants in which the stack stands before the shock.
         pub stood: Count,
-        /// Variants in which it falls by itself.
+        /// Variants in which the stack falls by itself.
         pub by_itself: Count,
-        /// Variants in which it is knocked over.
+        /// Variants in which the stack is knocked over.
         pub knocked_over: Count,
-        /// Mean number of barrels that fall from it.
+        /// Mean number of barrels that fall from the stack.
         pub barrels_fallen: f64 as "1",
     }
 
@@ -288,7 +297,8 @@ described! {
         /// Time in the record of the shock at which the shock ends: all bodies rest, its duration is over, or it was
         /// stopped.
         pub end_time: f64 as "s",
-        /// Time that the run leaves of the motion without all stacks at rest; 0 if it leaves none.
+        /// Time by which the run ends before the motion of the shock while stacks still move; 0 if the run covers the
+        /// motion or all stacks are at rest.
         pub cut: f64 as "s",
     }
 
@@ -301,8 +311,8 @@ described! {
         pub typical: bool,
         /// Time in the record at which the run ends: all bodies rest, its duration is over, or it was stopped.
         pub end_time: f64 as "s",
-        /// Time that the run leaves of the motion without all stacks at rest, the longest of a sequence; 0 if it leaves
-        /// none.
+        /// Time by which the run ends before the motion while stacks still move, the longest of a sequence; 0 if the
+        /// run covers the motion or all stacks are at rest.
         pub cut: f64 as "s",
         /// Row of the first stack that falls.
         pub starts: Option<u32>,
@@ -316,7 +326,7 @@ described! {
         pub barrels_fallen: u32,
         /// The stacks, in the order of the plan.
         pub stacks: Vec<ShownStack>,
-        /// The aisles: the times from which on they are blocked; null for an aisle that is passable at the end.
+        /// For each aisle, the time from which it stays blocked; null for an aisle that is passable at the end.
         pub blocked_at: Vec<Option<f64>> as "s",
     }
 
@@ -325,22 +335,22 @@ described! {
     pub struct ShownStack {
         /// Name of the stack.
         pub name: String,
-        /// What happens to it.
+        /// What happens to the stack.
         pub fate: &'static str ["stands", "falls-by-itself", "knocked-over", "fallen-before"],
-        /// Time of its first loss of seat.
+        /// Time of the first loss of seat of the stack.
         pub falls_at: Option<f64> as "s",
-        /// Time of its first contact with another stack.
+        /// Time of the first contact with another stack.
         pub touched_at: Option<f64> as "s",
         /// Name of the other stack.
         pub touched_by: Option<String>,
-        /// Its body in this contact, and the body of the other stack.
+        /// Names of the bodies in the first contact: that of this stack, and that of the other stack.
         pub bodies: Option<[String; 2]>,
-        /// Impulse of other stacks on it until it lost a seat, or over the whole run if it stands; null if it lost a seat
-        /// before it was touched.
+        /// Impulse that other stacks exert on the stack until it lost a seat, or over the whole run if it stands;
+        /// null if it lost a seat before it was touched.
         pub impulse: Option<f64> as "N s",
-        /// Number of barrels that fell from it.
+        /// Number of barrels that fell from the stack.
         pub barrels_fallen: usize,
-        /// Largest horizontal movement at the end of a body that did not fall.
+        /// Largest horizontal movement, at the end, of any body that did not fall.
         pub moved: f64 as "m",
     }
 }
@@ -577,7 +587,7 @@ pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<Sh
     grounds.enumerate().map(one).collect()
 }
 
-/// Returns the time (s) that a run leaves of its motion without all stacks at rest.
+/// Returns the time (s) by which a run ends before its motion while stacks still move; otherwise zero.
 fn cut(ground: &barrelstack_space::Ground, case: &Case) -> f64 {
     let left = ground.end() - case.end_time;
     if case.cut_short && left > CUT { left } else { 0.0 }
@@ -588,7 +598,7 @@ pub(crate) fn barrels(case: &Case) -> usize {
     case.stacks.iter().map(|stack| stack.barrels).sum()
 }
 
-/// Returns the number of stacks that stand before a case.
+/// Returns the number of stacks that stand before the run of a case.
 fn stood(case: &Case) -> u32 {
     u32::try_from(case.stacks.iter().filter(|stack| !stack.fallen_before).count())
         .unwrap_or(u32::MAX)

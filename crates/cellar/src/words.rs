@@ -56,12 +56,14 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
     )
 }
 
-/// Returns the longest time (s) that the run that is shown leaves of the motion of a shock; `None` if it covers all.
+/// Returns the longest time (s) by which the run that is shown ends before the motion of a shock while stacks still
+/// move; `None` if there is no such time.
 pub(crate) fn missing(summary: &CellarSummary) -> Option<f64> {
     Some(summary.shown.cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the longest time (s) that a run leaves of the motion of a shock; `None` if it covers all.
+/// Returns the longest time (s) by which a run ends before the motion of a shock while stacks still move; `None` if
+/// there is no such time.
 pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> Option<f64> {
     let cut = shocks.filter_map(|shock| Some(shock.shown.as_ref()?.cut)).fold(0.0, f64::max);
     Some(cut).filter(|cut| *cut > 0.0)
@@ -94,7 +96,7 @@ fn but_some_fall(summary: &CellarSummary) -> String {
     }
 }
 
-/// Returns the result of the run that is shown, in the sentence that people repeat.
+/// Returns the result of the run that is shown, in one sentence.
 pub fn headline(summary: &CellarSummary) -> String {
     let shown = &summary.shown;
     if !summary.shocks.is_empty() {
@@ -278,8 +280,8 @@ fn still_moving(shock: &ShockAnswer, of: u32, last: bool) -> String {
     format!(" In {} a body still moves when it ends{next}.", share(&shock.still_moving, of))
 }
 
-/// Returns whether what still stands after the first shock survives the second, whose strength is described, in one
-/// sentence; `None` if the summary has no second shock or the work was stopped.
+/// Returns a sentence that states how many of the stacks that stand after the first shock survive the second, whose
+/// strength `strength` describes; `None` if the summary has no second shock or the work was stopped.
 pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
     let (shock, of) = (summary.shocks.get(1)?, summary.counted);
     if summary.unfinished.is_some() || of == 0 {

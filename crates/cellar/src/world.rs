@@ -1,4 +1,4 @@
-//! Everything of a room that does not change during its run.
+//! Data of a room that do not change during its run.
 
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ pub(crate) struct ObstacleOf {
     pub(crate) step: f64,
 }
 
-/// Everything of a room that does not change during its run.
+/// Data of a room that do not change during its run.
 pub(crate) struct World<'a> {
     pub(crate) room: &'a Room,
     pub(crate) stacks: Vec<StackOf<'a>>,
@@ -167,7 +167,7 @@ pub(crate) const PRESSED: f64 = 5.0 * ALLOWED;
 /// Largest depth (m) by which a shift may deepen the deepest overlap of a stack at rest.
 const DEEPENED: f64 = 0.5 * ALLOWED;
 
-/// Moves the bodies of a stack to the poses from which it starts, at rest and without memory of contacts.
+/// Moves the bodies of a stack to the poses from which it starts, at rest and without contact history.
 fn start_from(
     state: &mut State<Spatial>,
     placed: &Placed,
@@ -175,7 +175,7 @@ fn start_from(
 ) -> Result<(), RoomFailure> {
     let name = || placed.name.clone();
     let deepest = |state: &State<Spatial>| {
-        // The list of contact elements is that of the poses before.
+        // The list of contact elements still belongs to the previous poses.
         let (mut state, mut scratch) = (state.clone(), Scratch::new(&stack.model));
         state.contact_elements.make_exhaustive(&stack.model, &state.poses);
         evaluate(&stack.model, &state, &mut scratch);

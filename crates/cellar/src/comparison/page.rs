@@ -14,10 +14,10 @@ use crate::plan::liters;
 use crate::sample::CELL;
 use crate::words::span;
 
-/// Number of sentences that support the headline before the others, which are collapsed on screen.
+/// Number of supporting sentences that are always shown below the headline; the others are collapsed on screen.
 const OPENING: usize = 3;
 
-/// A row of a table: a layout with its pair, or a change that was not run.
+/// A row of a table: a layout with its comparison to the first one, or a change that was not run.
 enum Row<'a> {
     Run(&'a LayoutAnswer, Option<&'a LayoutPair>),
     LeftOut(&'a LeftOut),
@@ -31,7 +31,7 @@ impl Row<'_> {
         })
     }
 
-    /// Returns a cell on a layout with a valid result; missing for all others.
+    /// Returns the cell of a layout with a valid result; `Cell::Missing` for all other rows.
     fn of(&self, cell: impl FnOnce(&LayoutAnswer) -> Cell) -> Cell {
         match self {
             Self::Run(one, _) if one.counted > 0 => cell(one),
@@ -39,7 +39,7 @@ impl Row<'_> {
         }
     }
 
-    /// Returns a cell on the pair of a layout; missing without pairs.
+    /// Returns a cell of the comparison of a layout to the first one; `Cell::Missing` if no variant is paired.
     fn paired(&self, cell: impl FnOnce(&LayoutPair) -> Cell) -> Cell {
         match self {
             Self::Run(_, Some(pair)) if pair.variants > 0 => cell(pair),
@@ -47,7 +47,7 @@ impl Row<'_> {
         }
     }
 
-    /// Returns the reason why there is no result; missing where there is one.
+    /// Returns a cell with the reason why there is no result; `Cell::Missing` if there is a result.
     fn reason(&self) -> Cell {
         match self {
             Self::Run(one, _) if one.counted > 0 => Cell::text(""),
@@ -57,7 +57,8 @@ impl Row<'_> {
     }
 }
 
-/// Returns the layouts by the share of their barrels that falls, and then the changes that were not run.
+/// Returns the layouts in the order of the share of their barrels that falls, followed by the changes that were not
+/// run.
 fn rows(found: &CellarComparison) -> Vec<Row<'_>> {
     let run = found.ranked().into_iter().map(|(one, pair)| Row::Run(one, pair));
     run.chain(found.left_out.iter().map(Row::LeftOut)).collect()

@@ -1,4 +1,5 @@
-//! The usual changes of a room, each where it fits: what would change the loss and its spread.
+//! The usual changes of a room that may reduce the loss and the spread of a collapse; changes that do not fit are
+//! listed with the reason.
 
 use barrelstack::RunFailure;
 use barrelstack::device::WalkingStops;
@@ -91,7 +92,7 @@ fn spaced(cellar: &Cellar) -> (String, Result<Cellar, String>) {
     }
 }
 
-/// `true` if no stack has levels above another.
+/// `true` if every stack has a single level.
 fn is_low(cellar: &Cellar) -> bool {
     cellar.models.iter().all(|model| model.stack().is_none_or(|stack| stack.levels < 2))
 }
@@ -114,13 +115,13 @@ fn stopped(cellar: &Cellar) -> Result<Vec<String>, String> {
     if cellar.stated().stack().is_some_and(|stack| stack.devices.walking_stop.is_on()) {
         return Err("the racks have stops already".to_owned());
     }
-    // The last candidate holds racks both ways.
+    // The last candidate holds racks in both horizontal directions.
     let stops = WalkingStops::WORDS.candidates.last();
     let overrides = stops.map(|setting| setting.overrides).unwrap_or_default();
     Ok(overrides.iter().map(|&change| change.to_owned()).collect())
 }
 
-/// Returns the changes that take one level from every stack.
+/// Returns the changes that remove one level from every stack.
 fn lower(cellar: &Cellar) -> Result<Vec<String>, String> {
     let own = cellar.stated().stack().map_or(0, |stack| stack.levels);
     let mut changes = Vec::new();

@@ -61,7 +61,7 @@ fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
     }
 }
 
-/// Returns the reason why two layouts have no pairs; `None` if they have.
+/// Returns the reason why no variants of two layouts can be paired; `None` if there are pairs.
 fn unpaired(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Option<String> {
     (pair.variants == 0).then(|| unresolved(first, second))
 }
@@ -92,7 +92,7 @@ fn compared(second: &str, first: &str) -> String {
     format!("{}, compared with \"{first}\"", capital(second))
 }
 
-/// Returns the clause on the barrels that fall in a layout in place of those in the first.
+/// Returns the clause that compares the barrels that fall in a layout with those that fall in the first layout.
 fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> String {
     let Change { first: from, second: to, difference, .. } = pair.barrels_fallen;
     if from == 0.0 && to == 0.0 {
@@ -120,7 +120,7 @@ fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Str
     )
 }
 
-/// Returns a number of barrels that fall, with words behind the number.
+/// Returns a clause on the number of barrels that fall; `of` follows the number, such as "of 16 ".
 fn fall(barrels: f64, of: &str) -> String {
     let shown = amount(barrels);
     if shown == "1" && of.is_empty() {
@@ -185,7 +185,8 @@ pub(super) fn estimate(one: &Estimate) -> String {
     )
 }
 
-/// Returns the sentences that support the headline. Stopped work supports nothing.
+/// Returns the sentences that support the headline. If the work was stopped, only the changes that were not run are
+/// listed.
 pub fn sentences(found: &CellarComparison) -> Vec<String> {
     let mut all = Vec::new();
     if found.unfinished.is_empty() {
