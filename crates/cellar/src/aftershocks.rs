@@ -241,11 +241,11 @@ fn headline(summary: &AftershockSummary) -> String {
     let stood = first.shock.stood;
     if of == 1 {
         return format!(
-            "Of {stacks} stacks {stood} stand after the main shock, in one run. Of these, {clauses}.{cut}"
+            "Of {stacks} stacks, {stood} stand after the main shock, in one run. Of these, {clauses}.{cut}"
         );
     }
     format!(
-        "Of {stacks} stacks {stood:.1} stand after the main shock on average. Of these, {clauses}.{cut}"
+        "Of {stacks} stacks, {stood:.1} stand after the main shock on average. Of these, {clauses}.{cut}"
     )
 }
 
@@ -277,7 +277,7 @@ pub fn sentences(summary: &AftershockSummary) -> Vec<String> {
     let first: Vec<&String> =
         summary.inspection.iter().take(LISTED).map(|margin| &margin.name).collect();
     if !first.is_empty() {
-        all.push(format!("Inspect first, where they still stand: {}.", listed(first)));
+        all.push(format!("Stacks to inspect first, if they still stand: {}.", listed(first)));
     }
     all.extend(failed(summary.broken.len()));
     all
@@ -286,8 +286,9 @@ pub fn sentences(summary: &AftershockSummary) -> Vec<String> {
 /// Returns the tables of the strengths and of the stacks.
 pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     let strengths = Table::of(
-        "Aftershocks after the same main shock. Numbers of stacks are means over the variants; the share of the stacks that \
-         survive is that of the variants in which one stands after the main shock, with its 95 % interval.",
+        "Aftershocks after the same main shock. Numbers of stacks are means over the variants; the share of the \
+         stacks that survive is taken over the variants in which at least one stack stands after the main shock, \
+         with its 95 % interval.",
         &summary.aftershocks,
         &[
             ("strength", "of the motion", &|one| Cell::text(one.factor.to_string())),

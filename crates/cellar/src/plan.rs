@@ -199,12 +199,12 @@ impl Plan {
             .collect();
         for place in places.iter().filter(|place| place.leads_out == Some(false)) {
             findings.push(format!(
-                "no path of {PASSAGE} m leads from the place \"{}\" to a door",
+                "no path {PASSAGE} m wide leads from the place \"{}\" to a door",
                 place.name
             ));
         }
         if cellar.doors.is_empty() && !cellar.places.is_empty() {
-            findings.push("there are places of people, but no door to leave by".to_owned());
+            findings.push("there are places of people, but no door by which to leave".to_owned());
         }
         let wine: f64 = stacks.iter().map(|one| models[one.model].wine).sum();
         let barrels = cellar.barrels();
@@ -297,7 +297,7 @@ impl PlanSummary {
         }
         for place in self.places.iter().filter(|place| place.leads_out == Some(true)) {
             all.push(format!(
-                "A path of {PASSAGE} m leads from the place \"{}\" to a door.",
+                "A path {PASSAGE} m wide leads from the place \"{}\" to a door.",
                 place.name
             ));
         }
@@ -462,7 +462,7 @@ fn walls(
             1 => ", as does 1 more".to_owned(),
             more => format!(", as do {more} more"),
         };
-        let border = if cellar.room.walls { "wall" } else { "border of the room" };
+        let border = if cellar.room.walls { "wall" } else { "edge of the room" };
         let block = stacks[at].block + 1;
         let message = format!(
             "stack {} reaches {} into the {side} {border}{more}: move the block, take fewer stacks, or enlarge the room",

@@ -122,8 +122,8 @@ pub fn document(answer: &Answer) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     let caption = format!(
         "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades (barrels): share \
-         of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m. Racks are not drawn; they \
-         count in the table of aisles.",
+         of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m. Racks are not \
+         drawn, but they count as obstacles in the table of aisles.",
         shown_run(summary)
     );
     let mut blocks = vec![
@@ -229,10 +229,11 @@ pub(crate) fn count(count: &Count) -> Cell {
 fn aisles(summary: &CellarSummary) -> Table {
     Table::of(
         format!(
-            "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which it happens, \
-             or all if they are fewer than {FEW}; shares of variants have their 95 % interval. A barrel is in the aisle \
-             when its center is above it. Area counts as covered by any body above it, at any height; an aisle is \
-             blocked if no path of 0.6 m leads through it."
+            "Times are counted from the start of the shaking. Ranges cover 5 to 95 % of the variants in which the \
+             event happens, or all of these variants if they are fewer than {FEW}; shares of variants are given with \
+             their 95 % intervals. A barrel is in the aisle \
+             when its center is above it. Area counts as covered if any body is above it, at any height; an aisle is \
+             blocked if no path 0.6 m wide leads through it."
         ),
         &summary.aisles,
         &[
@@ -257,7 +258,8 @@ fn aisles(summary: &CellarSummary) -> Table {
 
 fn places(summary: &CellarSummary) -> Table {
     Table::of(
-        "Share of the variants in which a path of 0.6 m leads from a place to a door at the end, with its 95 % interval.",
+        "Share of the variants in which a path 0.6 m wide leads from a place to a door at the end, with its 95 % \
+         interval.",
         &summary.places,
         &[
             ("place", "", &|place| Cell::text(&place.name)),
@@ -301,8 +303,9 @@ fn contacts(touched: &[&ShownStack]) -> Table {
 /// Returns the table of the shocks of a sequence.
 pub fn shocks(summary: &CellarSummary) -> Table {
     Table::of(
-        "Shocks of the sequence. Every shock starts where the one before has left the bodies, at rest. Numbers of stacks are means \
-         over the variants; shares of variants have their 95 % interval.",
+        "Shocks of the sequence. Every shock starts from the poses in which the previous shock has left the bodies, \
+         at rest. Numbers of stacks are means over the variants; shares of variants are given with their 95 % \
+         intervals.",
         &summary.shocks,
         &[
             ("shock", "", &|one| Cell::text(one.shock.to_string())),
@@ -330,9 +333,9 @@ pub fn shocks(summary: &CellarSummary) -> Table {
 pub fn stacks(summary: &CellarSummary) -> Table {
     Table::of(
         format!(
-            "All stacks, {}. Shares have their 95 % interval; times are counted from the start of the shaking. \
-             Movement is the largest of a body that did not fall, as the median of the variants in which the stack \
-             stands: inspect the largest first.",
+            "All stacks, {}. Shares are given with their 95 % intervals; times are counted from the start of the \
+             shaking. Movement is the largest displacement of any body that did not fall (median over the variants \
+             in which the stack stands). Inspect the stacks with the largest movement first.",
             crate::words::plural(summary.counted, "variant")
         ),
         &summary.stacks,
@@ -354,12 +357,13 @@ pub fn stacks(summary: &CellarSummary) -> Table {
 
 fn rows(summary: &CellarSummary) -> Table {
     Table::of(
-        "Rows: the share of variants in which the first stack that falls is in the row, and the mean number of stacks.",
+        "Rows: the share of variants in which the first stack that falls is in the row, and the mean numbers of \
+         stacks that fall by themselves and that are knocked over.",
         &summary.rows,
         &[
             ("row", "", &|row| Cell::text(row.row.to_string())),
             ("stacks", "", &|row| Cell::text(row.stacks.to_string())),
-            ("starts it", "", &|row| count(&row.starts)),
+            ("collapse starts here", "", &|row| count(&row.starts)),
             ("fall by themselves", "", &|row| Cell::Measured(row.by_themselves, 1)),
             ("knocked over", "", &|row| Cell::Measured(row.knocked_over, 1)),
         ],
@@ -372,9 +376,10 @@ fn obstacles(summary: &CellarSummary) -> Table {
     let median =
         |range: Option<Range>, scale: f64| Cell::number(range.map(|one| scale * one.p50), 2);
     Table::of(
-        "Forces on walls and columns, in the variants in which a body strikes them: Forces last some milliseconds and grow \
-         with the assumed stiffness of the contact. Impulses are summed over the whole run and include bodies that lean \
-         on the wall, so they grow with the length of the run. Neither is a design load by itself.",
+        "Forces on walls and columns, in the variants in which a body strikes them. Impact forces last a few \
+         milliseconds and grow with the assumed stiffness of the contact. Impulses are summed over the whole run and \
+         include those of bodies that lean on the wall, so they grow with the length of the run. Neither the forces \
+         nor the impulses are design loads by themselves.",
         &summary.obstacles,
         &[
             ("wall or column", "", &|one| Cell::text(&one.name)),

@@ -130,7 +130,7 @@ pub fn headline(summary: &CellarSummary) -> String {
         return sentence(summary, &format!("the only stack falls{}.", blocked(summary)));
     }
     let starts = shown.starts.filter(|_| summary.plan.rows > 1);
-    let starts = starts.map_or(String::new(), |row| format!("row {row} starts it: "));
+    let starts = starts.map_or(String::new(), |row| format!("the collapse starts in row {row}: "));
     let stood = if before { " that stood before the shaking" } else { "" };
     let fall = falling(own, &format!("{all} stacks{stood}"), knocked);
     sentence(summary, &format!("{starts}{fall}{}.", blocked(summary)))
@@ -244,8 +244,8 @@ pub(crate) fn survival(shock: &ShockAnswer, of: u32) -> String {
     }
     let survive = shock.share_survive.unwrap_or(Mean { mean: 0.0, interval: [0.0, 1.0] });
     format!(
-        "where any stack stands before it, all of them survive in {}. On average {:.1} stand before it, of which {:.1} fall by themselves and {:.1} \
-         are knocked over; {} survive; {fallen}",
+        "if stacks stand before it, all of them survive in {}. On average, {:.1} stand before it, of which {:.1} fall \
+         by themselves and {:.1} are knocked over; {} survive; {fallen}",
         survived(shock),
         shock.stood,
         shock.by_themselves,
@@ -276,8 +276,12 @@ fn still_moving(shock: &ShockAnswer, of: u32, last: bool) -> String {
     if shock.still_moving.of_variants == 0 {
         return String::new();
     }
-    let next = if last { "" } else { "; the next shock starts from its place, at rest" };
-    format!(" In {} a body still moves when it ends{next}.", share(&shock.still_moving, of))
+    let next = if last {
+        ""
+    } else {
+        "; it starts the next shock from the place that it has reached, at rest"
+    };
+    format!(" In {}, a body still moves when the shock ends{next}.", share(&shock.still_moving, of))
 }
 
 /// Returns a sentence that states how many of the stacks that stand after the first shock survive the second, whose
@@ -297,15 +301,15 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
         let shown = shock.shown.as_ref()?;
         let left = shown.stood - shown.by_themselves - shown.knocked_over;
         return Some(format!(
-            "Of {stacks} stacks {} stand after the main shock and {left} after {strength}, in one run; a share needs several \
-             variants.{cut}",
+            "Of {stacks} stacks, {} stand after the main shock and {left} after {strength}, in one run; shares can \
+             be stated only for several variants.{cut}",
             shown.stood
         ));
     }
     let survive = shock.share_survive?;
     Some(format!(
-        "Of {stacks} stacks {:.1} stand after the main shock on average. Where any stands, {strength} is survived by all of \
-         them in {}, and on average by {}.{cut}",
+        "Of {stacks} stacks, {:.1} stand after the main shock on average. If stacks stand after the main shock, all \
+         of them survive {strength} in {}; on average, {} of them survive.{cut}",
         shock.stood,
         survived(shock),
         mean_share(&survive)
@@ -397,13 +401,16 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
         ));
     }
     if let Some(spread) = room.spread.filter(|_| plan.stacks > 1) {
-        all.push(format!("For each stack that falls by itself, {spread:.1} fall in all."));
+        all.push(format!(
+            "For each stack that falls by itself, {spread:.1} stacks fall in total, including that stack."
+        ));
     }
     if room.barrels_fallen.most > 0.0 {
         let [few, central, many] = room.wine_lost.map(liters);
         let [least, most] = room.cost.map(|dollars| measured(dollars, 0));
         all.push(format!(
-            "Of {} barrels {} fall. About {central} of {} of wine are lost ({few} if few of the fallen barrels burst, \
+            "Of {} barrels, {} fall. About {central} of {} of wine are lost ({few} if few of the fallen barrels \
+             burst, \
              {many} if many do); burst barrels and wine are worth US${least} to US${most}.",
             plan.barrels,
             span(&room.barrels_fallen, *of, 0, "").trim_end(),
@@ -414,7 +421,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             all.push(format!(
-                "A path of 0.6 m leads from the place \"{}\" to a door in {}.",
+                "A path 0.6 m wide leads from the place \"{}\" to a door in {}.",
                 place.name,
                 share(count, *of)
             ));
@@ -427,7 +434,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }) && let Some(peak) = &most.peak
     {
         all.push(format!(
-            "The largest force on a wall or column is {:.0} kN for an instant, on the {}; it grows with the assumed \
+            "The largest momentary force on a wall or column is {:.0} kN, on the {}; it grows with the assumed \
              stiffness of the contact.",
             1e-3 * peak.most,
             most.name
@@ -435,7 +442,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }
     if !summary.inspection.is_empty() && room.some_fall.of_variants > 0 {
         let first: Vec<&String> = summary.inspection.iter().take(5).collect();
-        all.push(format!("Inspect first, where they still stand: {}.", listed(first)));
+        all.push(format!("Stacks to inspect first, if they still stand: {}.", listed(first)));
     }
     all.extend(failed(summary.broken.len()));
     all
@@ -456,7 +463,9 @@ fn falls(summary: &CellarSummary) -> String {
     let all = standing(summary);
     if *of == 1 {
         let run = if summary.shown.variant == 0 { "as stated" } else { "one variant" };
-        return format!("This is one run of the room, {run}; a share needs several variants.");
+        return format!(
+            "This is a single run of the room ({run}); shares can be stated only for several variants."
+        );
     }
     if all == 0 {
         return "All stacks had fallen before the run, so that none falls in it.".to_owned();
@@ -497,8 +506,8 @@ fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     let fast =
         aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
     format!(
-        "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end {} of its area are \
-         covered, and it is blocked in {}.",
+        "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end, {} of the area of \
+         the aisle is covered, and the aisle is blocked in {}.",
         aisle.name,
         span(first, aisle.entered.of_variants, 1, "s"),
         span_of_shares(&aisle.covered, of),

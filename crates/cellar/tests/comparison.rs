@@ -203,7 +203,7 @@ fn other_motions_are_said_first_and_other_draws_beside_the_variants() {
     layouts[1].cellar = cellar(&["motion.scale.factor=2.6", "imperfections.seed=7"]);
     let found = found(&layouts);
     assert!(found.headline.starts_with("The motions differ"), "{}", found.headline);
-    assert!(found.headline.contains("3 variants with other draws"), "{}", found.headline);
+    assert!(found.headline.contains("3 variants with different draws"), "{}", found.headline);
     // More variants alone are the same draws.
     layouts[1].cellar = cellar(&[]).with_variants(9);
     let pair = &compared(&layouts, Vec::new(), Vec::new()).paired[0];
@@ -279,7 +279,7 @@ fn what_was_not_run_is_listed_with_its_reason() {
     let found = compared(&three, Vec::new(), vec![not]);
     let said = words::sentences(&found).join(" ");
     assert!(said.contains("One level less was not run: it does not fit."), "{said}");
-    assert!(said.contains("hold together"), "{said}");
+    assert!(said.contains("of all these differences together"), "{said}");
     let lines = table(&found).to_lines();
     assert_eq!(lines.len(), 5);
     assert!(lines[4].ends_with("not run: it does not fit"), "{lines:?}");

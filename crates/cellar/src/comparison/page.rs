@@ -81,8 +81,8 @@ fn change(change: &Change, scale: f64) -> Cell {
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
         "Loss against capacity, in the order of the share of the barrels that falls. Means over the variants, with their 95 % \
-         intervals; differences to the first layout are those of the same variants. Wine and money are expected losses \
-         under the central assumption.",
+         intervals; differences from the first layout are taken variant by variant. Wine and cost are expected \
+         losses under the central assumption on how many of the fallen barrels burst.",
         rows(found),
         &[
             ("layout", "", &Row::name),
@@ -114,11 +114,12 @@ fn courses(found: &CellarComparison) -> Table {
     };
     Table::of(
         format!(
-            "How the stacks fall: means over the variants with their 95 % intervals. Spread: stacks that fall, for each that \
-             falls by itself. Aisles: share of the variants in which an aisle is blocked at the end. The time of the first \
-             barrel in an aisle is counted from the start of the shaking, over 5 to 95 % of the variants in which it \
-             happens, or all if they are fewer than {FEW}. Forces last some milliseconds and grow with the assumed \
-             stiffness of the contact."
+            "How the stacks fall: means over the variants with their 95 % intervals. Spread: number of stacks that \
+             fall, divided by the number that fall by themselves. Aisles: share of the variants in which an aisle \
+             is blocked at the end. The time of the first \
+             barrel in an aisle is counted from the start of the shaking, over 5 to 95 % of the variants in which a \
+             barrel enters an aisle, or over all of them if they are fewer than {FEW}. Impact forces last a few \
+             milliseconds and grow with the assumed stiffness of the contact."
         ),
         rows(found),
         &[

@@ -103,7 +103,7 @@ fn strapped_at(cellar: &Cellar, pretension: f64) -> Result<Vec<String>, String> 
         return Err("stacks of one level have no levels to strap together".to_owned());
     }
     strapped_together(cellar.stated(), pretension).ok_or_else(|| {
-        "the levels are strapped together already as tightly, or the straps would tear".to_owned()
+        "the levels are already strapped together as tightly, or the straps would tear".to_owned()
     })
 }
 
@@ -129,7 +129,7 @@ fn lower(cellar: &Cellar) -> Result<Vec<String>, String> {
         let by_row = &block.levels_by_row;
         let least = by_row.iter().copied().min().or(block.levels).unwrap_or(own);
         if least < 2 {
-            return Err("a stack of one level has none to spare".to_owned());
+            return Err("a stack of one level cannot lose a level".to_owned());
         }
         if !by_row.is_empty() {
             let fewer: Vec<String> = by_row.iter().map(|levels| (levels - 1).to_string()).collect();

@@ -28,7 +28,7 @@ pub fn headline(found: &CellarComparison) -> String {
     };
     let other = found.paired.iter().any(|pair| !pair.same_motion);
     let motions = if other {
-        "The motions differ, so no difference is that of the layouts alone. "
+        "The motions differ, so no difference is due to the layouts alone. "
     } else {
         ""
     };
@@ -101,7 +101,7 @@ fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Str
     let average = on_average(pair.variants);
     if first.capacity == second.capacity {
         return format!(
-            "{} in place of {}{average}, {} ({})",
+            "{} instead of {}{average}, {} ({})",
             fall(to, ""),
             amount(from),
             words_of(difference, ["fewer", "more", "as many"]),
@@ -111,11 +111,11 @@ fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> Str
     let points = 100.0 * pair.share_lost.difference;
     let [lost, before] = [pair.share_lost.second, pair.share_lost.first].map(percent);
     format!(
-        "{} in place of {} of {}{average}; that is {lost} of the capacity in place of {before}, {} ({})",
+        "{} instead of {} of {}{average}; that is {lost} of the capacity instead of {before}, {} ({})",
         fall(to, &format!("of {} ", second.capacity)),
         amount(from),
         first.capacity,
-        words_of(points, ["points less", "points more", "as much"]),
+        words_of(points, ["percentage points less", "percentage points more", "as much"]),
         interval(&pair.share_lost, 100.0, ["less", "more"], pair)
     )
 }
@@ -163,7 +163,7 @@ fn variants(pair: &LayoutPair) -> String {
     match (pair.variants, pair.same_draws) {
         (1, _) => "one variant".to_owned(),
         (many, true) => format!("the same {many} variants"),
-        (many, false) => format!("{many} variants with other draws"),
+        (many, false) => format!("{many} variants with different draws"),
     }
 }
 
@@ -202,7 +202,10 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
                 }
             }));
             if pairs().any(|(_, pair)| pair.barrels_fallen.interval.is_some()) {
-                all.push("The intervals of all these differences hold together.".to_owned());
+                all.push(
+                    "The level of 95 % holds for the intervals of all these differences together."
+                        .to_owned(),
+                );
             }
         }
         all.extend(pairs().filter_map(|(_, pair)| without(pair)));
@@ -227,7 +230,7 @@ fn describe(one: &LayoutAnswer) -> String {
         return format!("{}: no run has a valid result.", capital(name));
     }
     if [one.barrels_fallen, one.by_themselves, one.knocked_over].iter().all(|of| of.mean == 0.0) {
-        return format!("{}: of {capacity} barrels in {stacks} stacks none falls.", capital(name));
+        return format!("{}: of {capacity} barrels in {stacks} stacks, none falls.", capital(name));
     }
     let share = percent(share_lost.mean);
     let share = share_lost.interval.map_or_else(
@@ -238,11 +241,12 @@ fn describe(one: &LayoutAnswer) -> String {
         },
     );
     let spread = one.spread.map_or_else(String::new, |spread| {
-        format!(", {} for each that falls by itself", amount(spread))
+        format!("; for each stack that falls by itself, {} fall in total", amount(spread))
     });
     let [low, high] = one.cost.map(|dollars| measured(dollars, 0));
     format!(
-        "{}: of {capacity} barrels {} fall{} ({share}). Of {stacks} stacks {} fall by themselves and {} are knocked \
+        "{}: of {capacity} barrels, {} fall{} ({share}). Of {stacks} stacks, {} fall by themselves \
+         and {} are knocked \
          over{spread}. About {} of wine is lost; with the burst barrels it is worth US${low} to US${high}.",
         capital(name),
         amount(one.barrels_fallen.mean),

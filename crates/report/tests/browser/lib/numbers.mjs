@@ -302,7 +302,7 @@ export async function ofCellar(page, document) {
   }
   for (const one of document.rows) {
     const cell = cellsOf(rows, String(one.row));
-    reading.are(`row ${one.row} starts it`, cell("starts it"), shareOf(one.starts));
+    reading.are(`row ${one.row} starts it`, cell("collapse starts here"), shareOf(one.starts));
     reading.are(`row ${one.row} by itself`, cell("fall by themselves"), [one.by_themselves]);
     reading.are(`row ${one.row} knocked over`, cell("knocked over"), [one.knocked_over]);
   }
