@@ -249,7 +249,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<DropResult, Cal
         let (figure, impacts) = (picture(plain), times.len());
         return Ok(DropResult { restitution, log_ratio: None, impacts, figure, warnings });
     };
-    // The first flight gives the speed after the first impact; dividing by the restitution gives that before it.
+    // The first flight gives the speed after the first impact; divided by the restitution, it gives the speed before
+    // the impact.
     let first_speed = 0.5 * striker.gravity * unit / restitution.value;
     let solved = |point: &Vec<f64>| -> Option<Vec<f64>> {
         let (mut time, mut speed) = (point[0], first_speed * math::exp(point[1]));

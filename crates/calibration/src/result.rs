@@ -20,14 +20,15 @@ pub struct Estimate {
     pub dimension: Dimension,
 }
 
-/// Share of stacks or barrels by the model, for one statement.
+/// Share of stacks or barrels that the model predicts for one statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelShare {
     /// Name of the statement.
     pub statement: String,
-    /// Central 90 % over the ranges of the parameters, the motion and the proportions of the heights.
+    /// Central 90 % of the predicted share over the ranges of the parameters, the motion and the proportions of the
+    /// heights, before the statements are used.
     pub before: [f64; 2],
-    /// Central 90 % given all statements.
+    /// Central 90 % of the predicted share, given all statements.
     pub given: [f64; 2],
 }
 
@@ -46,9 +47,10 @@ pub struct Calibration {
     pub condition: Option<f64>,
     /// Measurements compared with the fit.
     pub figures: Vec<Figure>,
-    /// Shares of the statements by the model; empty for a fit to tests.
+    /// Shares that the model predicts for the statements; empty for a fit to tests.
     pub shares: Vec<ModelShare>,
-    /// What the intervals cover and what they do not, if they are not those of a test: sentences.
+    /// Sentences on what the intervals cover and what they do not; `None` for the usual sentences on intervals of a
+    /// test.
     pub covers: Option<&'static str>,
     /// Further results for display, as pairs of name and value.
     pub facts: Vec<(String, String)>,
@@ -165,7 +167,8 @@ described! {
         /// Condition number of the fit: ratio of the largest to the smallest eigenvalue of the normalized
         /// information matrix.
         pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
-        /// Shares of stacks or barrels by the model, for each statement on an earthquake; empty for a fit to tests.
+        /// Shares of stacks or barrels that the model predicts for each statement on an earthquake; empty for a fit
+        /// to tests.
         pub shares: Vec<ShareRow> = found.shares.iter().map(ShareRow::of).collect(),
         /// Further results for display: text by name.
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
@@ -175,13 +178,13 @@ described! {
         pub warnings: Vec<String> = found.warnings.clone(),
     }
 
-    /// Share of stacks or barrels by the model, for one statement.
+    /// Share of stacks or barrels that the model predicts for one statement.
     pub struct ShareRow of share: &ModelShare {
         /// Name of the statement.
         pub statement: String = share.statement.clone(),
-        /// Central 90 % before the statements are used.
+        /// Central 90 % of the predicted share, before the statements are used.
         pub before: [f64; 2] as "1" = share.before,
-        /// Central 90 % given all statements.
+        /// Central 90 % of the predicted share, given all statements.
         pub given: [f64; 2] as "1" = share.given,
     }
 

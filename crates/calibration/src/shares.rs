@@ -33,7 +33,7 @@ const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements
                       proportions of the heights, and an error of 10 % of the model in each share. They do not cover values \
                       of the scenario that were not fitted.";
 
-/// Number of parameter sets at which the statements are weighed.
+/// Number of parameter sets that are weighted by the likelihood of the statements.
 const DRAWS: usize = 20_000;
 
 /// Mean likelihood of a statement below which a warning is given; 1 is the highest possible likelihood.
@@ -68,7 +68,8 @@ struct Shaken {
 /// Fitted share of stacks that fall, as a function of the parameters, the motion and the height.
 struct Fit {
     share: Conditional,
-    /// Mean share of the barrels that fall in a stack that falls, by height; that over all heights where no stack fell.
+    /// For every height, the mean share of the barrels that fall in a stack that falls; at a height at which no stack
+    /// fell, the mean over all heights.
     fallen: Vec<f64>,
     /// Heights as standard deviates; empty for one height, which needs none.
     heights: Vec<f64>,
@@ -80,9 +81,9 @@ struct Fit {
 /// drawn from the range and used to simulate one stack at one of the heights, with random offsets of racks and barrels,
 /// and with a motion that differs from that of the scenario by a factor, as a cellar differs from the station
 /// ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that fall as a function of
-/// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the statements:
-/// each with a factor that is common to all statements, with unknown proportions of the heights, all mixtures
-/// being equally probable, with one sample of the regression, and with an error of the model itself ([`MODEL_ERROR`]).
+/// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the statements.
+/// Each set has a factor that is common to all statements, proportions of the heights (all mixtures are equally
+/// probable) and one sample of the regression; the likelihood includes an error of the model itself ([`MODEL_ERROR`]).
 /// The intervals hold the central 95 % of the weight.
 ///
 /// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
@@ -361,7 +362,8 @@ impl Weighed {
         Some(Self { posterior: Posterior::of(draws, &logs)?, shares, likelihoods: sums })
     }
 
-    /// Returns the central 90 % of the share of a statement, before and given the statements.
+    /// Returns the central 90 % of the predicted share for a statement, before the statements are used and given all
+    /// statements.
     fn predicted(&self, at: usize) -> [[f64; 2]; 2] {
         let even = vec![1.0; DRAWS];
         [&even, &self.posterior.weights].map(|weights| {
@@ -382,7 +384,8 @@ impl Weighed {
         })
     }
 
-    /// Draws the shares by the model, before and given the statements, beside the stated ones.
+    /// Draws the shares that the model predicts, before the statements are used and given all statements, beside the
+    /// stated shares.
     fn figure(&self, statements: &[&Statement]) -> Option<Figure> {
         let mut rows = Rows::default();
         let mut stated = Vec::new();

@@ -285,7 +285,7 @@ fn an_aftershock_is_answered_in_one_sentence() {
         serde_json::from_slice(&fs::read(out.join("cellar.json")).unwrap()).unwrap();
     let first = said.lines().next().unwrap();
     let begins = format!(
-        "Of 2 stacks {:.1} stand after the main shock",
+        "Of 2 stacks, {:.1} stand after the main shock",
         summary["shocks"][1]["stood"].as_f64().unwrap()
     );
     assert!(first.starts_with(&begins) || first.starts_with("No stack stands"), "{first}");

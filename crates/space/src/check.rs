@@ -38,7 +38,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         time_step: stack.step,
         rest: settled.map(|settled| AtRest::of(settled, sunk)),
         motion: ground.first.motion.as_ref().map(MotionSummary::of),
-        // The warning about soft sticks exists for planes only.
+        // The warning about contacts with too soft sticking stiffness exists only for plane models.
         sticks: Vec::new(),
         warnings: ground.warnings,
         scenario_hash: format!("{:016x}", scenario.fingerprint()),

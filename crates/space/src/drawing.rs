@@ -92,7 +92,7 @@ const RATE: f64 = 20.0;
 /// Number of steps of the view direction of a body per right angle.
 const STEPS: f64 = 6.0;
 
-/// Number of steps of [`coarse_scene`].
+/// Number of steps of the view direction of a body per right angle in a [`coarse_scene`].
 const COARSE_STEPS: f64 = 3.0;
 
 /// Returns the drawing of a run in a view direction.
@@ -140,7 +140,7 @@ fn drawn(run: &Run, sight: Sight, steps: f64) -> Scene {
     }
     let ends = std::iter::repeat_n(SceneBody::new("", Role::Block, Vec::new()), 2 * ties.len());
     drawn.extend(ends);
-    // The paths of barrels are those of invisible bodies at their centers.
+    // The paths of barrels are drawn as those of invisible bodies at the centers of the barrels.
     for body in top(run) {
         drawn.push(SceneBody::new("", Role::Block, Vec::new()));
         for (row, frame) in poses.iter_mut().zip(&frames) {
@@ -419,7 +419,7 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
         let falls_with_it = |time: f64| barrel && fate.fell_at.is_some_and(|fell| fell <= time);
         let left = fate.left_seat.filter(|(at, ..)| !falls_with_it(*at));
         if let Some((time, loss, heading)) = left.filter(|(.., heading)| sight.shows(*heading)) {
-            // The view itself shows whether that is along the barrels or across them.
+            // The view itself shows whether the body falls along the barrels or across them.
             let text = format!("{}, {}", leaves(&part.name, loss), heading.name());
             events.push(Event { time, body: Some(first[body]), kind: EventKind::LossOfSeat, text });
         }

@@ -112,8 +112,8 @@ impl Ground {
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());
         let mut steps: Vec<String> = Vec::new();
         for step in motions.flat_map(|motion| &motion.provenance) {
-            // Both horizontal components are of one record, so steps repeat; the vertical component is part of the
-            // first.
+            // Both horizontal components come from one record, so their processing steps repeat; the vertical
+            // component is part of `first`.
             if !steps.contains(step) {
                 steps.push(step.clone());
             }

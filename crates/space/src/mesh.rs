@@ -82,7 +82,7 @@ fn surface(body: &Body<Spatial>, lines: &[Vec<Vec3>], floor: f64) -> Mesh {
     for placed in &body.surfaces {
         let (own, faces) = match &placed.surface {
             Solid::HalfSpace => square(floor),
-            // Not shown, since it lies in the ground.
+            // A dish is not shown, since it lies in the ground.
             Solid::Dish(_) => Mesh::default(),
             Solid::Ball(ball) => revolved(&rounded(0.0, ball.radius, FINE), FINE),
             Solid::Capsule(tube) => {
@@ -231,10 +231,10 @@ mod tests {
         let ball = 4.0 / 3.0 * PI * 0.027;
         for (mesh, exact, near) in [
             (cuboid(Vec3::new(0.5, 1.0, 1.5)), 6.0, 1e-12),
-            // measured 0.023 below, as inscribed polyhedra are
+            // measured 0.023 below: the polyhedra are inscribed
             (revolved(&rounded(0.0, 0.3, FINE), FINE), ball, 0.03),
             (revolved(&rounded(0.4, 0.3, FINE), FINE), ball + PI * 0.09 * 0.8, 0.03),
-            // A prism of twelve sides has 0.955 of the section, and the ends add 0.016.
+            // A prism of twelve sides has 0.955 of the cross section of the bar, and the round ends add 0.016.
             (bar([Vec3::default(), Vec3::new(0.0, 0.0, 1.0)]), PI * PLATE * PLATE, 0.04),
             (bar([Vec3::default(), Vec3::new(0.6, 0.0, 0.8)]), PI * PLATE * PLATE, 0.04),
         ] {

@@ -25,7 +25,8 @@ use std::f64::consts::FRAC_PI_2;
 pub(crate) struct Tubes {
     /// The tubes, with masses (kg) that add up to the mass of the rack. Chocks come last and have no mass.
     pub(crate) parts: Vec<Part>,
-    /// For every beam, the index of its tube, and the row in the rack: of the barrels on the beam and of those beneath it.
+    /// For every beam, the row in the rack of the barrels on the beam and of those beneath it, and the index of its
+    /// tube.
     pub(crate) beams: Vec<(u32, usize)>,
     /// For every post, the column and the row in the rack of the barrel that the post carries, and the index of the
     /// tube.
@@ -68,7 +69,7 @@ pub(crate) fn tubes(
 ) -> Option<Tubes> {
     let Cradle::Supports { angle } = rack.cradle else { return None };
     let beam = 0.5 * rack.beam_height;
-    // The bearing line of a beam ends where the corner of its plane begins.
+    // The straight part of a beam ends where the rounded corner of its outline in the plane model begins.
     let half = 0.5 * rack.width - TUBE_CORNER;
     let heights = Heights::of(rack, barrel);
     let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);

@@ -94,8 +94,9 @@ pub fn document(answer: &Answer) -> Document {
                 Block::Table(demand_table(&summary.demands, &summary.demands_whole_run)),
             ]);
             let table = interface_table(
-                "Force on the upper body, or on the body that is named first: the largest magnitude until the first loss of \
-                 seat, and over the whole run, falls included. Horizontal forces are resultants, whatever their direction.",
+                "Force on the upper body, or on the body that is named first: the value of largest magnitude until \
+                 the first loss of seat, and that of largest magnitude over the whole run, falls \
+                 included. Horizontal forces are resultants, whatever their direction.",
                 &summary.interfaces,
             );
             blocks.extend([heading("Forces at the seats"), Block::Table(table)]);
@@ -136,7 +137,7 @@ fn numbers(run: &Run, summary: &Summary) -> Block {
     let caption = if run.stack.is_free() {
         "The run that is shown."
     } else {
-        "The run that is shown; demands are those until the first loss of seat."
+        "The run that is shown. Demands are the largest values until the first loss of seat."
     };
     let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
     let row = |(a, b)| vec![Cell::text(a), Cell::text(b)];

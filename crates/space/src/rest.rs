@@ -58,7 +58,7 @@ impl Rest {
         (1..self.stack.parts.len()).filter(move |body| self.is_fast(bodies, *body))
     }
 
-    /// Starts the time of rest anew, for a stack that is set in motion again.
+    /// Restarts the time at rest at a time (s), for a stack that is set in motion again.
     pub fn wake(&mut self, time: f64) {
         self.moved = time;
     }

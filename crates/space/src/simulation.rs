@@ -169,7 +169,7 @@ impl Simulation {
     ///
     /// The observer receives the progress at least every 0.05 s of simulated time.
     pub fn run_watched(mut self, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Run {
-        // The result has no contacts.
+        // The result does not contain the list of contacts.
         self.scratch.keeps_contacts = false;
         let end_time = self.end_time();
         let (mut next_look, mut steps) = (self.state.time, 0);
@@ -309,7 +309,7 @@ impl Simulation {
         &self.fixed.ground
     }
 
-    /// Returns `true` if both simulations are clones of one simulation, which may be in different states.
+    /// Returns `true` if both simulations are clones of the same simulation, even if they are in different states.
     pub fn is_clone_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.fixed, &other.fixed)
     }

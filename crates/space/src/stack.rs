@@ -163,12 +163,12 @@ impl Pace {
                 let own = time_step(&cut, &plane)?;
                 let divided = plane.model.substepping();
                 step = step.min(own);
-                // Substeps are as short as in the plane that divides its steps the most.
+                // Substeps are as short as in the plane model with the shortest substeps.
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                // By name, since the plane models number their laws differently where one of them shows several seats
-                // as one.
+                // Laws are matched by name: a plane model that represents several seats by one numbers its laws
+                // differently.
                 for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
                     let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);

@@ -78,13 +78,14 @@ fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f6
     most
 }
 
-/// Returns the rate (1/kg) of a body per contact constant of a node set.
+/// Returns twice the number of contacts of a node set that can bear at the same time, divided by the effective mass
+/// (kg) of the body at a contact.
 fn bearing(body: &Body<Spatial>, nodes: &Nodes<Spatial>) -> f64 {
     2.0 * contacts(nodes) * (1.0 / body.mass + turned(body))
 }
 
-/// Returns the longest time steps (s) with which contacts of free bodies with a fixed one are integrated, outside of
-/// impacts and during impacts, and the penetration (m) that the former resolve.
+/// Returns three values for contacts of free bodies with a fixed body: the longest time step (s) outside of impacts,
+/// the longest time step (s) during impacts, and the penetration (m) up to which the first of these steps suffices.
 pub fn steps_at_fixed<'a>(
     bodies: impl Iterator<Item = &'a Body<Spatial>>,
     law: &Interface<Spatial>,

@@ -119,7 +119,7 @@ impl Case {
 fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResult> {
     let RunFailure::Settle(restless) = failure else { return None };
     let levels = scenario.stack().filter(|_| restless.falls())?.levels;
-    // The stack as built, before it fell.
+    // A result needs a stack: the stack as built, before it fell.
     let stack = Stack::of(scenario).ok()?;
     let name = restless.error.body.as_str();
     let first = stack.parts.iter().find(|part| part.name == name);

@@ -60,7 +60,7 @@ pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
         Heading::Left => "across the barrels, to the left",
-        Heading::Away => "along the barrels, away",
+        Heading::Away => "along the barrels, toward the far side",
         Heading::Near => "along the barrels, toward the near side",
     }
 }
@@ -104,10 +104,14 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     if let Outcome::Collapse { time, first, .. } = &run.outcome {
         let part = run.stack.parts.iter().position(|part| part.name == *first);
         if let Some((_, loss, heading)) = part.and_then(|body| run.fates[body].left_seat) {
-            let shown = if summary.ensemble.is_some() { "In the run that is shown " } else { "" };
+            let shown = if summary.ensemble.is_some() { "In the run that is shown, " } else { "" };
             let kind = run.stack.parts[part.unwrap_or(0)].kind.name();
-            let event = format!("{} {}", leaves(&format!("{kind} {first}"), loss), toward(heading));
-            sentences.push(format!("{} after {time:.1} s.", capital(&format!("{shown}{event}"))));
+            let event = format!(
+                "{} in the direction {}",
+                leaves(&format!("{kind} {first}"), loss),
+                toward(heading)
+            );
+            sentences.push(format!("{}, after {time:.1} s.", capital(&format!("{shown}{event}"))));
         }
     }
     sentences.extend(summary.devices.0.iter().filter_map(device_sentence));

@@ -9,10 +9,12 @@ use serde::Deserialize;
 /// Maximum size of a file of statements (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Standard deviation of the error of the model itself in a share: neighbors, walls, empty barrels.
+/// Standard deviation of the error of the model itself in a share, for example because it neglects neighbors, walls
+/// and empty barrels.
 pub const MODEL_ERROR: f64 = 0.10;
 
-/// Largest standard deviation of ln of the motion in a cellar over that at the station: a factor of 7 either way.
+/// Largest standard deviation of the natural logarithm of the ratio of the motion in a cellar to that at the station;
+/// it stands for a factor of 7 up or down.
 const MOST_MOTION: f64 = 2.0;
 
 /// Error of a file of statements.
@@ -40,9 +42,9 @@ pub struct Earthquake {
     /// Distance between record and cellars.
     #[serde(default)]
     pub place: String,
-    /// Standard deviation of ln of the motion in a cellar over that at the station.
+    /// Standard deviation of the natural logarithm of the ratio of the motion in a cellar to that at the station.
     pub motion: f64,
-    /// Names of the studies of `validation/field.md` that simulate it; none without a record.
+    /// Names of the studies of `validation/field.md` that simulate the earthquake; empty if there is no record.
     #[serde(default)]
     pub studies: Vec<String>,
     /// The statements.
@@ -57,26 +59,26 @@ pub struct Statement {
     pub id: String,
     /// What was observed, in a sentence.
     pub statement: String,
-    /// Where that is stated.
+    /// Publication or person that makes the statement.
     pub source: String,
     /// How the statement is read as a number.
     pub uncertainty: Option<String>,
     /// What the statement is about.
     pub kind: Kind,
-    /// Why it is left out.
+    /// Reason why the statement is left out, if it is.
     pub reason: Option<String>,
-    /// Studies of `validation/field.md` of the stacks observed; several are planes of one stack, which falls if it
-    /// falls in one of them.
+    /// Studies of `validation/field.md` that simulate the observed stacks. Several studies are planes of one stack,
+    /// which counts as fallen if it falls in at least one of them.
     #[serde(default)]
     pub studies: Vec<String>,
-    /// Heights of the stacks observed, in unknown proportions.
+    /// Heights (numbers of levels) of the observed stacks, in unknown proportions.
     #[serde(default)]
     pub levels: Vec<usize>,
     /// The observed share.
     pub value: Option<f64>,
-    /// Lower end of its interval of 95 %.
+    /// Lower end of the 95 % interval of the observed share.
     pub low: Option<f64>,
-    /// Upper end of its interval of 95 %.
+    /// Upper end of the 95 % interval of the observed share.
     pub high: Option<f64>,
     /// Standard error of a bound.
     pub error: Option<f64>,
@@ -100,14 +102,14 @@ pub enum Kind {
     Some,
     /// Direction of the falls.
     Along,
-    /// No likelihood.
+    /// A statement that has no likelihood.
     Unusable,
 }
 
 /// Likelihood of a statement as a function of a share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Likelihood {
-    /// Normal about a share.
+    /// Normal distribution about the observed share.
     Near {
         /// The observed share.
         value: f64,
@@ -151,7 +153,7 @@ impl Likelihood {
         }
     }
 
-    /// `true` if its error or number is finite and above zero.
+    /// `true` if the standard error or the number of stacks is finite and above zero.
     fn is_proper(self) -> bool {
         let (Self::Near { error, .. }
         | Self::AtLeast { error, .. }
@@ -160,7 +162,7 @@ impl Likelihood {
         error.is_finite() && error > 0.0
     }
 
-    /// Returns the same with a further, independent error of the model in quadrature.
+    /// Returns the likelihood with an additional, independent error of the model, added in quadrature.
     #[must_use]
     pub fn wider(self, model: f64) -> Self {
         let wider = |error: f64| libm::hypot(error, model);
@@ -191,8 +193,8 @@ impl Statements {
     /// Reads the text of a file of statements (TOML); `file` is its name in errors.
     ///
     /// # Errors
-    /// If it is not one, if a statement has no source, if one that is used lacks a number, if two have the same name, or if
-    /// the spread of the motion is out of range.
+    /// If the text is not a file of statements, a statement has no source, a statement that is used lacks a number,
+    /// two statements have the same name, or the spread of the motion is out of range.
     pub fn read(file: &str, text: &str) -> Result<Self, StatementsError> {
         let read: Self =
             toml::from_str(text).map_err(|error| StatementsError(format!("{file}: {error}")))?;
@@ -329,7 +331,7 @@ impl Statement {
         }
     }
 
-    /// Returns the likelihood; `None` of a statement without one.
+    /// Returns the likelihood; `None` if the statement has none.
     pub fn likelihood(&self) -> Option<Likelihood> {
         Some(match self.kind {
             Kind::Barrels | Kind::Stacks => Likelihood::Near {

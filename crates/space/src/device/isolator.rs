@@ -41,7 +41,8 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
             }
         }
         for (side, end) in builder.sides(half.x, half.y) {
-            // The ends to the left and right guide along the barrels, the near and far ends across them.
+            // The guides at the left and right ends act along the barrels, those at the near and far ends across
+            // them.
             let across = end.x == 0.0;
             let axis = if across { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
             let link = Link {
@@ -90,7 +91,7 @@ fn bear(
         Path::Dish => {
             let radius = device.dish_radius;
             let offset = below + Vec3::new(0.0, 0.0, radius);
-            // Drawn up to the stops.
+            // The dish is drawn as far as the platform can move, up to its stops.
             let arc = |across: bool| -> Vec<Vec3> {
                 let at = |share: f64| {
                     let travel = share * device.stroke;

@@ -45,7 +45,7 @@ fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyI
     let guide = device.guide(link, axis, Similitude::FULL);
     let hook = Loose { about_axis: true, ..Loose::new(guide, 0.0, WalkingStops::WORDS) };
     builder.loose.push(hook);
-    // Drawn from the rack over both ends of the barrel.
+    // The hooks are drawn from the rack over both ends of the barrel.
     for side in [-1.0, 1.0] {
         let at = |y: f64, z: f64| over + Vec3::new(0.0, side * y, z);
         let end = 0.5 * builder.spec.barrel.length + device.gap;
@@ -68,7 +68,7 @@ fn saddle(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [Bod
     let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, size);
     for side in [-1.0, 1.0] {
         let at = |x: f64, z: f64| top + Vec3::new(side * x, 0.0, z);
-        // On the surface of the barrel, at the lateral reach of a saddle.
+        // The saddle is drawn on the surface of the barrel, as far to the side as a saddle reaches.
         let foot = 0.7 * size + device.gap;
         builder.draw(rack, &[at(foot, 0.0), at(foot, -device.lip.max(0.25 * size))]);
     }
