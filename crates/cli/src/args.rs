@@ -54,7 +54,7 @@ pub(crate) enum Command {
     Score(crate::commands::score::ScoreArgs),
     /// Read a scenario, build the stack and let it settle, without shaking it.
     Check(CheckArgs),
-    /// Run a cellar through its shock and an aftershock: does what still stands survive?
+    /// Run a cellar through its motion and an aftershock: do the stacks that still stand survive?
     Aftershock(crate::commands::aftershock::AftershockArgs),
     /// Run two or more scenarios and compare them on one page.
     Compare(crate::commands::compare::CompareArgs),
@@ -140,11 +140,12 @@ pub(crate) struct RunArgs {
     /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
     pub(crate) with_engine: Option<PathBuf>,
-    /// Write the places of all bodies at the end of a cellar into this new file, for start.file.
+    /// Write the places of all bodies at the end of the run of a cellar into this file, which must not exist;
+    /// start.file of another cellar can name it.
     #[arg(long, value_name = "FILE")]
     pub(crate) state: Option<PathBuf>,
-    /// Keep the result of every variant of a cellar in this folder, and do not run again those that
-    /// are there: work that was stopped goes on.
+    /// Keep the result of every variant of a cellar in this folder. Variants whose results are there are not run
+    /// again, so work that was stopped can be continued.
     #[arg(long, value_name = "DIR")]
     pub(crate) keep: Option<PathBuf>,
     /// Run only this part of the variants of a cellar, such as 1/8 to 8/8, and keep their results;

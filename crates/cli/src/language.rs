@@ -7,7 +7,7 @@ use crate::typed::typed;
 /// Option of all commands that write a page or a report.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(crate) struct LanguageArgs {
-    /// Language of the page or report; numbers, units and what is printed stay as they are.
+    /// Language of the page or report; numbers, units and the text on the terminal are not affected.
     #[arg(long, value_enum, value_name = "LANGUAGE", default_value = "en")]
     language: LanguageName,
 }

@@ -52,7 +52,7 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
 #[test]
 fn what_space_does_not_know_is_refused_before_any_work() {
     for (more, message) in [
-        (&["--with-engine=x", "--out=y"][..], "runs stacks in planes, but not in space"),
+        (&["--with-engine=x", "--out=y"][..], "simulates scenarios in a plane, but not in space"),
         (&["--set=stack.columns_along=3", "--set=stack.rack=four-barrel"], "stack.columns_along"),
     ] {
         let output = barrelstack([&SOLID[..], more].concat());

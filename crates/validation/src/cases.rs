@@ -6,7 +6,7 @@
 //! source = "Housner 1963"
 //! body = "block"
 //! quantity = "overturning-border"    # see Quantity
-//! vary = "motion.pulse.amplitude"    # the parameter of a border
+//! vary = "motion.pulse.amplitude"    # the parameter whose boundary is searched
 //! unit = "g"                         # its unit
 //! between = [0.5, 0.6]               # stands at the first, not at the second
 //! exact = 0.55
@@ -48,7 +48,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the rotation (rad) beyond which the border counts as exceeded.
+    /// Returns the rotation (rad) beyond which the boundary counts as exceeded.
     fn beyond(self) -> Option<f64> {
         match self {
             Self::FirstUpright | Self::Displacement => None,

@@ -83,7 +83,7 @@ pub fn theory(thickness: f64, spacing: f64) -> f64 {
     theory_by(thickness, spacing, 2000)
 }
 
-/// Returns the speed as [`theory`] does, from an integral of a number of steps.
+/// Returns the speed like [`theory`], from an integral with a given number of steps.
 ///
 /// All dominoes behind the front lean on each other, so the row has one degree of freedom, the angle θ₁ of its front:
 /// `sin(θᵢ₊₁ − θᵢ) = (s + d) cos θᵢ − d` in heights (van Leeuwen 2010). With `J = Σ (dθᵢ/dθ₁)²`, the energy
@@ -95,7 +95,7 @@ fn theory_by(thickness: f64, spacing: f64, steps: u32) -> f64 {
     // Units: mass, gravity and height are one.
     let inertia = (1.0 + thickness * thickness) / 3.0;
     let height = |angle: f64| 0.5 * (cos(angle) + thickness * sin(angle));
-    // Angle of the domino behind one at an angle, and its derivative.
+    // Angle of the domino behind a domino at a given angle, and the derivative of this angle.
     let behind = |angle: f64| {
         let reach = pitch * cos(angle) - thickness;
         let rate = 1.0 - pitch * sin(angle) / (1.0 - reach * reach).sqrt();

@@ -1,13 +1,13 @@
-//! Hindcasts: what was observed of barrel stacks in real earthquakes beside what the model says, and what that says of
-//! the unknowns.
+//! Hindcasts: observations of barrel stacks in real earthquakes compared with the model, and what the comparison
+//! implies for the unknowns.
 //!
 //! ```text
 //! observations.toml ─┐
 //! cases/*.csv ───────┴─▶ fit of the chance to fall ─▶ likelihoods, posterior ─▶ field.md, tables, figure
 //! ```
 //!
-//! [`evaluate`] is a function of the observations and the simulated cases alone, so that a test can hold the page to
-//! them; the cases are made by `cargo xtask field`.
+//! [`evaluate`] is a function of the observations and the simulated cases alone, so that a test can check the page
+//! against them; the cases are made by `cargo xtask field`.
 
 mod cases;
 mod chance;

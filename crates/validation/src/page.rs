@@ -23,7 +23,7 @@ pub const LIMITS: [&str; 7] = [
      0.25 has η between 0.92 and 0.96 instead of 0.908, with eleven nodes between 0.94 and 0.97, \
      depending on the damping. More nodes on a flat face do not make the ratio converge to \
      Housner's, so the rocking problems use two nodes.",
-    "Overturning borders are valid for blocks that cannot slide and whose contact is stiff. Ranges \
+    "Overturning boundaries are valid for blocks that cannot slide and whose contact is stiff. Ranges \
      of strength that overturn a block after many impacts under slow pulses (ω/p below 1.5) are \
      too narrow for a comparison and are left out.",
     "Fall times of stacks after the first seconds are chaotic; only verdicts and early falls are \

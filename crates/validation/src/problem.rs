@@ -277,7 +277,7 @@ pub fn halvings(effort: Effort) -> u32 {
 /// Finds by bisection the value at which `above` changes from `false` to `true`, between two brackets.
 ///
 /// # Errors
-/// If the brackets do not enclose a border, or if `above` fails.
+/// If the brackets do not enclose a boundary, or if `above` fails.
 pub fn border(
     (mut low, mut high): (f64, f64),
     halvings: u32,

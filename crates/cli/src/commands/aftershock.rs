@@ -1,4 +1,4 @@
-//! `barrelstack aftershock`: whether what still stands after the motion of a cellar survives an aftershock.
+//! `barrelstack aftershock`: whether the stacks that still stand after the motion of a cellar survive an aftershock.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -20,8 +20,8 @@ use crate::progress::Progress;
 pub(crate) struct AftershockArgs {
     /// A cellar: a file (TOML), the name of a built-in cellar, or - for standard input.
     scenario: String,
-    /// Strength of the aftershock: factor of the motion of the cellar, or of the record. Several
-    /// factors, such as 0.25,0.5,0.75, give the residual margin: each follows the same main shock.
+    /// Strength of the aftershock: factor by which the motion of the cellar, or the record, is multiplied. Several
+    /// factors, such as 0.25,0.5,0.75, give the residual margin: each aftershock follows the same main shock.
     #[arg(long, value_name = "FACTOR", value_delimiter = ',', default_values_t = [0.5])]
     scale: Vec<f64>,
     /// File of the aftershock, in place of the motion of the cellar.
@@ -119,7 +119,7 @@ fn residual(
 ) -> anyhow::Result<ExitCode> {
     if args.variants.variant.is_some() {
         bail!(
-            "--variant selects the run that is shown, and with several strengths none is shown; leave it out"
+            "--variant selects the run that is shown, but with several strengths no run is shown; leave it out"
         );
     }
     let (cellar, _) = super::cellar::selected(cellar, args.variants)?;

@@ -79,7 +79,7 @@ fn is_new(path: &Path, option: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs a cellar and prints and writes the result, after a sentence of the caller.
+/// Runs a cellar, then prints and writes the result; the caller may supply a first sentence.
 pub(super) fn run(
     args: &RunArgs,
     cellar: Cellar,
@@ -89,7 +89,7 @@ pub(super) fn run(
         (
             args.with_engine.is_some(),
             "--with-engine",
-            "the page that contains the program runs one stack",
+            "the program in that page simulates only single stacks",
         ),
         (args.verify, "--verify", "runs are repeated for one stack only"),
     ] {

@@ -32,14 +32,14 @@ Examples:
 #[command(after_help = EXAMPLES)]
 #[expect(clippy::struct_excessive_bools, reason = "one field per switch")]
 pub(crate) struct CompareArgs {
-    /// Scenario files (TOML) or names of built-in scenarios; or cellars.
+    /// Scenario files (TOML) or names of built-in scenarios; alternatively, cellars.
     #[arg(value_name = "SCENARIO", required = true)]
     scenarios: Vec<String>,
     /// Add a run of the first scenario with this value changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
-    /// Add the usual changes of the first cellar, each where it fits: wider spacing, all levels
-    /// strapped together, stops under every rack, one level less, every stack turned by 90°.
+    /// Add the usual changes of the first cellar, as far as they fit: wider spacing, all levels strapped together,
+    /// stops under every rack, one level less, every stack turned by 90°.
     #[arg(long)]
     pub(super) usual: bool,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
@@ -96,7 +96,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         ),
         (None, _) => super::layouts::compare(args, &requested, cellars),
         (Some(_), None) if args.usual => {
-            bail!("--usual: these are changes of a room; leave it out, or give a cellar")
+            bail!("--usual adds changes of a room; leave it out, or give a cellar")
         }
         (Some(_), None) if args.tables.need(false).is_err() => {
             bail!(

@@ -29,7 +29,7 @@ pub(super) fn compare(
         Prepared::new(cellar).map_err(|error| super::cellar::placed(error, cellar, one))?;
     }
     let (runs, left_out) = layouts(args, given)?;
-    // Changes are those of the first cellar.
+    // The usual changes are changes of the first cellar.
     let of = |at: usize| &requested.get(at).unwrap_or(&requested[0]).1;
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut done = Vec::new();
@@ -112,7 +112,7 @@ fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>,
     for change in usual {
         let changed = change.changed.and_then(|cellar| {
             let same = runs.iter().find(|(_, run)| run.fingerprint() == cellar.fingerprint());
-            same.map_or(Ok(cellar), |(name, _)| Err(format!("it is the layout \"{name}\"")))
+            same.map_or(Ok(cellar), |(name, _)| Err(format!("it is the same as the layout \"{name}\"")))
         });
         match changed {
             Ok(cellar) => runs.push((change.name, cellar)),

@@ -59,7 +59,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// What a command names: a scenario or a cellar, from a file, standard input or those that are built in.
+/// The scenario or cellar that a command names: from a file, from standard input, or built in.
 enum Loaded {
     Scenario(Box<Scenario>),
     Cellar(Box<Cellar>),

@@ -30,10 +30,10 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         Loaded::Cellar(cellar) => return super::cellar::run(args, *cellar, &|_| None),
     };
     if args.keep.is_some() {
-        bail!("--keep: only variants of a cellar are kept one by one; leave it out for one stack");
+        bail!("--keep applies only to the variants of a cellar; leave it out for a single stack");
     }
     if args.state.is_some() {
-        bail!("--state: only the run of a cellar is continued; leave it out for one stack");
+        bail!("--state: only the run of a cellar can be continued; leave it out for one stack");
     }
     let selection = selected(&mut scenario, args.variants)?;
     args.tables.need(args.out.is_some())?;
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() && args.with_engine.is_some() {
         bail!(
-            "--with-engine: the page that contains the program runs stacks in planes, but not in space: leave it out{}",
+            "--with-engine: the program in that page simulates scenarios in a plane, but not in space: leave it out{}",
             if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
         );
     }

@@ -20,25 +20,26 @@ pub const COLUMNS: [&str; 14] = [
     "heading",
 ];
 
-/// Number of unknowns that a case draws: barrel–rack friction, rack–ground friction, stiffness, and factor on the motion.
+/// Number of unknowns that are drawn for a case: barrel–rack friction, rack–ground friction, stiffness, and factor on
+/// the motion.
 pub const UNKNOWNS: usize = 4;
 
 /// One simulated stack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCase {
-    /// Levels.
+    /// Number of levels.
     pub levels: usize,
     /// Azimuth (rad) of a stack in space.
     pub azimuth: Option<f64>,
-    /// Friction barrel–rack, friction rack–ground, stiffness of a seat (MN/m), factor on the motion.
+    /// Unknowns: barrel–rack friction, rack–ground friction, stiffness of a seat (MN/m), and factor on the motion.
     pub unknowns: [f64; UNKNOWNS],
-    /// `true` if it fell.
+    /// `true` if the stack fell.
     pub falls: bool,
-    /// Mode of a collapse.
+    /// Mode of the collapse, if the stack fell.
     pub mode: String,
-    /// Share of its barrels that fell.
+    /// Share of the barrels of the stack that fell.
     pub fallen: f64,
-    /// Direction in which the first body left, in space.
+    /// Direction in which the first body left its seat, for a stack in space.
     pub heading: String,
 }
 
@@ -49,7 +50,7 @@ pub struct FieldCases {
     pub study: String,
     /// The cases with a verdict.
     pub cases: Vec<FieldCase>,
-    /// Number of cases without one.
+    /// Number of cases without a verdict.
     pub unjudged: usize,
 }
 
@@ -57,7 +58,7 @@ impl FieldCases {
     /// Reads a file of cases.
     ///
     /// # Errors
-    /// If its columns are others, or a cell is no number.
+    /// If the columns differ from [`COLUMNS`], or a cell is not a number.
     pub fn read(study: &str, text: &str) -> Result<Self, FieldError> {
         let mut lines = text.lines();
         if lines.next() != Some(COLUMNS.join(",").as_str()) {
@@ -108,13 +109,13 @@ impl FieldCases {
         self.cases.iter().filter(move |case| case.levels == levels)
     }
 
-    /// Returns the number of cases of some that fall, and their number.
+    /// Returns the number of given cases that fall, and the number of all given cases.
     pub fn count<'a>(cases: impl Iterator<Item = &'a FieldCase>) -> (u32, u32) {
         cases.fold((0, 0), |(falls, all), case| (falls + u32::from(case.falls), all + 1))
     }
 
-    /// Returns the share of the barrels that fell in those stacks of a height that fell; of all heights if none of
-    /// that one fell, and 0 if none of any.
+    /// Returns the share of the barrels that fell in the stacks of a height that fell. If no stack of this height
+    /// fell, returns the share over all heights; if no stack fell at all, returns 0.
     pub fn fallen(&self, levels: usize) -> f64 {
         let mean = |cases: &mut dyn Iterator<Item = &FieldCase>| {
             let (mut sum, mut count) = (0.0, 0.0);

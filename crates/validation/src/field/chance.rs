@@ -4,7 +4,8 @@ use barrelstack_motion::Random;
 
 use super::cases::{FieldCase, FieldCases, UNKNOWNS};
 
-/// Median of every unknown in the catalog: friction, friction, MN/m, factor on the motion.
+/// Medians of the unknowns in the catalog: barrel–rack friction, rack–ground friction, stiffness of a seat (MN/m),
+/// and factor on the motion.
 pub const MEDIANS: [f64; UNKNOWNS] = [0.30, 0.50, 3.0, 1.0];
 
 /// Units (of the natural logarithm) in which unknowns enter the polynomial.
@@ -13,19 +14,20 @@ const UNITS: [f64; UNKNOWNS] = [0.35, 0.2, 0.6, 0.25];
 /// Standard deviations of the normal priors of the coefficients: constant, linear, and all others.
 const LOOSE: [f64; 3] = [5.0, 3.0, 1.0];
 
-/// A logistic regression of second degree in the logarithms of the unknowns and in the height, and in space of the
-/// second harmonic of the azimuth.
+/// Logistic regression of second degree in the logarithms of the unknowns and in the height; for stacks in space also
+/// in the second harmonic of the azimuth.
 ///
 /// ```text
 /// ln(p / (1 − p)) = β · f(levels, u, φ)
 /// ```
 ///
-/// The coefficients are those of the largest posterior density under independent normal priors, of standard deviation
-/// 5 for the constant, 3 for what is linear and 1 for the rest, in units that make the simulated range about ±1.3; their
-/// uncertainty is that of a chain of Metropolis whose steps have the covariance of Laplace.
+/// The coefficients maximize the posterior density under independent normal priors, whose standard deviations are 5
+/// for the constant, 3 for the linear terms and 1 for all other terms, in units in which the simulated range is about
+/// ±1.3. Their uncertainty is sampled by a Metropolis chain, whose steps have the covariance of the Laplace
+/// approximation.
 #[derive(Clone, Debug)]
 pub struct Chance {
-    /// Coefficients of the largest posterior density.
+    /// Coefficients that maximize the posterior density.
     coefficients: Vec<f64>,
     /// Draws of the coefficients from their posterior.
     draws: Vec<Vec<f64>>,
@@ -37,7 +39,7 @@ pub(super) const FITS: usize = 400;
 /// Steps of the chain between two draws.
 const THIN: usize = 20;
 
-/// A point of the unknowns.
+/// Values of the unknowns, and the azimuth of a stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Unknowns, in the units of [`MEDIANS`].
@@ -175,7 +177,8 @@ impl Chance {
         let length = 2.4 / (size as f64).sqrt();
         let (mut at, mut here) = (coefficients.clone(), density(&coefficients));
         let mut draws = Vec::new();
-        // The first tenth finds its way from the middle into the bulk.
+        // The first draws are discarded: the chain starts at the maximum of the density, which is not typical of the
+        // posterior.
         for turn in 0..THIN * (FITS + FITS / 10) {
             let normal: Vec<f64> = at.iter().map(|_| random.normal()).collect();
             let step = back(&factor, &normal);
@@ -191,8 +194,8 @@ impl Chance {
         Self { coefficients, draws }
     }
 
-    /// Returns the chance that a stack falls, with the coefficients of a draw (counted from 0 and around) or the likeliest
-    /// ones.
+    /// Returns the chance that a stack falls, with the coefficients of a draw (`draw` modulo the number of draws) or,
+    /// if `draw` is `None`, with those that maximize the posterior density.
     pub fn of(&self, levels: usize, point: &Point, in_space: bool, draw: Option<usize>) -> f64 {
         let mut row = features(levels, point);
         if !in_space {

@@ -122,7 +122,7 @@ fn observed(text: &mut String, quake: &Earthquake) {
     }
 }
 
-/// Returns how a study looks at its stacks.
+/// Returns the view of a study: across, along, or in space.
 fn view(study: &str) -> &'static str {
     match study.rsplit('-').next() {
         Some("across") => "across",
@@ -233,7 +233,7 @@ fn predictions(text: &mut String, observations: &Statements, results: &Results) 
     }
 }
 
-/// Counts the falls in space by the direction in which the first body left: along the barrels, and all.
+/// Counts the falls of a study in space: those in which the first body left its seat along the barrels, and all.
 fn along(cases: &[FieldCases], study: &str) -> (u32, u32) {
     let all = cases.iter().filter(|one| one.study == study).flat_map(|one| &one.cases);
     all.filter(|case| case.falls).fold((0, 0), |(along, all), case| {
@@ -267,7 +267,7 @@ fn direction(text: &mut String, cases: &[FieldCases]) {
     text.push_str("\n“Racks slid off the ends of the barrels below” names that direction, and most falls of the model go there; since nobody counted, no likelihood is given.\nThe mode agrees less: at Napa College more stacks lose a barrel first (“ejection”) than a rack, which the field does not say; a barrel on a rack that leans counts as fallen once it has gone down, so the two are kept apart by convention (see [space.md](space.md)).\n");
 }
 
-/// Returns the mean over the prior of a study and a height.
+/// Returns the shares of a study at a height.
 fn share<'a>(results: &'a Results, study: &str, levels: usize) -> Option<&'a Share> {
     results.shares.iter().find(|one| one.study == study && one.levels == levels)
 }

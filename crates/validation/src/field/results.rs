@@ -32,19 +32,19 @@ pub(super) const NAMES: [&str; UNKNOWNS] = [
 pub struct Share {
     /// Name of the study.
     pub study: String,
-    /// Levels.
+    /// Number of levels.
     pub levels: usize,
-    /// Cases that fall, and all.
+    /// Number of cases that fall, and number of all cases.
     pub count: (u32, u32),
-    /// Their share over the design, with its interval of 95 %.
+    /// Share of the cases of the design that fall, with its 95 % interval.
     pub design: Interval,
     /// Mean fitted chance of the same cases.
     pub fitted: f64,
-    /// Chance to fall with the medians of the catalog under the record as it is.
+    /// Chance to fall with the medians of the catalog, under the unscaled record.
     pub medians: f64,
-    /// Chance over the prior.
+    /// Chance to fall, over the prior.
     pub prior: Range,
-    /// Chance over the posterior of "half of the barrels".
+    /// Chance to fall, over the posterior given the statement "half of the barrels".
     pub posterior: Range,
     /// Share of the barrels of fallen stacks that fell.
     pub fallen: f64,
@@ -85,11 +85,13 @@ pub struct Results {
     pub posteriors: Vec<Posterior>,
     /// Likelihoods along each unknown.
     pub bins: Vec<Bin>,
-    /// Predicted value of each statement, over the prior and over the posterior of "half".
+    /// Predicted value of each statement, over the prior and over the posterior given the statement "half".
     pub predictions: Vec<(String, Range, Range)>,
-    /// Mean share of barrels on the floor against friction barrel–rack over all else, and the central 90 %.
+    /// For each value of the barrel–rack friction, mean and central 90 % of the share of barrels on the floor, over
+    /// all other unknowns.
     pub curve: Vec<(f64, Range)>,
-    /// Density of friction barrel–rack per unit of ln μ: its value, prior, posterior of "half", and of all statements.
+    /// Densities of the barrel–rack friction per unit of ln μ: value of the friction, then its density in the prior,
+    /// given the statement "half", and given all statements.
     pub densities: Vec<[f64; 4]>,
 }
 
@@ -218,7 +220,7 @@ impl Results {
         self.posteriors.iter().find(|one| one.given == name)
     }
 
-    /// Returns the prediction of a statement, over the prior and over the posterior of "half".
+    /// Returns the prediction of a statement, over the prior and over the posterior given the statement "half".
     pub fn prediction(&self, id: &str) -> Option<(&Range, &Range)> {
         let found = self.predictions.iter().find(|(name, ..)| name == id);
         found.map(|(_, prior, posterior)| (prior, posterior))
@@ -284,9 +286,9 @@ impl Results {
 
 /// Weights of the draws.
 struct Weighed {
-    /// Given "half".
+    /// Weights given the statement "half".
     half: Vec<f64>,
-    /// Given all statements.
+    /// Weights given all statements.
     all: Vec<f64>,
     /// Predicted share of barrels on the floor of Napa Barrel Care.
     shares: Vec<f64>,

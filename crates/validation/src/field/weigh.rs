@@ -20,7 +20,7 @@ pub(super) const DRAWS: usize = 20_000;
 /// A study with its fit.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted<'a> {
-    /// Its cases.
+    /// Cases of the study.
     pub(super) cases: &'a FieldCases,
     /// Chance of a fall.
     pub(super) chance: Chance,
@@ -40,12 +40,14 @@ impl<'a> Fitted<'a> {
         }
     }
 
-    /// Returns the chance that a stack falls, with the coefficients of a draw or the likeliest ones.
+    /// Returns the chance that a stack falls, with the coefficients of a draw or, if `draw` is `None`, with those
+    /// that maximize the posterior density.
     pub(super) fn share(&self, levels: usize, point: &Point, draw: Option<usize>) -> f64 {
         self.chance.of(levels, point, self.in_space, draw)
     }
 
-    /// Returns the mean chance of the cases of a height, over what the cases leave open: near the share that fell.
+    /// Returns the mean chance to fall over the cases of a height and over all draws of the coefficients; it is close
+    /// to the share of these cases that fell.
     pub(super) fn over_the_design(&self, levels: usize) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for draw in 0..FITS {
@@ -69,7 +71,8 @@ fn lognormal(median: f64, spread: f64, range: [f64; 2], random: &mut Random) -> 
     }
 }
 
-/// Draws of the unknowns from the prior, those of one earthquake with its factor on the motion.
+/// Returns draws of the unknowns from the prior; `motion` is the standard deviation of the natural logarithm of the
+/// factor on the motion of an earthquake.
 pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
     let mut random = Random::new(seed);
     (0..DRAWS)
@@ -82,8 +85,8 @@ pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
         .collect()
 }
 
-/// Shares that a statement is about, one for each draw of the unknowns: with its own draws of azimuth, of the mixture
-/// of heights (every mixture as likely), and of what the simulated cases leave open.
+/// Returns the share that a statement is about, for each draw of the unknowns. For each of them, the azimuth, the
+/// mixture of heights (all mixtures are equally probable) and the coefficients of the fit are drawn, too.
 pub(super) fn predicted(
     statement: &Statement,
     studies: &[&Fitted<'_>],
@@ -120,7 +123,7 @@ pub(super) fn weights(shares: &[f64], likelihood: Likelihood) -> Vec<f64> {
     shares.iter().map(|share| likelihood.of(*share)).collect()
 }
 
-/// Median and interval of a weighted sample.
+/// Mean, median and central 90 % of a weighted sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Mean.
@@ -158,7 +161,7 @@ pub(super) fn effective(weights: &[f64]) -> f64 {
     sum * sum / weights.iter().map(|w| w * w).sum::<f64>()
 }
 
-/// Returns the mean weight of the draws with an unknown within a range; `None` of too few draws.
+/// Returns the mean weight of the draws with an unknown within a range; `None` if there are too few such draws.
 pub(super) fn within(
     draws: &[[f64; UNKNOWNS]],
     weights: &[f64],

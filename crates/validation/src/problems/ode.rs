@@ -95,8 +95,8 @@ fn corner() -> Problem {
     };
     let (k, c) = (200.0 * 200.0, 2.0 * 0.1 * 200.0); // per unit of mass
     let (width, height) = (sin(alpha), cos(alpha));
-    // The state is x, z and angle of the block, their rates, and the elongation of the stick. Contact force and
-    // velocities are evaluated at the point of the floor below the corner.
+    // The state is x, z and angle of the block, their rates, and the elongation of the tangential (sticking) spring.
+    // Contact force and velocities are evaluated at the point of the floor below the corner.
     let rates = move |t: f64, y: &[f64; 7]| {
         let [_, z, angle, vx, vz, spin, stick] = *y;
         let (right, up) =

@@ -48,8 +48,8 @@ impl Form {
     }
 }
 
-/// Borders in the table, in the order of increasing pulse strength: overturning starts, the block is safe again, the
-/// block overturns without an impact.
+/// Boundaries in the table, in the order of increasing pulse strength: overturning starts, the block is safe again,
+/// the block overturns without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
 /// Returns the problems of this module.
@@ -71,7 +71,7 @@ pub(super) fn problems() -> Vec<Problem> {
         (Form::OneCosine, 3.0, [1.8578, 6.5103, 10.954]),
     ] {
         let [starts, safe, again]: [f64; 3] = borders;
-        // Each bracket reaches halfway to the next border, but not farther than 3 % from its own.
+        // Each bracket reaches halfway to the next boundary, but not farther than 3 % from its own boundary.
         let (low, high) = (0.5 * (starts + safe), 0.5 * (safe + again));
         let brackets = [
             (0.97 * starts, low.min(1.03 * starts)),
@@ -122,7 +122,7 @@ fn tabulated(
     exact: f64,
     bracket: (f64, f64),
 ) -> Problem {
-    // The block overturns below the border `safe-again`, and above the other two.
+    // The block overturns below the boundary `safe-again`, and above the other two boundaries.
     let falls_below = which == BORDERS[1];
     setting(
         format!("pulses/{}-{ratio}-{which}", form.name()),

@@ -40,7 +40,7 @@ fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, boo
     // The ground moves to the right, so the block rotates about its lower left corner.
     let (sin, cos) = barrelstack_dynamics::math::sin_cos(at.orientation);
     let slip = scene.relative(1) - cos * s + sin + s;
-    // Sticks stretch by micrometers before they slip; stiffer sticks less.
+    // The tangential (sticking) springs stretch by micrometers before they slip; stiffer springs stretch less.
     Ok((slip.abs() > 4e-6 / finer, at.orientation.abs() > 1e-5))
 }
 

@@ -97,10 +97,10 @@ fn block(velocity: f64) -> Result<Scenario, Failure> {
     Ok(Scenario::parse("block.toml", &text, &[])?)
 }
 
-/// The law of a wall that is met by a block.
+/// Contact law of a wall that a block strikes.
 const SPRING: NormalLaw = NormalLaw::KelvinVoigt { stiffness: BLOCK[3], damping: 0.0 };
 
-/// Runs two blocks, the first of which pounds the second; that one comes back from a wall after a second gap.
+/// Runs two blocks: the first strikes the second, which then crosses a second gap and comes back from a wall.
 fn pounded() -> Result<RoomRun, Failure> {
     let [_, speed, gap, _] = BLOCK;
     let mut room = room(vec![
@@ -111,7 +111,7 @@ fn pounded() -> Result<RoomRun, Failure> {
     run(&room, 1)
 }
 
-/// Two equal blocks that pound across a gap, and a wall.
+/// Creates the problems of two equal blocks that strike each other across a gap, and of a wall.
 ///
 /// Equal masses exchange their velocities without loss, whatever the law: A stops, B goes to the wall and returns to A,
 /// which it sends back with its own speed. The wall gives twice the momentum of B.
@@ -120,7 +120,7 @@ fn pounding() -> Vec<Problem> {
     let [mass, speed, gap, spring] = BLOCK;
     let (momentum, stiffness) = (mass * speed, 4.0 * spring);
     let first = gap / speed;
-    // Half a period of two masses on a spring, and of one on a spring.
+    // Half a period of two masses joined by a spring, and of one mass on a spring.
     let together = PI / (2.0 * stiffness / mass).sqrt();
     let back = PI / (stiffness / mass).sqrt();
     // While the springs of two blocks are in contact, B moves by half of the distance that A would have moved: v T / 2.
@@ -279,7 +279,7 @@ fn apart(run: &RoomRun) -> Option<f64> {
     Some(most / wall.peak)
 }
 
-/// A barrel that rolls into a wall and is thrown back.
+/// Creates the problems of a barrel that rolls into a wall and is thrown back.
 fn rebound() -> Vec<Problem> {
     static RUN: OnceLock<Result<RoomRun, String>> = OnceLock::new();
     let ([mass, speed, gap, _], [_, restitution, _]) = (BARREL, REBOUND);
@@ -340,7 +340,7 @@ fn rebound() -> Vec<Problem> {
     )
 }
 
-/// A row of dominoes, each a stack of its own.
+/// Creates the problem of a row of dominoes, each of which is a stack of its own.
 fn wave(spacing: f64, count: u32) -> Problem {
     setting(
         format!("rooms/dominoes-{spacing}"),
@@ -356,7 +356,7 @@ fn wave(spacing: f64, count: u32) -> Problem {
     .by(move |_| Row { count, spacing, friction: 0.0 }.speed())
 }
 
-/// Stacks that are far apart.
+/// Creates the problem of stacks that are far apart.
 fn alone() -> Problem {
     setting(
         "rooms/far-apart",
@@ -394,8 +394,9 @@ fn alone() -> Problem {
     })
 }
 
-/// Returns a room with two blocks that pound and of which the second meets a wall. The room is turned by an angle (rad),
-/// and the second block about its own vertical axis by another one; `side` is -1 for the mirror image.
+/// Returns a room with two blocks that strike each other; the second block then strikes a wall. The room is turned by
+/// the angle `turn` (rad), and the second block by the angle `own` (rad) about its own vertical axis; `side` is -1
+/// for the mirror image.
 fn glancing(turn: f64, own: f64, side: f64) -> Result<Room, Failure> {
     let place = |x: f64, y: f64| [cos(turn) * x - sin(turn) * y, sin(turn) * x + cos(turn) * y];
     let at = |name: &str, scenario: Scenario, [x, y]: [f64; 2], own: f64| Placed {
@@ -413,14 +414,15 @@ fn glancing(turn: f64, own: f64, side: f64) -> Result<Room, Failure> {
     Ok(room)
 }
 
-/// Runs a room of [`glancing`] blocks; both must have met, and the second one the wall.
+/// Runs a room of [`glancing`] blocks; an error if the blocks do not touch each other, or the second block does not
+/// touch the wall.
 fn met(room: &Room, threads: usize) -> Result<RoomRun, Failure> {
     let run = run(room, threads)?;
     let all = !run.meetings.is_empty() && run.obstacles[0].first.is_some();
     all.then_some(run).ok_or_else(|| absent("the blocks do not meet each other and the wall"))
 }
 
-/// A room that is turned or mirrored.
+/// Creates the problem of a room that is turned or mirrored.
 fn turned() -> Problem {
     // measured 1.3e-15 m
     setting(
@@ -455,7 +457,7 @@ fn turned() -> Problem {
     })
 }
 
-/// A room whose stacks are listed in the reverse order.
+/// Creates the problem of a room whose stacks are listed in the reverse order.
 fn reversed() -> Problem {
     setting(
         "rooms/order",

@@ -49,8 +49,8 @@ fn firm(stiffness: f64, mass: f64) -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, 0.7, mass) }
 }
 
-/// Returns a friction law with a coefficient, with sticks of a stiffness (N/m), and with damping suitable for a mass
-/// (kg).
+/// Returns a friction law with a coefficient, with tangential (sticking) springs of a stiffness (N/m), and with
+/// damping suitable for a mass (kg).
 fn rough(coefficient: f64, stiffness: f64, mass: f64) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, mass))
 }
