@@ -301,5 +301,5 @@ fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
     let last = found.curves[0].stripes.last().unwrap();
     let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
     assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
-    assert!(found.warnings.iter().any(|w| w.starts_with("The levels were chosen by hunts")));
+    assert!(found.warnings.iter().any(|w| w.starts_with("The levels were chosen by searches")));
 }

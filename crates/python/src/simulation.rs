@@ -23,7 +23,7 @@ use crate::scenario::{Scenario, with_variants};
 use crate::space::SpatialRun;
 use crate::view::{Numbers, Rows};
 
-/// Number of steps between two looks at the clock.
+/// Number of steps between two checks of the elapsed time.
 const PORTION: u64 = 64;
 
 /// Time (s) of a call below which it is not worth starting threads.
@@ -556,7 +556,7 @@ impl Simulations {
 
 #[pymethods]
 impl Simulations {
-    /// Builds and settles the variants 1 to `count` of a scenario; copies of a free scene.
+    /// Builds and settles the variants 1 to `count` of a scenario; for a free scene, builds `count` copies.
     #[staticmethod]
     fn start(py: Python<'_>, of: &Scenario, plane: Option<&str>, count: u32) -> PyResult<Self> {
         let free = of.inner.imperfections().is_none();
@@ -646,7 +646,7 @@ impl Simulations {
         self.stacked(py, self.widths()[1], Running::twists)
     }
 
-    /// Sets the force on a body in every simulation, from one row each.
+    /// Sets the force on a body in every simulation, from one row of numbers for each simulation.
     fn apply(
         &self,
         body: &str,

@@ -64,7 +64,7 @@ function makeRecords(find, { desk, shake, refuse }) {
   // Describes the use of each file, if one of the motions shakes the stack.
   function told(motion, look) {
     const lines = motions.length > 1
-      ? [...motions.map(({ path, of }) => `${path} is a separate earthquake${of ? `, from ${of.join(", ")}` : ""}`), `${motion.path} shakes the stack; the chart of heights takes all ${motions.length}.`]
+      ? [...motions.map(({ path, of }) => `${path} is a separate earthquake${of ? `, from ${of.join(", ")}` : ""}`), `${motion.path} shakes the stack; the chart of heights uses all ${motions.length} motions.`]
       : motion.channels;
     const plane = ({ view, motion }) => `${view === "longitudinal" ? "along the barrels" : "across the barrels"} by ${motion.name}`;
     const up = look.checked[0].motion.vertical ? "and up and down" : "but not up and down";

@@ -27,7 +27,7 @@
 //!
 //! A panic ends in a trap, after which `answer` returns the message of the panic.
 //!
-//! The variants of a stack may be shared among several engines: each engine runs some of them
+//! The variants of a stack may be divided among several engines: each engine runs some of them
 //! ([`RequestKind::Variants`]), and one engine combines all results obtained so far
 //! ([`RequestKind::Verdict`]). The combined results are bit-identical to those of a single engine
 //! that runs all variants.

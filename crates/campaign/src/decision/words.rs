@@ -254,7 +254,7 @@ pub(super) fn warnings(
     }
     if cases.hunted {
         said.push(
-            "The levels were chosen by hunts for collapse, so that shares and means over all cases apply to the \
+            "The levels were chosen by searches for collapse, so that shares and means over all cases apply to the \
              levels that were run, and not to shaking of a given strength."
                 .to_owned(),
         );
@@ -270,8 +270,8 @@ pub(super) fn warnings(
         }
         if collapse.fit.is_ok() && collapse.band_kind == BandKind::Likelihood {
             said.push(
-                "All cases are of one record, and the band takes them as independent: it does not cover the scatter between \
-                 records."
+                "All cases use one record, and the band treats them as independent: it does not cover the scatter \
+                 between records."
                     .to_owned(),
             );
         }

@@ -128,7 +128,7 @@ fn headline(all: &Heights) -> String {
     if motions < fewest_motions() {
         let more = fewest_motions() - motions;
         return format!(
-            "Too few motions to rate any stack {racks} as low risk: {motions} shook every stack, and {more} \
+            "Too few motions to rate any stack {racks} as low risk: each stack was shaken by {motions}, and {more} \
              more are needed."
         );
     }
@@ -229,8 +229,9 @@ fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
         format!(
-            "Range of the chance of collapse over the uncertain constants of the seats (95 %), and the constant that decides{}.",
-            in_planes(all, ", in the direction with the higher end", "")
+            "95 % range of the chance of collapse over the uncertain constants of the seats, and the constant that \
+             decides{}.",
+            in_planes(all, ", in the direction in which the range ends higher", "")
         ),
         |levels, velocity| {
             Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
@@ -311,8 +312,8 @@ fn sentences(all: &Heights) -> Vec<String> {
     if let Some((height, margin)) = weakest.and_then(|height| Some((height, height.static_margin?)))
     {
         said.push(format!(
-            "Stacks of {} levels have the smallest static margin{}: they collapse under a steady push of {}, as on a floor \
-             tilted by {:.0} degrees.",
+            "Stacks of {} levels have the smallest static margin{}: they collapse under a steady push of {}, which \
+             corresponds to a floor tilted by {:.0} degrees.",
             height.levels,
             inserted(height.direction),
             gravities(margin),

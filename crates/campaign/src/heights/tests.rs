@@ -125,7 +125,7 @@ fn every_headline_says_the_rack_and_the_direction() {
     assert!(
         few.verdict
             .headline
-            .contains("any stack on two-barrel racks as low risk: 5 shook every stack")
+            .contains("any stack on two-barrel racks as low risk: each stack was shaken by 5")
     );
 }
 
@@ -138,7 +138,7 @@ fn static_margins_stand_beside_each_height() {
     assert_eq!(
         last,
         "Stacks of 6 levels have the smallest static margin, along the barrels: they collapse under a steady push of \
-         0.10 g, as on a floor tilted by 6 degrees."
+         0.10 g, which corresponds to a floor tilted by 6 degrees."
     );
     let text = markdown(&page, "figures").text.replace('\u{a0}', " ");
     for row in [

@@ -388,8 +388,8 @@ fn rests_on(all: &Ranking) -> Vec<String> {
         "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
          table. Labor, lost time and injuries are not counted."
             .into(),
-        "Whether a barrel bursts depends on the height of its fall, by the central one of three assumptions; \
-         none has been tested.".into(),
+        "Whether a barrel bursts is assumed to depend on the height of its fall, according to the central one of \
+         three assumptions; none of the three has been tested.".into(),
         format!(
             "The stack stands alone{}: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
              do not tear unless the scenario states a strength.",

@@ -448,7 +448,8 @@ def reproduce(record: Path | None = None, *, studies: bool = True, progress: Pro
     ----------
     record
         The file of the Hollywood Storage record of Northridge, north-south, which cannot be bundled;
-        without it the six barrels are shaken by South Napa, and results that depend on the motion are not compared.
+        without it, the six barrels are shaken by the South Napa record, and results that depend on the motion are
+        not compared.
     studies
         Whether to also run the studies around each case, which are most of the work.
     progress

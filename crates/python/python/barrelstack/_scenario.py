@@ -564,8 +564,8 @@ class Scenario:
 
         Notes
         -----
-        A call takes the interpreter lock and some microseconds; force laws that act at every step belong in the
-        library.
+        Each call acquires the interpreter lock and takes a few microseconds; force laws that act at every step
+        belong in the library.
         """
         run = Run(self._shaken.run_before(every, look))
         warn(run.warnings)
