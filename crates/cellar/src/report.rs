@@ -93,15 +93,15 @@ fn players(answer: &Answer) -> Option<Block> {
     Some(Block::Players(Players {
         id: "players".into(),
         caption: format!(
-            "The run that is shown ({}), in a view that can be turned, or from the front and from above. Its clock is that \
-             of the {}record: the shaking starts at {:.2} s.{}",
+            "The run that is shown ({}), in a view that can be turned, or from the front and from above. Times are \
+             those of the {}record: the shaking starts at {:.2} s.{}",
             shown_run(summary),
             if summary.shocks.is_empty() { "" } else { "first " },
             summary.onset,
             if summary.shocks.is_empty() {
                 ""
             } else {
-                " It runs on through the sequence, without the quiet between the shocks."
+                " They continue through the sequence, without the quiet time between the shocks."
             }
         ),
         panes: vec![
@@ -121,7 +121,8 @@ pub fn document(answer: &Answer) -> Document {
     let summary = &answer.summary;
     let heading = |text: &str| Block::heading(2, text);
     let caption = format!(
-        "The room from above. Stacks have the color of what happens to them in the run that is shown ({}). Shades (barrels): share \
+        "The room from above. The color of a stack shows what happens to it in the run that is shown \
+         ({}). Shades (barrels): share \
          of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m. Racks are not \
          drawn, but they count as obstacles in the table of aisles.",
         shown_run(summary)

@@ -69,9 +69,9 @@ pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> 
     Some(cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the sentence on shocks that are followed until a time (s) before the end of the motion.
+/// Returns the sentence on shocks whose runs end a time (s) before their motions do.
 pub(crate) fn followed(cut: f64) -> String {
-    format!("A shock is followed only until {cut:.1} s before its motion ends.")
+    format!("The run of a shock ends {cut:.1} s before its motion does.")
 }
 
 /// Returns a share with its interval, such as "80 % (95 % interval 61 % to 92 %)".
@@ -139,7 +139,7 @@ pub fn headline(summary: &CellarSummary) -> String {
 /// Returns the result of the run that is shown of a sequence.
 fn of_sequence(summary: &CellarSummary) -> String {
     let cut = missing(summary).map_or(String::new(), |missing| {
-        format!("; a shock is followed only until {missing:.1} s before its motion ends")
+        format!("; the run of a shock ends {missing:.1} s before its motion does")
     });
     let shown = &summary.shown;
     let but = if shown.by_themselves + shown.knocked_over == 0 {

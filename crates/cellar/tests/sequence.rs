@@ -62,7 +62,7 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     assert!(said.contains("Shock 2 (") && said.contains("still moves when the shock ends"), "{said}");
     assert!(summary.headline.contains("in the first shock"), "{}", summary.headline);
     assert!(summary.headline.contains("; in the second "), "{}", summary.headline);
-    assert!(summary.headline.contains("is followed only until"), "{}", summary.headline);
+    assert!(summary.headline.contains("the run of a shock ends"), "{}", summary.headline);
     assert_ne!(words::tone(summary), Tone::Stands);
     let files = answer.files(Language::English).unwrap();
     let (_, csv) = files.iter().find(|(name, _)| name == "shocks.csv").unwrap();
@@ -256,7 +256,7 @@ fn aftershocks_of_several_strengths_follow_one_main_shock() {
         assert_eq!(f64::from(fell) / 2.0, after.by_themselves + after.knocked_over);
     }
     let said = &found.headline;
-    assert!(said.starts_with("Of 2 stacks, ") && said.contains("is followed only until"), "{said}");
+    assert!(said.starts_with("Of 2 stacks, ") && said.contains("The run of a shock ends"), "{said}");
     let files = aftershocks::files(&found, Language::English).unwrap();
     // A row for each stack that stands after the main shock, in each strength; one number in each cell.
     let csv = |at: usize| String::from_utf8_lossy(&files[at].1).into_owned();

@@ -72,7 +72,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.push(Block::Figure(Figure::new(
             format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
             format!(
-                "The {} {} at the decisive moments.",
+                "The {} in the view {}, at the decisive moments.",
                 if free { "scene" } else { "stack" },
                 sight.words(&run.stack)
             ),

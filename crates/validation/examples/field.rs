@@ -6,7 +6,7 @@
 //!
 //! Without `--records` only the record that comes with the program is run; the cases of the other earthquakes stay as
 //! they are, and the program lists them.
-//! A study that was interrupted goes on where it stopped (`target/field`).
+//! A study that was interrupted continues from where it stopped (`target/field`).
 //! `--page` runs nothing and writes the page from the cases that are there; `--only TEXT` runs the studies whose name
 //! contains the text.
 

@@ -212,7 +212,8 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
     ];
     blocks.extend(layouts.iter().enumerate().map(|(at, layout)| {
         let caption = format!(
-            "{} from above. Stacks have the color of what happens to them in the most typical run. Shades (barrels): share \
+            "{} from above. The color of a stack shows what happens to it in the most typical \
+             run. Shades (barrels): share \
              of the variants in which fallen barrels cover the floor at the end, in cells of {CELL} m.",
             capital(&layout.name)
         );
