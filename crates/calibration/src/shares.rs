@@ -118,7 +118,7 @@ pub fn shares(
     };
     let fit = Fit::new(&shaken, heights, settings.seed).ok_or_else(|| {
         unsuited(format!(
-            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}: in the other ones the stack falls at \
+            "only {} of {} simulations run to their end, fewer than {FEWEST_RUNS}: in all others, the stack falls at \
              rest or the run fails: start from other values",
             shaken.len(),
             settings.simulations
@@ -395,8 +395,9 @@ impl Weighed {
             rows.bar(format!("{}: given the statements", one.id), after);
             stated.extend([one.value.unwrap_or(f64::NAN); 2]);
         }
-        let caption = "Shares by the model, before and given the statements. Bars show the central 90 % over the \
-                       parameters, the motion and the mixture of heights; marks show the stated shares.";
+        let caption = "Shares that the model predicts, before the statements are used and given all of them. Bars show \
+                       the central 90 % over the parameters, the motion and the mixture of heights; marks show the \
+                       stated shares.";
         let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share", "") };
         rows.figure("collapse-shares", caption, x, Some(stated))
     }

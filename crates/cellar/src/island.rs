@@ -43,7 +43,7 @@ pub(crate) struct Member {
     pub(crate) frame: Frame,
 }
 
-/// Constant data of an island, which change only when the island is merged with another.
+/// Data of an island that change only when the island is merged with another.
 #[derive(Debug)]
 pub(crate) struct Fixed {
     pub(crate) members: Vec<Member>,

@@ -79,20 +79,20 @@ impl Kept {
             return Err(failure(
                 &path,
                 &format!(
-                    "it is of version {} ({}), not {} ({})",
+                    "it was written by version {} ({}), not by {} ({})",
                     file.version, file.schema, own.1, own.0
                 ),
             ));
         }
         if file.cellar_hash != self.cellar_hash {
             let message = format!(
-                "it is of the cellar {}, and this one is {}: another file, other changes or another number of variants",
+                "it belongs to the cellar {}, and this cellar is {}: the file, the changes or the number of variants differ",
                 file.cellar_hash, self.cellar_hash
             );
             return Err(failure(&path, &message));
         }
         if file.case.variant != variant {
-            return Err(failure(&path, &format!("it is of variant {}", file.case.variant)));
+            return Err(failure(&path, &format!("it belongs to variant {}", file.case.variant)));
         }
         Ok(Some(file.case))
     }

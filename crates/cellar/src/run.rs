@@ -195,8 +195,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges each island of which a body would have left its tube with the nearest island or obstacle, in the order
-    /// of time.
+    /// Merges the islands of which a body would have left its tube, in the order of time; each is merged with the
+    /// island or obstacle that is nearest to this body.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {
