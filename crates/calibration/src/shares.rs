@@ -81,10 +81,10 @@ struct Fit {
 /// drawn from the range and used to simulate one stack at one of the heights, with random offsets of racks and barrels,
 /// and with a motion that differs from that of the scenario by a factor, as a cellar differs from the station
 /// ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that fall as a function of
-/// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the statements.
-/// Each set has a factor that is common to all statements, proportions of the heights (all mixtures are equally
-/// probable) and one sample of the regression; the likelihood includes an error of the model itself ([`MODEL_ERROR`]).
-/// The intervals hold the central 95 % of the weight.
+/// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the
+/// statements. Each set has a factor that is common to all statements, proportions of the heights (all mixtures are
+/// equally probable) and one sample of the regression; the likelihood includes an error of the model itself
+/// ([`MODEL_ERROR`]). The intervals hold the central 95 % of the weight.
 ///
 /// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
 /// `report` is called from several threads with the number of completed simulations and the total, and may

@@ -86,7 +86,8 @@ impl Kept {
         }
         if file.cellar_hash != self.cellar_hash {
             let message = format!(
-                "it belongs to the cellar {}, and this cellar is {}: the file, the changes or the number of variants differ",
+                "it belongs to the cellar {}, and this cellar is {}: the file, the changes or the number of \
+                 variants differ",
                 file.cellar_hash, self.cellar_hash
             );
             return Err(failure(&path, &message));

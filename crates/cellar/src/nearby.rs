@@ -1,8 +1,8 @@
 //! Bodies of different islands that are near each other, and how far each may move before two of them can touch.
 //!
-//! The gap between two bodies is measured when it may have become small. After a measurement, the gap shrinks by at most
-//! the lengths of the paths of the two bodies, which are summed window by window. It is measured again only when these
-//! paths may have closed it.
+//! The gap between two bodies is measured when it may have become small. After a measurement, the gap shrinks by at
+//! most the lengths of the paths of the two bodies, which are summed window by window. It is measured again only when
+//! these paths may have closed it.
 
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::join::gap_between;

@@ -216,9 +216,9 @@ table! {
     block = Kind::Tables(&BLOCK), Default::Required;
     /// The stack, in space; all stacks of the room are alike.
     stack = Kind::Table(&STACK), Default::Required;
-    /// Contact laws by pair of bodies; bodies of two stacks touch as bodies that have fallen.
+    /// Contact laws by pair of bodies; bodies of different stacks have the laws of bodies that have fallen.
     interface = Kind::Table(&INTERFACES), Default::Nothing;
-    /// Places from which bodies start, such as surveyed after an earthquake.
+    /// Places from which bodies start, such as those surveyed after an earthquake.
     start = Kind::Table(&START), Default::Nothing;
     /// The ground motion along the axes of the room, or a sequence of shocks.
     motion = Kind::Table(&MOTION), Default::Required;
@@ -228,9 +228,10 @@ table! {
     record = Kind::Table(&RECORD), Default::Nothing;
     /// Thresholds that define a collapse.
     outcome = Kind::Table(&OUTCOME), Default::Nothing;
-    /// Random differences from stack to stack, and the number of variants of the room; every stack has its own draws.
+    /// Random differences from stack to stack, and the number of variants of the room; they are drawn for every
+    /// stack.
     imperfections = Kind::Table(&IMPERFECTIONS), Default::Nothing;
-    /// Uncertainty of constants that nobody has measured; all stacks of a variant share the draws.
+    /// Uncertainty of constants that nobody has measured; they are drawn once for all stacks of a variant.
     unknowns = Kind::Table(&UNKNOWNS), Default::Nothing;
 }
 

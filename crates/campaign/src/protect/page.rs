@@ -267,13 +267,13 @@ fn table(all: &Ranking) -> Table {
             ("better than as it is, in draws of the constants", "", &|one| {
                 Cell::maybe(one.better_than_as_it_is.map(percent))
             }),
-            ("better than the next, in draws", "", &|one| {
+            ("better than the next row, in draws of the constants", "", &|one| {
                 Cell::maybe(one.better_than_next.map(percent))
             }),
             (fallen, "", &|one| Cell::text(interval(all, &one.fallen))),
             (burst, "", &|one| Cell::text(interval(all, &one.burst))),
             ("fewer fall, same motions", "", &|one| Cell::maybe(shown(&one.saved))),
-            ("the same, for all protections at once", "", &|one| {
+            ("fewer fall, for all protections at once", "", &|one| {
                 Cell::maybe(shown(&one.saved_together))
             }),
             ("fallen in the worst state", "", &|one| Cell::maybe(worn(one))),
