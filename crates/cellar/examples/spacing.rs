@@ -71,14 +71,15 @@ fn share(of: &Mean) -> String {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let variants: u32 = std::env::args().nth(1).map_or(Ok(32), |text| text.parse())?;
-    println!("# From which spacing does a stack stand for itself?\n");
+    println!("# At which spacing do stacks no longer knock each other over?\n");
     println!(
-        "Two rows of five stacks of the built-in scenario `demo-napa` (ten barrels on five levels, two-barrel racks) in \
-         space, without walls, under all three components of Napa College 2014. Neighbors are equally far apart in the \
-         rows and between them. {variants} variants each: every stack draws its own imperfections, and all stacks of a \
-         variant share the unknown constants. A stack is knocked over if a body of another stack touched it before its \
-         first loss of seat. Shares are over all stacks; their 95 % intervals come from the scatter between the variants, \
-         since the stacks of a room share their constants and their motion.\n"
+        "Two rows of five stacks of the built-in scenario `demo-napa` (ten barrels on five levels, two-barrel racks) \
+         are computed in space, without walls, under all three components of Napa College 2014. The distance between \
+         neighboring stacks is the same within a row and between the rows. Each spacing is computed with {variants} \
+         variants, in which every stack has imperfections of its own, and all stacks share the unknown constants. A \
+         stack is knocked over if a body of another stack touched it before its first loss of seat. Shares are those \
+         of all stacks; their 95 % intervals are computed from the scatter between the variants, since the stacks of \
+         a room share their constants and their motion.\n"
     );
     println!(
         "`cargo run --release -p barrelstack-cellar --example spacing -- {variants}` computes this page.\n"
@@ -122,29 +123,29 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [low, high] = [f64::min, f64::max].map(|of| in_all.iter().copied().fold(in_all[0], of));
     if high - low < 0.05 {
         println!(
-            "In all, {} to {} of the stacks fall, alone and at every spacing: under this motion the spacing decides how a \
-             stack falls, and not whether it does.\n",
+            "Alone and at every spacing, {} to {} of the stacks fall: under this motion the spacing decides whether a \
+             stack falls by itself or is knocked over, but not whether it falls.\n",
             percent(low),
             percent(high)
         );
     }
     if let Some(last) = last {
         println!(
-            "The runs of a room end after {END} s. A stack alone is followed until nothing moves; if it falls, it loses \
-             its first seat after {last:.1} s at the latest.\n"
+            "The runs of a room end after {END} s. The stack alone is followed until nothing moves; in the variants in \
+             which it falls, it loses its first seat after {last:.1} s at the latest.\n"
         );
     }
     match free {
         Some((spacing, runs)) => {
             let high = wilson(0, runs, LEVEL).high;
             println!(
-                "From a spacing of {spacing} m on a stack stands for itself: none of {runs} stacks is knocked over, so that \
-                 at most {} of such stacks are (upper end of the 95 % interval, if stacks were independent).",
+                "From a spacing of {spacing} m on, none of {runs} stacks is knocked over, so that at most {} of such stacks \
+                 are (upper end of the 95 % interval, if stacks were independent).",
                 percent(high)
             );
         }
         None => println!(
-            "At none of these spacings does a stack stand for itself: some are knocked over even at {} m.",
+            "At each of these spacings some stacks are knocked over, even at {} m.",
             SPACINGS[SPACINGS.len() - 1]
         ),
     }
