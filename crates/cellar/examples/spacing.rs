@@ -139,8 +139,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some((spacing, runs)) => {
             let high = wilson(0, runs, LEVEL).high;
             println!(
-                "From a spacing of {spacing} m on, none of {runs} stacks is knocked over, so that at most {} of such stacks \
-                 are (upper end of the 95 % interval, if stacks were independent).",
+                "From a spacing of {spacing} m on, none of {runs} stacks is knocked over, so that at most {} of such \
+                 stacks are (upper end of the 95 % interval, if stacks were independent).",
                 percent(high)
             );
         }
