@@ -144,7 +144,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         series.push(Series { style, ..Series::new(format!("two levels {name}"), places, walked) });
     }
     println!(
-        "\n| friction | amplitude (g) | period (s) | Newmark | two seats, 0.98 MN/m | along, 0.98 | along, 3 | along, 30 MN/m |"
+        "\n| friction | amplitude (g) | period (s) | Newmark's block | two seats under a block, 0.98 MN/m \
+         | along, 0.98 MN/m | along, 3 MN/m | along, 30 MN/m |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     for (friction, amplitude, period) in [
