@@ -434,12 +434,12 @@ def page(rows):
     text = ["# RockBench: results", "",
             "Made by `python3 run.py` in this folder; do not edit.",
             f"{len(cases)} cases with {count} quantities.",
-            "What they are, how they are scored, and how to add an engine: [README.md](README.md).",
-            "Every number behind this page: [results.csv](results.csv).", "",
+            "[README.md](README.md) describes the cases, how they are scored, and how to add an engine.",
+            "[results.csv](results.csv) has every number on which this page is based.", "",
             "A quantity is passed if its error is at most its tolerance, failed if it is larger or if the run broke, and "
-            "“cannot state” where the engine has no way to state the case or to return the quantity; the last is not a failure.",
-            "*Default* is an engine as it comes, with its own step where it has one.",
-            "*Settled* is halving the step, from the default one on and from 1/240 s at most, until every quantity of the case changes by less "
+            "“cannot state” if the engine cannot state the case or cannot return the quantity; this is not a failure.",
+            "*Default* is an engine as it comes, with its default step if it has one.",
+            "*Settled* means that the step is halved, beginning with the default step and with at most 1/240 s, until every quantity of the case changes by less "
             "than a quarter of its tolerance (for a verdict, twice in a row); an adapter may then also choose its engine's most "
             "accurate settings.", "",
             "## Scores", "",
@@ -457,11 +457,11 @@ def page(rows):
                 line.append(f"{1e3 * median(list(steps.values())):.3g} ms")
             line.append(milliseconds(cost(part)))
         text.append("| " + " | ".join(line) + " |")
-    text += ["", "Cost is time of the processor for a simulated second, over the cases that an engine ran: of one core of "
-             f"a {platform.machine()} machine that others used too, so compare within the table, and no digit after the first.",
+    text += ["", "Cost is the processor time for a simulated second, over the cases that an engine ran, on one core of "
+             f"a {platform.machine()} machine that other programs used as well. Compare costs only within the table, and only their first digit.",
              "“Not settled” counts cases whose answer still changed at the finest step; they are scored at that step."]
     part = [f"{n} ({c} of {len(cases)} cases)" for n, c in covered.items() if n not in names]
-    text += (["Run on some cases only, and left out of the tables: " + ", ".join(part) + "."] if part else []) + [""]
+    text += (["Engines that ran only some of the cases are left out of the tables: " + ", ".join(part) + "."] if part else []) + [""]
     for setting, title in (("default", "at the default step"), ("settled", "at the step at which the answer settles")):
         text += [f"## Passed by category, {title}", "",
                  "| category | quantities | " + " | ".join(names) + " |", "|---|---:|" + "---:|" * len(names)]
@@ -473,13 +473,13 @@ def page(rows):
                 cells.append(f"{t['passed']}" + (f" ({t['cannot']} cannot)" if t["cannot"] else ""))
             text.append(f"| {words} | {total} | " + " | ".join(cells) + " |")
         text.append("")
-    text += ["## Cost by category", "", "Time of the processor for a simulated second, at the default step → settled.", "",
+    text += ["## Cost by category", "", "Processor time for a simulated second, at the default step → settled.", "",
              "| category | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
     for key, words in CATEGORIES.items():
         cells = [" → ".join(milliseconds(cost(of(name, s, key))) for s in SETTINGS) for name in names]
         text.append(f"| {words} | " + " | ".join(cells) + " |")
-    text += ["", "Cases of which an engine passes every quantity, and among these the ones for which no other engine that does so is "
-             "cheaper:", "", "| engine | default: cases | cheapest | settled: cases | cheapest |", "|---|---:|---:|---:|---:|"]
+    text += ["", "Number of cases of which an engine passes every quantity, and number of these for which no other engine that also "
+             "passes every quantity takes less time:", "", "| engine | default: cases | cheapest | settled: cases | cheapest |", "|---|---:|---:|---:|---:|"]
     whole = {(n, s): whole_cases(of(n, s)) for n in names for s in SETTINGS}
     for name in names:
         line = [name]
@@ -503,7 +503,7 @@ def page(rows):
         else:
             text += [f"- **{name}**: nothing of these cases."]
     text += ["", "## Every case", "",
-             "The largest error over tolerance among the quantities of a case, at the default step → settled: 1 or less is passed. "
+             "The largest ratio of error to tolerance among the quantities of a case, at the default step → settled: 1 or less is passed. "
              "∞ is a wrong verdict or a run that broke, – is “cannot state”, * is not settled.", "",
              "| case | quantities | " + " | ".join(names) + " |", "|---|---:|" + "---:|" * len(names)]
 
