@@ -59,7 +59,10 @@ fn every_shock_counts_once_and_the_whole_is_the_sum_of_its_shocks() {
     // The runs end before the record does, so the room does not rest, and the answer says so.
     assert_eq!(first.still_moving.of_variants, 2);
     let said = words::sentences(summary).join(" ");
-    assert!(said.contains("Shock 2 (") && said.contains("still moves when the shock ends"), "{said}");
+    assert!(
+        said.contains("Shock 2 (") && said.contains("still moves when the shock ends"),
+        "{said}"
+    );
     assert!(summary.headline.contains("in the first shock"), "{}", summary.headline);
     assert!(summary.headline.contains("; in the second "), "{}", summary.headline);
     assert!(summary.headline.contains("the run of a shock ends"), "{}", summary.headline);
@@ -256,7 +259,10 @@ fn aftershocks_of_several_strengths_follow_one_main_shock() {
         assert_eq!(f64::from(fell) / 2.0, after.by_themselves + after.knocked_over);
     }
     let said = &found.headline;
-    assert!(said.starts_with("Of 2 stacks, ") && said.contains("The run of a shock ends"), "{said}");
+    assert!(
+        said.starts_with("Of 2 stacks, ") && said.contains("The run of a shock ends"),
+        "{said}"
+    );
     let files = aftershocks::files(&found, Language::English).unwrap();
     // A row for each stack that stands after the main shock, in each strength; one number in each cell.
     let csv = |at: usize| String::from_utf8_lossy(&files[at].1).into_owned();

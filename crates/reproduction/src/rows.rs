@@ -455,8 +455,7 @@ fn parameters(results: &Results) -> Vec<Comparison> {
 fn along(results: &Results) -> Vec<Comparison> {
     let summary = &results.along.summary;
     let outcome = &summary.outcome;
-    let fall =
-        outcome.first_fall.map(|t| format!(" The first barrel falls at {}.", seconds(t)));
+    let fall = outcome.first_fall.map(|t| format!(" The first barrel falls at {}.", seconds(t)));
     vec![
         finding(
             "section 4",

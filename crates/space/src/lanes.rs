@@ -29,6 +29,7 @@ pub(crate) type Ready = (usize, Prepared);
 /// Runs cases in lanes on one core; `report` receives the index and the result of each finished case, and `stop` is
 /// polled. Returns the cases that have to be run one after the other.
 pub(crate) fn run(
+    width: Width,
     ready: Vec<Ready>,
     report: &mut dyn FnMut(usize, Case),
     stop: &dyn Fn() -> bool,
@@ -47,9 +48,8 @@ pub(crate) fn run(
             None => groups.push((topology, method, vec![one])),
         }
     }
-    let width = Width::widest();
     for (_, method, group) in groups {
-        if group.len() < FEWEST || width == Width::Scalar {
+        if group.len() < FEWEST || width == Width::Scalar || !width.is_here() {
             alone.extend(group);
         } else {
             width.run(InLanes { method, group: &group, report, stop });

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
-use barrelstack::ensemble::{CaseResult, Share, Stage};
+use barrelstack::ensemble::{CaseResult, Share, Stage, Width};
 use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
@@ -207,7 +207,19 @@ fn run_some(
 
 /// Runs cases, each of which `build` makes from an item, on all cores; the observer receives the number of finished
 /// cases, and may stop the work. Unfinished cases are returned as interrupted.
+///
+/// Cases of one topology run side by side in the lanes of a vector register, with the bits of single runs.
 pub fn run_each<T: Sync>(
+    items: &[T],
+    build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Vec<Case> {
+    run_each_in(Width::widest(), items, build, observer)
+}
+
+/// Runs like [`run_each`] in lanes of a given width; a machine without such lanes runs one case after the other.
+pub fn run_each_in<T: Sync>(
+    width: Width,
     items: &[T],
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
@@ -228,7 +240,7 @@ pub fn run_each<T: Sync>(
             cases[at] = case;
             report(done.fetch_add(1, Ordering::Relaxed) + 1);
         };
-        run_chunk(chunk, build, &mut finished, &stop);
+        run_chunk(width, chunk, build, &mut finished, &stop);
         cases
     };
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
@@ -242,6 +254,7 @@ const BATCH: usize = 32;
 
 /// Runs cases on one core: those that can share their steps in lanes, and all others one after the other.
 fn run_chunk<T>(
+    width: Width,
     items: &[T],
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
     finished: &mut dyn FnMut(usize, Case),
@@ -260,7 +273,7 @@ fn run_chunk<T>(
         }
     }
     stage.shake(items.len());
-    for (at, prepared) in lanes::run(ready, finished, stop) {
+    for (at, prepared) in lanes::run(width, ready, finished, stop) {
         let mut share = Share::default();
         let run = prepared.start().run_watched(&mut |progress| {
             share.reached(progress.time / progress.end_time);

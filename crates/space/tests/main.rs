@@ -11,6 +11,7 @@ mod compare;
 mod devices;
 mod free;
 mod ground;
+mod lanes;
 mod plane;
 mod rack_walk;
 mod simulation;

@@ -112,7 +112,9 @@ fn layouts(args: &CompareArgs, given: Vec<Named>) -> anyhow::Result<(Vec<Named>,
     for change in usual {
         let changed = change.changed.and_then(|cellar| {
             let same = runs.iter().find(|(_, run)| run.fingerprint() == cellar.fingerprint());
-            same.map_or(Ok(cellar), |(name, _)| Err(format!("it is the same as the layout \"{name}\"")))
+            same.map_or(Ok(cellar), |(name, _)| {
+                Err(format!("it is the same as the layout \"{name}\""))
+            })
         });
         match changed {
             Ok(cellar) => runs.push((change.name, cellar)),

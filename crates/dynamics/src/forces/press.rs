@@ -456,10 +456,18 @@ impl<R: Real> RollingPair<R> {
 
 /// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their moments about
 /// the contactor's center of mass.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct PairWrench<S: Space> {
     normal: Wrench<S>,
     /// The part of the normal forces that is due to dampers.
     damped: Wrench<S>,
     friction: Wrench<S>,
+}
+
+impl<S: Space> Default for PairWrench<S> {
+    #[inline(always)]
+    fn default() -> Self {
+        let none = Wrench::default();
+        Self { normal: none, damped: none, friction: none }
+    }
 }

@@ -31,9 +31,8 @@ pub(super) fn depends_on((view, spread): Placed<'_>) -> Option<String> {
             let (least, most) = (low.share.min(high.share), low.share.max(high.share));
             let between = least - BEYOND < median.share && median.share < most + BEYOND;
             let stated = [Some(low), Some(median).filter(|_| !between), Some(high)];
-            let words = |at: &ShareAt| {
-                format!("{} fall at {}", percent(at.share), one.words(at.value))
-            };
+            let words =
+                |at: &ShareAt| format!("{} fall at {}", percent(at.share), one.words(at.value));
             let stated: Vec<String> = stated.into_iter().flatten().map(words).collect();
             format!("the {} decides the outcome: {}", one.name, stated.join(", "))
         },
