@@ -16,6 +16,9 @@ pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 /// File to which the animation is written.
 const FILMED: &str = "docs/pictures/demo.gif";
 
+/// Path, in the repository, of the picture of the demo's page for the README.
+const PICTURED: &str = "docs/pictures/demo.png";
+
 /// Path, in the repository, of the script that checks the page of the engine.
 pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
 
@@ -75,17 +78,17 @@ impl Check {
         build_program(&self.root)
     }
 
-    /// Records the animation of the demo for the README.
+    /// Records the animation of the demo and the picture of its page for the README.
     pub(crate) fn film(&self) -> anyhow::Result<ExitCode> {
         let mut command = self.command().map_err(anyhow::Error::msg)?;
         self.build()?;
         let folder = target(&self.root).join("browser").join("film");
         let mut demo = Command::new(program(&self.root));
-        demo.args(["run", "demo-napa", "--quiet", "--overwrite", "--out"]).arg(&folder);
+        demo.args(["demo", "--no-remedy", "--out"]).arg(&folder);
         // The exit status is not checked: it reports whether the stack falls.
         demo.status().context("cannot start the program")?;
         let report = folder.join("report.html");
-        let status = command.arg(report).arg(FILMED).status().context("cannot start node")?;
+        let status = command.arg(report).args([FILMED, PICTURED]).status().context("cannot start node")?;
         Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 

@@ -1,6 +1,6 @@
-// The moving picture of the README: the demo's page in three dimensions, frame by frame, as a GIF.
+// The pictures of the README: the demo's page as it opens, and its stack in three dimensions, frame by frame, as a GIF.
 //
-//   node film.mjs REPORT.html OUT.gif
+//   node film.mjs REPORT.html OUT.gif PAGE.png
 //
 // `cargo xtask film` makes the page and calls this.
 
@@ -17,12 +17,13 @@ const COLORS = 64;
 const WIDTH = 640; // of the picture (px)
 const CLOSER = 1.15; // than a page shows the stack
 
-const [report, out] = process.argv.slice(2);
+const [report, out, opened] = process.argv.slice(2);
 const require = createRequire(import.meta.url);
 const browser = await launch(["--use-gl=swiftshader", "--enable-unsafe-swiftshader"]);
 const page = await browser.newPage({ viewport: { width: 1000, height: 900 }, reducedMotion: "reduce" });
 await page.goto(pathToFileURL(report).href);
 await page.evaluate(() => window.barrelstack.deep);
+await page.screenshot({ path: opened, clip: { x: 0, y: 0, width: 1000, height: 760 } });
 const box = await page.evaluate((closer) => {
   window.barrelstack.player.views.eye.factor = closer;
   document.querySelectorAll('[data-act="names"], [data-act="traces"]').forEach((one) => { if (one.checked) one.click(); });
