@@ -10,6 +10,7 @@ use crate::extra::of_oldest;
 use crate::programs;
 use crate::python::{checked, environment_at, inside, interpreter, pip};
 use crate::steps::{build_program, cargo, program, target};
+use crate::web;
 
 /// Version of all packages.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -83,7 +84,9 @@ fn all(root: &Path) -> anyhow::Result<()> {
     try_wheel(root, &[interpreter().map_err(anyhow::Error::msg)?])?;
     sdist(root)?;
     crate::steps::web()?;
-    fs::copy(target(root).join("barrelstack.html"), folder(root).join("barrelstack.html"))?;
+    for page in [web::page(root), web::spanish(root)] {
+        fs::copy(&page, folder(root).join(page.file_name().unwrap_or_default()))?;
+    }
     checksums(root)
 }
 

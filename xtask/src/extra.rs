@@ -82,6 +82,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         name: "node crates/web/tests/check.mjs",
         command: web::Build::find(root).and_then(|_| check.command()).map(|mut command| {
             command.env("ENGINE", web::module(root)).env("PAGE", web::page(root));
+            command.env("PAGE_ES", web::spanish(root));
             command
         }),
         remedy: "see above",

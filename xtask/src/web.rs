@@ -1,4 +1,4 @@
-//! Builds the page that contains the engine: compiles the engine to WebAssembly with the tools of
+//! Builds the pages that contain the engine, in English and in Spanish: compiles the engine to WebAssembly with the tools of
 //! this machine, and checks that the engine imports only functions that the page provides.
 
 use std::path::{Path, PathBuf};
@@ -21,7 +21,8 @@ const DEBIAN: &str = "/usr/bin/rustc";
 /// Build of the engine and its page.
 pub(crate) struct Build {
     root: PathBuf,
-    command: Command,
+    /// Linker for a standard library that is built from source; `None` if one is installed.
+    linker: Option<PathBuf>,
 }
 
 impl Build {
@@ -31,26 +32,39 @@ impl Build {
     /// library is built from Debian's `rust-web-src`, with Debian's compiler and the linker of the
     /// toolchain.
     pub(crate) fn find(root: &Path) -> Result<Self, String> {
-        let mut command = Command::new(cargo());
-        command.args(["build", "--package", "barrelstack-web", "--profile", "web"]);
-        command.args(["--target", TARGET]).current_dir(root);
-        if !has_target() {
-            let linker = debian().ok_or_else(|| {
+        let linker = if has_target() {
+            None
+        } else {
+            Some(debian().ok_or_else(|| {
                 format!(
                     "no target {TARGET}; run `rustup target add {TARGET}`, or install Debian's packages \
                      rustc-web, rust-web-src and libstd-rust-web-dev, version {OLDEST} or newer"
                 )
-            })?;
+            })?)
+        };
+        Ok(Self { root: root.to_path_buf(), linker })
+    }
+
+    /// Builds the page in each language with its engine, and prints their sizes.
+    ///
+    /// The engine of the page in English, which contains no catalog of a language, is built last and
+    /// stays as [`module`].
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        self.page("es", &["--features", "languages"], &spanish(&self.root))?;
+        self.page("en", &[], &page(&self.root))
+    }
+
+    /// Builds the page in a language.
+    fn page(&self, language: &str, options: &[&str], page: &Path) -> anyhow::Result<()> {
+        let mut command = Command::new(cargo());
+        command.args(["build", "--package", "barrelstack-web", "--profile", "web"]);
+        command.args(["--target", TARGET]).args(options).current_dir(&self.root);
+        if let Some(linker) = &self.linker {
             command.args(["-Zbuild-std=std,panic_abort"]);
             command.env("RUSTC", DEBIAN).env("RUSTC_BOOTSTRAP", "1");
             command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
         }
-        Ok(Self { root: root.to_path_buf(), command })
-    }
-
-    /// Builds the engine and its page, and prints their sizes.
-    pub(crate) fn run(mut self) -> anyhow::Result<()> {
-        let status = self.command.status().context("cannot start cargo")?;
+        let status = command.status().context("cannot start cargo")?;
         ensure!(status.success(), "building the engine failed: see above");
         let file = module(&self.root);
         let bytes =
@@ -68,19 +82,18 @@ impl Build {
             megabytes(&bytes),
             imported.join(", ")
         );
-        let page = page(&self.root);
         let example = ["run", "--quiet", "--release", "--package", "barrelstack-web"];
         let status = Command::new(cargo())
             .args(example)
-            .args(["--example", "page", "--"])
-            .args([file.as_path(), &self.root.join(PARTS), Path::new(TITLE), &page])
+            .args(["--example", "page", "--", PARTS, TITLE, language])
+            .args([file.as_path(), page])
             .current_dir(&self.root)
             .status()
             .context("cannot start cargo")?;
         ensure!(status.success(), "writing the page failed: see above");
         let bytes =
-            std::fs::read(&page).with_context(|| format!("cannot read {}", page.display()))?;
-        println!("{}: {:.2} MB, opens in any browser", page.display(), megabytes(&bytes));
+            std::fs::read(page).with_context(|| format!("cannot read {}", page.display()))?;
+        println!("{}: {:.3} MB, opens in any browser", page.display(), megabytes(&bytes));
         Ok(())
     }
 }
@@ -94,6 +107,11 @@ const TITLE: &str = "barrelstack: wine barrels in earthquakes";
 /// Returns the path of the page.
 pub(crate) fn page(root: &Path) -> PathBuf {
     target(root).join("barrelstack.html")
+}
+
+/// Returns the path of the page in Spanish.
+pub(crate) fn spanish(root: &Path) -> PathBuf {
+    target(root).join("barrelstack-es.html")
 }
 
 /// Returns the path of the WebAssembly module.

@@ -76,9 +76,11 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Writes blocks as part of a page that needs scripts, such as a [`Shell`](crate::Shell).
-pub fn fragment(blocks: &[Block]) -> Fragment {
-    let document = Document { blocks: blocks.to_vec(), ..Document::default() };
+/// Writes blocks, translated from English to a language, as part of a page that needs scripts, such
+/// as a [`Shell`](crate::Shell).
+pub fn fragment(blocks: &[Block], language: Language) -> Fragment {
+    let english = Document { blocks: blocks.to_vec(), ..Document::default() };
+    let document = english.in_language(language);
     let mut writer = Writer { prints: false, ..Writer::of(&document) };
     writer.blocks(&document.blocks);
     Fragment { markup: writer.out, data: writer.payload.into_json() }

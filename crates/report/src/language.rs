@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 mod catalog;
 mod document;
-mod markup;
+pub(crate) mod markup;
 
 use catalog::{Catalog, Template};
 
@@ -39,8 +39,8 @@ impl Language {
         static SPANISH: OnceLock<Catalog> = OnceLock::new();
         match self {
             Self::English => None,
-            // The page that holds the program is in English, and does not carry the half megabyte of the catalog.
-            Self::Spanish if cfg!(target_arch = "wasm32") => None,
+            // The page in English that holds the program does not carry the half megabyte of the catalog.
+            Self::Spanish if cfg!(all(target_arch = "wasm32", not(feature = "languages"))) => None,
             Self::Spanish => Some(
                 SPANISH.get_or_init(|| Catalog::of(include_str!("../assets/languages/es.toml"))),
             ),
@@ -54,6 +54,17 @@ impl Language {
             Some(catalog) => Translator::new(catalog).text(english),
             None => english.to_owned(),
         }
+    }
+
+    /// Returns the parts of an English text that have no entry in the catalog of the language.
+    pub fn untranslated(self, english: &str) -> Vec<String> {
+        let Some(catalog) = self.catalog() else { return Vec::new() };
+        let Translated { text, mut missing } = Translator::new(catalog).translated(english);
+        // A word alone is not a name, even if it begins with a capital.
+        if text == english && is_phrase(english) && catalog.entry(english).is_none() {
+            missing.push(english.to_owned());
+        }
+        missing
     }
 
     /// Translates a fixed text from English.

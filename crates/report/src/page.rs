@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::{
     Axis, Band, Language, Mark, Plot, Scale,
     escape::{self, json_in_script},
+    language::markup::{texts_of_markup, texts_of_script},
     pack,
     style::{DASHES, PALETTE, STYLE, standalone_style},
     trial::{self, Trial},
@@ -208,11 +209,7 @@ pub(crate) fn assemble(
         let tried = trial.map(|_| trial::SCRIPT);
         let scripts: Vec<&str> =
             PLAYER.into_iter().chain(depth).chain(REPORT).chain(tried).collect();
-        let entries = language.entries(&scripts);
-        if !entries.is_empty() {
-            let entries = json!(entries).to_string();
-            hold(&mut out, "application/json", "language", &json_in_script(&entries));
-        }
+        hold_entries(&mut out, language, &scripts);
         out += &strict(&scripts.concat());
     }
     out.push_str("</body>\n</html>\n");
@@ -242,6 +239,9 @@ fn head((title, language): (&str, Language), policy: &str, before: &str, after: 
 /// fully loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
+    /// Language of the page, to which its title, its body and the texts of its scripts are translated
+    /// from English.
+    pub language: Language,
     /// Title of the file.
     pub title: &'a str,
     /// Style sheet of the page.
@@ -261,12 +261,14 @@ pub struct Shell<'a> {
 impl Shell<'_> {
     /// Returns the whole file.
     pub fn html(&self) -> String {
-        let mut out = head((self.title, Language::English), PROGRAM_POLICY, "", self.style);
-        out.push_str(self.body);
+        let Self { language, title, .. } = *self;
+        let mut out = head((&language.text(title), language), PROGRAM_POLICY, "", self.style);
+        out.push_str(&language.markup(self.body));
         for (id, bytes) in self.at_hand {
             hold(&mut out, "text/plain", id, &pack::gzip_letters(bytes));
         }
         hold(&mut out, "text/plain", "worker", &format!("\n{}", lean(self.worker)));
+        hold_entries(&mut out, language, &self.all_scripts());
         let player: String = PLAYER.into_iter().chain(DEPTH).map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
         // In a block of its own, so that its constants may have the same names as those of the
@@ -277,6 +279,29 @@ impl Shell<'_> {
         }
         out.push_str("</body>\n</html>\n");
         out
+    }
+
+    /// Returns the texts of the title, the body and the scripts that have no entry in the catalog of
+    /// a language.
+    pub fn untranslated(&self, language: Language) -> Vec<String> {
+        let scripts = self.all_scripts();
+        let texts = texts_of_markup(self.body).into_iter().chain([self.title.to_owned()]);
+        let texts = texts
+            .chain(scripts.iter().flat_map(|script| texts_of_script(script)).map(str::to_owned));
+        texts.flat_map(|text| language.untranslated(&text)).collect()
+    }
+
+    /// Returns the scripts of the player and those of the page.
+    fn all_scripts(&self) -> Vec<&str> {
+        PLAYER.into_iter().chain(DEPTH).chain(self.scripts.iter().copied()).collect()
+    }
+}
+
+/// Holds the translations of the texts of scripts; none for English.
+fn hold_entries(out: &mut String, language: Language, scripts: &[&str]) {
+    let entries = language.entries(scripts);
+    if !entries.is_empty() {
+        hold(out, "application/json", "language", &json_in_script(&json!(entries).to_string()));
     }
 }
 

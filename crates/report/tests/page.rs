@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::common::{HOSTILE, document, payload, player, scene};
 use barrelstack_report::{
-    Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Shell, Strip, Table, Tone,
-    Trial, Word, html, html_with, markdown,
+    Axis, Block, Cell, Figure, FigureKind, Frames, Language, Plot, Scene, Series, Shell, Strip,
+    Table, Tone, Trial, Word, html, html_with, markdown,
 };
 
 /// Returns a page without the contents of its scripts and styles.
@@ -276,6 +276,7 @@ fn a_program_that_a_page_holds_cannot_end_its_script_and_may_request_nothing() {
     let report = html_with(&document(vec![Block::Paragraph("x".into())]), &trial);
     let held: &[(&str, &[u8])] = &[("engine", HOSTILE.as_bytes())];
     let shell = Shell {
+        language: Language::English,
         title: HOSTILE,
         style: "",
         body: "<main></main>\n",

@@ -1,4 +1,4 @@
-//! Writes the page that contains the program: `page MODULE FOLDER TITLE FILE`.
+//! Writes the page that contains the program: `page FOLDER TITLE LANGUAGE MODULE FILE`.
 //!
 //! The folder contains the body (`page.html`), the style sheet (`page.css`), the scripts (`*.js`,
 //! of which `main.js` is last), and the script of the workers (`worker.js`). The answers of the
@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use barrelstack::scenario::builtin;
-use barrelstack_report::Shell;
+use barrelstack_report::{Language, Shell};
 use barrelstack_web::{Request, RequestKind, answered};
 use serde_json::{Value, json};
 
@@ -18,9 +18,10 @@ const FIRST: &str = "demo-napa";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [module, folder, title, file] = words.as_slice() else {
-        return Err("expected: page MODULE FOLDER TITLE FILE".into());
+    let [folder, title, language, module, file] = words.as_slice() else {
+        return Err("expected: page FOLDER TITLE LANGUAGE MODULE FILE".into());
     };
+    let language = language.parse()?;
     let folder = PathBuf::from(folder);
     let text = |name: &str| {
         let path = folder.join(name);
@@ -34,10 +35,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     names.retain(|name| is_script(name) && name != "worker.js");
     names.sort_by_key(|name| (name == "main.js", name.clone()));
     let scripts = names.iter().map(|name| text(name)).collect::<Result<Vec<String>, _>>()?;
-    let first = first()?.to_string();
+    let first = first(language)?.to_string();
     let (style, body, worker) = (text("page.css")?, text("page.html")?, text("worker.js")?);
     let module = packed(&std::fs::read(module)?)?;
     let page = Shell {
+        language,
         title,
         style: &style,
         body: &body,
@@ -57,11 +59,15 @@ fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     Ok(packed)
 }
 
-/// Returns the answers of the engine for the first stack, and the catalog.
-fn first() -> Result<Value, Box<dyn std::error::Error>> {
+/// Returns the answers of the engine for the first stack in a language, and the catalog.
+fn first(language: Language) -> Result<Value, Box<dyn std::error::Error>> {
     let scenario = builtin::get(FIRST).ok_or("the first scenario is missing")?;
     let answer_to = |kind| -> Result<Value, Box<dyn std::error::Error>> {
-        let request = Request { name: format!("{FIRST}.toml"), ..Request::of(kind, scenario) };
+        let request = Request {
+            name: format!("{FIRST}.toml"),
+            language: language.code().to_owned(),
+            ..Request::of(kind, scenario)
+        };
         let answer = answered(&request.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(()))?;
         Ok(serde_json::from_slice(&answer)?)
     };

@@ -33,7 +33,8 @@ function commandOf(cellar) {
   const set = setOf(cellar).filter((change) => !change.startsWith("motion.record="));
   const own = cellar.records.map(({ path }) => ` --record ${shellWord(path)}`);
   const words = set.map((change) => ` --set ${shellWord(change)}`);
-  return `${made.join("")}barrelstack run ${shellWord(cellar.base.name)}${own.join("")}${words.join("")}`;
+  const tongue = language === "en" ? "" : ` --language ${language}`;
+  return `${made.join("")}barrelstack run ${shellWord(cellar.base.name)}${own.join("")}${words.join("")}${tongue}`;
 }
 
 async function through(stream, bytes) {
@@ -58,7 +59,7 @@ async function linked(hash, scenarios) {
   const packed = bytesOf(found[1].replaceAll("-", "+").replaceAll("_", "/"));
   const told = JSON.parse(new TextDecoder().decode(await through(new DecompressionStream("gzip"), packed)));
   const base = told.base.text === undefined ? scenarios.find(({ name }) => name === told.base.name) : { ...told.base, own: true };
-  if (!base) throw new Error(`this program has no scenario "${told.base.name}"`);
+  if (!base) throw new Error(t("this program has no scenario {1}", `"${told.base.name}"`));
   const missing = told.records || [];
   const changes = { ...told.changes };
   if (missing.length > 0) delete changes["motion.record"];

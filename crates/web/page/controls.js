@@ -85,8 +85,8 @@ function makeControls(find, catalog, changed) {
   function feel(velocity) {
     const { name, felt, roman, like } = feels(velocity);
     find("feels").replaceChildren(make("b", {}, `${name[0].toUpperCase()}${name.slice(1)}`), `: ${felt}.`,
-      make("span", { class: "soft" }, `peak velocity ${velocity < 1 ? "below 1" : velocity.toFixed(0)} cm/s, intensity ${roman}${like ? `; like ${like}` : ""}`));
-    strength.setAttribute("aria-valuetext", `${name}, ${velocity.toFixed(0)} centimeters per second`);
+      make("span", { class: "soft" }, t("peak velocity {1} cm/s, intensity {2}", velocity < 1 ? t("below 1") : velocity.toFixed(0), roman) + (like ? t("; like {1}", like) : "")));
+    strength.setAttribute("aria-valuetext", t("{1}, {2} centimeters per second", name, velocity.toFixed(0)));
   }
 
   return {
@@ -118,12 +118,12 @@ function makeControls(find, catalog, changed) {
         feel(velocity);
         // Each plane has its own component of the motion.
         const shaken = look.checked.filter((plane) => plane.motion), several = shaken.length > 1;
-        const place = ({ view }) => (several ? (view === "longitudinal" ? "along the barrels " : "across the barrels ") : "");
-        const planes = shaken.map((plane) => `${place(plane)}${plane.motion.name}, peak acceleration ${(plane.motion.pga / 9.80665).toPrecision(2)} g`);
+        const place = ({ view }) => (several ? `${view === "longitudinal" ? t("along the barrels") : t("across the barrels")} ` : "");
+        const planes = shaken.map((plane) => t("{1}, peak acceleration {2} g", place(plane) + plane.motion.name, (plane.motion.pga / 9.80665).toPrecision(2)));
         find("motion").textContent = `${planes.join("; ")}; ${motion.duration.toFixed(0)} s`;
       } else {
-        find("feels").textContent = "There is no ground motion.";
-        find("motion").textContent = "Drop a record here.";
+        find("feels").textContent = t("There is no ground motion.");
+        find("motion").textContent = t("Drop a record here.");
       }
     },
   };
@@ -133,13 +133,13 @@ function makeControls(find, catalog, changed) {
 function labelOf(look) {
   const values = valuesOf(look), motion = look.checked[0].motion;
   if (values["stack.levels"] === undefined) return look.title;
-  const one = Number(values["stack.levels"]) === 1;
-  const words = [`${values["stack.levels"]} level${one ? "" : "s"}`];
+  const levels = values["stack.levels"];
+  const words = [Number(levels) === 1 ? t("1 level") : t("{1} levels", levels)];
   if (values["stack.rack.base"] !== "two-barrel") words.push(called(values["stack.rack.base"]));
   if (values["stack.barrel.base"] !== "bordeaux-225") words.push(called(values["stack.barrel.base"]));
-  if (values["stack.barrel.fill"] === "empty") words.push("empty");
+  if (values["stack.barrel.fill"] === "empty") words.push(t("empty"));
   words.push(...look.devices);
-  if (values["stack.view"] !== "both") words.push(values["stack.view"] === "transverse" ? "across" : "along");
+  if (values["stack.view"] !== "both") words.push(values["stack.view"] === "transverse" ? t("across") : t("along"));
   if (motion) words.push(`${(100 * motion.pgv).toFixed(0)} cm/s`);
   return words.join(", ");
 }

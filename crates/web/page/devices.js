@@ -14,22 +14,22 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
   const tableOf = (changes) => changes[0].split(".")[1];
   const tell = (verdict) => {
     const { collapsed, variants } = worstOf(verdict).spread;
-    return `${collapsed} of ${variants} fall`;
+    return t("{1} of {2} fall", collapsed, variants);
   };
 
   const unknown = ({ glance, run, refused }) => !glance && !run && !refused;
 
   // Returns the known effect of a device, from a run with it or from a first estimate.
   function effectOf(candidate) {
-    if (candidate.refused) return "does not fit this stack";
+    if (candidate.refused) return t("does not fit this stack");
     if (candidate.run && candidate.run.verdict) return tell(candidate.run.verdict);
     if (candidate.glance) return tell(candidate.glance);
     return candidate.running ? "…" : "";
   }
 
   function row(candidate) {
-    const button = make("button", { type: "button", class: "tool" }, "Try it");
-    button.setAttribute("aria-label", `Try it: ${candidate.name}`);
+    const button = make("button", { type: "button", class: "tool" }, t("Try it"));
+    button.setAttribute("aria-label", t("Try it: {1}", candidate.name));
     button.addEventListener("click", async () => {
       candidate.run = await change((cellar) => writers.device(cellar, tableOf(candidate.changes), candidate.changes), true);
     });
@@ -40,17 +40,17 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
   function draw() {
     const { present, candidates } = now.devices;
     find("off").replaceChildren(...present.filter(({ table }) => removable(table)).map(({ name, table }) => {
-      const button = make("button", { type: "button", class: "tool" }, `Without the ${name}`);
+      const button = make("button", { type: "button", class: "tool" }, t("Without the {1}", name));
       button.addEventListener("click", () => change((cellar) => writers.device(cellar, table, Number(states(`stack.${table}.levels`) || 0) > 0 ? [`stack.${table}.levels=0`] : []), true));
       return button;
     }));
-    const head = make("tr", {}, ...["device", "with it", ""].map((name) => (name ? make("th", { scope: "col" }, name) : make("td"))));
-    const plain = make("tr", {}, make("th", { scope: "row" }, "none (the stack as it is)"), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
+    const head = make("tr", {}, ...[t("device"), t("with it"), ""].map((name) => (name ? make("th", { scope: "col" }, name) : make("td"))));
+    const plain = make("tr", {}, make("th", { scope: "row" }, t("none (the stack as it is)")), make("td", {}, now.verdict && now.verdict.planes.length > 0 ? tell(now.verdict) : ""), make("td"));
     find("devices").replaceChildren(make("thead", {}, head), make("tbody", {}, plain, ...candidates.map(row)));
     find("devices-box").hidden = candidates.length === 0 && present.length === 0;
     const open = candidates.filter(unknown).length;
     find("devices-go").disabled = open === 0;
-    if (open > 0) find("devices-said").textContent = `${open} devices in ${GLANCE} variants each: about ${lasting(lasts(now.look, open * (GLANCE + 1)))}`;
+    if (open > 0) find("devices-said").textContent = t("{1} devices in {2} variants each: about {3}", open, GLANCE, lasting(lasts(now.look, open * (GLANCE + 1))));
   }
 
   // Whether a device can be removed by leaving out changes, or by setting its number of levels.
@@ -103,11 +103,11 @@ function makeDevices(find, { crew, desk, change, writers, states, refuse, lasts 
       }
       if (own !== going) return;
       candidate.place.textContent = effectOf(candidate);
-      find("devices-said").textContent = `${(done += 1)} of ${candidates.length} devices tried`;
+      find("devices-said").textContent = t("{1} of {2} devices tried", (done += 1), candidates.length);
     };
     try {
       await Promise.all(candidates.filter(unknown).map(one));
-      if (own === going) find("devices-said").textContent = `Each device was run in ${GLANCE} variants; try one to run them all.`;
+      if (own === going) find("devices-said").textContent = t("Each device was run in {1} variants; try one to run them all.", GLANCE);
     } catch (error) {
       if (!error.stopped) refuse(error);
     }

@@ -94,7 +94,7 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
       const tried = { base: { name: "mine.toml", text: find("text").value, own: true }, changes: {}, records: state().cellar.records };
       try {
         await desk.ask(headOf(tried, "look"), { records: tried.records, group: "text" });
-        say("text-said", "The text is valid.");
+        say("text-said", t("The text is valid."));
         find("text").removeAttribute("aria-invalid");
         find("text-take").disabled = false;
       } catch (error) {
@@ -134,8 +134,8 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
   find("link").addEventListener("click", async () => {
     const link = location.href.replace(/#.*/, "") + (await linkOf(state().cellar));
     const done = await copyText(link);
-    const kept = state().cellar.records.length > 0 ? " The link contains only the name of your record." : "";
-    find("link-said").textContent = (done ? "Copied." : "The link is the address of this page.") + kept;
+    const kept = state().cellar.records.length > 0 ? ` ${t("The link contains only the name of your record.")}` : "";
+    find("link-said").textContent = (done ? t("Copied.") : t("The link is the address of this page.")) + kept;
     setHash(link);
   });
 
@@ -152,12 +152,12 @@ function makeEngineer(find, { desk, crew, state, change, open, refuse, tallyOf }
       // computed by one engine.
       const tally = tallyOf(cellar);
       const said = (what) => (done, of) => { find("report-said").textContent = `${what}: ${percentOf(of > 0 ? done / of : 0)}`; };
-      const heard = (_, count) => said("variants")(count - 1, look.variants);
+      const heard = (_, count) => said(t("variants"))(count - 1, look.variants);
       if (look.variants > 0) await runAll({ crew, cellar, tally, count: look.variants, group: "report", heard });
       const trails = { bytes: new Uint8Array(await new Blob(tally.trails).arrayBuffer()) };
       const known = look.variants > 0 ? { ...tally.given(), trails: trails.bytes.length } : {};
       const files = look.variants > 0 ? [...cellar.records, trails] : cellar.records;
-      showFiles(filesOf(await crew.ask(headOf(cellar, "files", known), { records: files, urgency: 1, group: "report", told: said("the run that is shown") })));
+      showFiles(filesOf(await crew.ask(headOf(cellar, "files", known), { records: files, urgency: 1, group: "report", told: said(t("the run that is shown")) })));
       find("report-said").textContent = "";
     } catch (error) {
       find("report-said").textContent = "";

@@ -3,11 +3,13 @@
 
 const ROOM = 384e6; // memory (bytes) above which an engine is ended after its answer, because it never releases memory
 
+const language = document.documentElement.lang;
+
 // Encodes a request for the engine: the length of the head, the head, the records, and further
 // data.
 function requestOf(head, files) {
   const records = files.filter(({ path }) => path !== undefined);
-  const text = new TextEncoder().encode(JSON.stringify({ ...head, records: records.map(({ path, bytes }) => [path, bytes.length]) }));
+  const text = new TextEncoder().encode(JSON.stringify({ ...head, language, records: records.map(({ path, bytes }) => [path, bytes.length]) }));
   const request = new Uint8Array(4 + text.length + files.reduce((sum, { bytes }) => sum + bytes.length, 0));
   new DataView(request.buffer).setUint32(0, text.length, true);
   request.set(text, 4);
@@ -28,7 +30,7 @@ function compiled(address, packed) {
       if (module) resolve(module);
       else reject(new Error(refused));
     };
-    worker.onerror = (event) => reject(new Error(event.message || "the engine does not start"));
+    worker.onerror = (event) => reject(new Error(event.message || t("the engine does not start")));
     worker.postMessage({ packed });
   });
 }
@@ -42,7 +44,7 @@ function makeEngines(module, address, most) {
   function start() {
     const one = { worker: new Worker(address), job: null, ready: false };
     one.worker.onmessage = ({ data }) => hear(one, data);
-    one.worker.onerror = (event) => fail(one, event.message || "the engine does not start");
+    one.worker.onerror = (event) => fail(one, event.message || t("the engine does not start"));
     module.then((module) => one.worker.postMessage({ module }), (error) => {
       end(one);
       for (const job of waiting.splice(0)) job.reject(Object.assign(new Error(error.message), { broken: true }));
@@ -69,7 +71,7 @@ function makeEngines(module, address, most) {
       return;
     } else {
       const { job } = one;
-      if (data.status === 2) return fail(one, `${new TextDecoder().decode(data.answer) || "no words"} (${data.trap})`);
+      if (data.status === 2) return fail(one, `${new TextDecoder().decode(data.answer) || t("no words")} (${data.trap})`);
       one.job = null;
       if (data.memory > ROOM) end(one);
       if (data.status === 0) job.resolve({ bytes: data.answer, said: data.said, took: data.took, memory: data.memory });

@@ -36,24 +36,24 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
   function tell(cell) {
     const { place, verdict, refused } = cell;
     if (refused) {
-      place.replaceChildren("–", make("small", {}, "cannot stand"));
+      place.replaceChildren("–", make("small", {}, t("cannot stand")));
       return;
     }
     if (!verdict) return;
     const { collapsed, variants, interval: [low, high], share } = worstOf(verdict).spread;
     // Too few variants get no color.
     place.className = variants < ENOUGH ? "" : share >= FALLS ? "poor" : share <= STANDS ? "good" : "fair";
-    place.replaceChildren(`${collapsed} of ${variants} fall`, make("small", {}, `${percentOf(low)} to ${percentOf(high)}`));
+    place.replaceChildren(t("{1} of {2} fall", collapsed, variants), make("small", {}, t("{1} to {2}", percentOf(low), percentOf(high))));
   }
 
   function draw(motions) {
-    const head = make("tr", {}, make("th", { scope: "col" }, "levels"), ...VELOCITIES.map((velocity) => {
+    const head = make("tr", {}, make("th", { scope: "col" }, t("levels")), ...VELOCITIES.map((velocity) => {
       const { name } = feels(velocity);
       return make("th", { scope: "col" }, `${velocity} cm/s`, make("br"), make("span", { class: "unit" }, name));
     }));
     const rows = HEIGHTS.map((levels) => make("tr", {}, make("th", { scope: "row" }, String(levels)),
       ...cells.filter((cell) => cell.levels === levels).map(({ place }) => place)));
-    const caption = make("caption", {}, make("span", {}, `Variants that fall in the worse plane, with the 95 % interval of their share; columns: peak ground velocity. Shaken by ${motions.join("; ")}.`));
+    const caption = make("caption", {}, make("span", {}, t("Variants that fall in the worse plane, with the 95 % interval of their share; columns: peak ground velocity. Shaken by {1}.", motions.join("; "))));
     find("heights-table").replaceChildren(caption, make("thead", {}, head), make("tbody", {}, ...rows));
     find("heights-table").parentElement.hidden = false;
   }
@@ -123,7 +123,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
 
   async function go() {
     const { cellar, look } = state();
-    if (valuesOf(look)["stack.levels"] === undefined || !look.checked[0].motion) return refuse(new Error("this computation needs a stack and a ground motion"));
+    if (valuesOf(look)["stack.levels"] === undefined || !look.checked[0].motion) return refuse(new Error(t("this computation needs a stack and a ground motion")));
     const own = (going += 1);
     busy(true);
     try {
@@ -139,7 +139,7 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
         for (let cell = nextCell(cells); cell && own === going; cell = nextCell(cells)) {
           await runCell(cell, own);
           const sum = (of) => cells.reduce((sum, cell) => sum + cell[of], 0);
-          find("heights-said").textContent = sum("asked") < sum("all") ? `${percentOf(sum("asked") / sum("all"))} done` : "";
+          find("heights-said").textContent = sum("asked") < sum("all") ? t("{1} done", percentOf(sum("asked") / sum("all"))) : "";
         }
       };
       await Promise.all(Array.from({ length: crew.most }, line));
@@ -153,8 +153,8 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
   // Returns the highest stack that stands, for each strength at which one does.
   function safest() {
     const stands = (velocity) => HEIGHTS.find((levels) => cells.filter((cell) => cell.velocity === velocity && cell.levels <= levels).every((cell) => cell.share <= STANDS && !cell.refused));
-    const parts = VELOCITIES.filter(stands).map((velocity) => `${stands(velocity)} levels stand ${velocity} cm/s`);
-    return parts.length > 0 ? `${parts.join(", ")}.` : "None of these stacks stands even under the weakest of these motions.";
+    const parts = VELOCITIES.filter(stands).map((velocity) => t("{1} levels stand {2} cm/s", stands(velocity), velocity));
+    return parts.length > 0 ? `${parts.join(", ")}.` : t("None of these stacks stands even under the weakest of these motions.");
   }
 
   find("heights-go").addEventListener("click", go);
@@ -163,6 +163,6 @@ function makeHeights(find, { crew, desk, state, refuse, writers, motionsOf }) {
     crew.stop("heights");
     desk.stop("heights");
     busy(false);
-    find("heights-said").textContent = "stopped";
+    find("heights-said").textContent = t("stopped");
   });
 }

@@ -68,7 +68,7 @@ async function start() {
     controls.show(look);
     engineer.show();
     runs.forecast(look);
-    if (missing.length > 0) find("motion").textContent = `The link refers to a record that it does not contain: drop ${missing.join(", ")} here. Until then: ${find("motion").textContent}`;
+    if (missing.length > 0) find("motion").textContent = t("The link refers to a record that it does not contain: drop {1} here. Until then: {2}", missing.join(", "), find("motion").textContent);
   }
 
   // Changes the current cellar, shows the stack at rest and, if requested, shakes it and returns
@@ -139,6 +139,14 @@ async function start() {
   find("record").addEventListener("change", (event) => {
     records.given([...event.target.files]);
     event.target.value = "";
+  });
+  // The page in the other language opens with the same stack.
+  const other = document.querySelector(".languages a:not(:lang(" + language + "))");
+  other.hidden = Boolean(find("start"));
+  other.addEventListener("click", async (event) => {
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+    event.preventDefault();
+    location.href = other.getAttribute("href") + (await linkOf(cellar));
   });
   const over = (on) => document.body.classList.toggle("over", on);
   document.addEventListener("dragover", (event) => {

@@ -24,7 +24,7 @@ function makePicture(box, players) {
     const last = goesOn ? ghostly : moved;
     const before = ghost && !still && last && last.length === raw.panes.length ? last : null;
     if (before) {
-      raw.overlay = "as before";
+      raw.overlay = t("as before");
       // A ghost has no ghost of its own.
       for (const { data: pane } of before) pane.overlay = null;
     }

@@ -44,13 +44,13 @@ function makeRecords(find, { desk, shake, refuse }) {
     find("unsaid").hidden = true;
     try {
       const { found, refused } = await read(files, reading);
-      const lines = refused.map(({ file, why }) => `No record: ${why}`.replace(`${file}: ${file}`, file));
+      const lines = refused.map(({ file, why }) => t("No record: {1}", why).replace(`${file}: ${file}`, file));
       if (found.length > 0) {
         const look = await shake(found[0]);
         if (!look) return;
         motions = found;
         lines.unshift(...told(found[0], look));
-      } else lines.push("The stack is shaken as before. A record is a file of accelerations, as published by agencies.");
+      } else lines.push(t("The stack is shaken as before. A record is a file of accelerations, as published by agencies."));
       say(lines);
       ask(files, refused, reading);
       offer();
@@ -64,11 +64,11 @@ function makeRecords(find, { desk, shake, refuse }) {
   // Describes the use of each file, if one of the motions shakes the stack.
   function told(motion, look) {
     const lines = motions.length > 1
-      ? [...motions.map(({ path, of }) => `${path} is a separate earthquake${of ? `, from ${of.join(", ")}` : ""}`), `${motion.path} shakes the stack; the chart of heights uses all ${motions.length} motions.`]
+      ? [...motions.map(({ path, of }) => (of ? t("{1} is a separate earthquake, from {2}", path, of.join(", ")) : t("{1} is a separate earthquake", path))), t("{1} shakes the stack; the chart of heights uses all {2} motions.", motion.path, motions.length)]
       : motion.channels;
-    const plane = ({ view, motion }) => `${view === "longitudinal" ? "along the barrels" : "across the barrels"} by ${motion.name}`;
-    const up = look.checked[0].motion.vertical ? "and up and down" : "but not up and down";
-    return [...lines, `The stack is shaken ${look.checked.map(plane).join(", ")}, ${up}.`];
+    const plane = ({ view, motion }) => (view === "longitudinal" ? t("along the barrels by {1}", motion.name) : t("across the barrels by {1}", motion.name));
+    const up = look.checked[0].motion.vertical ? t("and up and down") : t("but not up and down");
+    return [...lines, t("The stack is shaken {1}, {2}.", look.checked.map(plane).join(", "), up)];
   }
 
   // Asks the reader for information that a file lacks.

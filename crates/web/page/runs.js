@@ -18,13 +18,13 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   function forecast(look) {
     const due = lasts(look, look.variants + 1), slow = due > SLOW;
     find("costs").hidden = !slow;
-    find("costs").textContent = slow ? `This takes about ${lasting(due)} on this computer; the first picture comes after about ${lasting(cost * look.work)}.` : "";
+    find("costs").textContent = slow ? t("This takes about {1} on this computer; the first picture comes after about {2}.", lasting(due), lasting(cost * look.work)) : "";
   }
 
   function busy(on) {
     find("stop").hidden = !on;
     find("progress").hidden = !on;
-    find("go").textContent = on ? "Shake it again" : "Shake it";
+    find("go").textContent = on ? t("Shake it again") : t("Shake it");
   }
 
   // Stopped work has no verdict.
@@ -42,11 +42,11 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const cards = [];
     // The picture keeps its place when text appears.
     const { variants } = run.look, done = Math.max(run.tally ? run.tally.count() - 1 : 0, 0);
-    const waits = run.stopped ? `Stopped after ${done} of ${variants} variants, so there is no verdict.` : `Shaking the stack and ${variants} variants of it.`;
+    const waits = run.stopped ? t("Stopped after {1} of {2} variants, so there is no verdict.", done, variants) : t("Shaking the stack and {1} variants of it.", variants);
     if (!run.verdict && variants > 0) cards.push(make("div", { class: "card waits" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, waits)));
-    const label = run.done ? run.label : `${run.label}, variants so far`;
-    if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${label}` : label, false));
-    if (run.verdict && before && before.verdict) cards.push(cardOf(before.verdict, `before: ${before.label}`, true));
+    const label = run.done ? run.label : t("{1}, variants so far", run.label);
+    if (run.verdict) cards.push(cardOf(run.verdict, before ? t("now: {1}", label) : label, false));
+    if (run.verdict && before && before.verdict) cards.push(cardOf(before.verdict, t("before: {1}", before.label), true));
     find("verdicts").replaceChildren(...cards);
     find("sentences").textContent = run.shown ? run.shown.sentences.slice(run.verdict ? 1 : 0).join(" ") : "";
     const warnings = run.shown ? run.shown.warnings : [];
@@ -63,11 +63,11 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     box.hidden = !(run.done && run.verdict && run.verdict.planes.length > 0);
     if (box.hidden) return;
     const { typical, gentlest, worst } = run.verdict.planes[0].spread;
-    const offers = new Map([[0, "the stack as you chose it"]]);
-    for (const [one, name] of [[typical, "the most typical variant"], [gentlest, "the gentlest"], [worst, "the worst"]]) {
+    const offers = new Map([[0, t("the stack as you chose it")]]);
+    for (const [one, name] of [[typical, t("the most typical variant")], [gentlest, t("the gentlest")], [worst, t("the worst")]]) {
       offers.set(one, offers.has(one) ? `${offers.get(one)}, ${name}` : name);
     }
-    box.replaceChildren(make("span", {}, "You see"), ...[...offers].map(([one, name]) => {
+    box.replaceChildren(make("span", {}, t("You see")), ...[...offers].map(([one, name]) => {
       const button = make("button", { type: "button", class: "tool", "aria-pressed": String(run.shown && run.shown.variant === one) }, name);
       button.addEventListener("click", () => show(run, one).then(() => tell(run)).catch(refuse));
       return button;
@@ -82,10 +82,10 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const { writers } = controls;
     const velocity = run.look.checked[0].motion ? 100 * run.look.checked[0].motion.pgv : 0;
     const offers = [
-      [levels > 1, "One level less", (cellar) => writers.levels(cellar, levels - 1)],
-      [levels < 12, "One level more", (cellar) => writers.levels(cellar, levels + 1)],
-      [values["stack.rack.base"] !== "rack-on-rack", "Racks on posts", (cellar) => { cellar.changes["stack.rack"] = '"rack-on-rack"'; }],
-      [velocity > 0, "Half the shaking", (cellar) => writers.strength(cellar, velocity / 2)],
+      [levels > 1, t("One level less"), (cellar) => writers.levels(cellar, levels - 1)],
+      [levels < 12, t("One level more"), (cellar) => writers.levels(cellar, levels + 1)],
+      [values["stack.rack.base"] !== "rack-on-rack", t("Racks on posts"), (cellar) => { cellar.changes["stack.rack"] = '"rack-on-rack"'; }],
+      [velocity > 0, t("Half the shaking"), (cellar) => writers.strength(cellar, velocity / 2)],
     ];
     find("changes").replaceChildren(...offers.filter(([fits]) => fits).map(([, name, write]) => {
       const button = make("button", { type: "button", class: "tool" }, name);
@@ -99,7 +99,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     find("past").hidden = past.length < 2;
     find("undo").disabled = !previous();
     find("history").replaceChildren(...past.map((run) => {
-      const button = make("button", { type: "button" }, make("span", {}, run.label), make("span", {}, run.verdict ? briefly(run.verdict) + (run.done ? "" : " so far") : run.stopped ? "stopped" : run.done ? "shaken once" : "being shaken"));
+      const button = make("button", { type: "button" }, make("span", {}, run.label), make("span", {}, run.verdict ? run.done ? briefly(run.verdict) : t("{1} so far", briefly(run.verdict)) : run.stopped ? t("stopped") : run.done ? t("shaken once") : t("being shaken")));
       if (run === now) button.setAttribute("aria-current", "true");
       button.addEventListener("click", () => back(run));
       return make("li", {}, button);
@@ -121,7 +121,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const { cellar, look } = run, first = !run.shown;
     const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
       records: cellar.records, urgency: shorter ? 3 : 2, group: "run", draws: true,
-      told: (done, of) => { if (!run.shown) find("sofar").textContent = `shaking it: ${percentOf(done / of)}`; },
+      told: (done, of) => { if (!run.shown) find("sofar").textContent = t("shaking it: {1}", percentOf(done / of)); },
     });
     const put = async (answer, options) => {
       const shown = jsonOf(answer);
@@ -171,7 +171,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     marks = { from };
     window.barrelstack.marks = marks;
     find("bar").value = 0;
-    find("sofar").textContent = "shaking it";
+    find("sofar").textContent = t("shaking it");
     tell(mine);
     // On a phone the stack is below the choices.
     if (find("result").getBoundingClientRect().top > 0.5 * window.innerHeight) find("result").scrollIntoView({ block: "start" });
@@ -190,7 +190,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
       marks.last = performance.now();
       const of = look.variants;
       find("bar").value = count / (of + 1);
-      find("sofar").textContent = `${count - 1} of ${of} variants so far`;
+      find("sofar").textContent = t("{1} of {2} variants so far", count - 1, of);
       tell(mine);
     };
     try {

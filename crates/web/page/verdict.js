@@ -18,9 +18,9 @@ function shareOf({ words, spread }, several) {
     line.append(drawn("rect", { class: "span", x: 100 * low, y: 2, width: Math.max(100 * (high - low), 0.5), height: 10 }));
     line.append(drawn("rect", { class: "dot", x: Math.min(100 * share, 99.2), y: 0, width: 0.8, height: 14 }));
   }
-  const sure = `${(100 * low).toFixed(0)} to ${(100 * high).toFixed(0)}\u00a0%`;
-  const said = share === null ? "no verdict" : `${collapsed} of ${variants} fall; 95\u00a0% sure: ${sure} do`;
-  return make("div", { class: "share" }, make("span", {}, several ? words : "share that falls"), line, make("span", { class: "soft" }, said));
+  const sure = t("{1} to {2}", (100 * low).toFixed(0), `${(100 * high).toFixed(0)}\u00a0%`);
+  const said = share === null ? t("no verdict") : t("{1} of {2} fall; {3} sure: {4} do", collapsed, variants, "95\u00a0%", sure);
+  return make("div", { class: "share" }, make("span", {}, several ? words : t("share that falls")), line, make("span", { class: "soft" }, said));
 }
 
 // `when` identifies the run.
@@ -35,5 +35,5 @@ function cardOf(verdict, when, before) {
 // Returns the share of the worse plane in a few words, for a list.
 function briefly(verdict) {
   const [worst] = [...verdict.planes].sort((a, b) => (b.spread.share ?? -1) - (a.spread.share ?? -1));
-  return worst ? worst.fate : "has no verdict";
+  return worst ? worst.fate : t("has no verdict");
 }

@@ -5,6 +5,7 @@ use barrelstack::device::DEVICES;
 use barrelstack::report;
 use barrelstack::scenario::MotionSource;
 use barrelstack::variants::planes;
+use barrelstack_report::Language;
 use serde::Serialize;
 
 /// The devices on a stack, and devices that could be added.
@@ -18,7 +19,7 @@ pub(crate) struct Devices {
 
 #[derive(Serialize)]
 struct DeviceTable {
-    name: &'static str,
+    name: String,
     table: String,
 }
 
@@ -35,7 +36,7 @@ struct Candidate {
 impl Devices {
     /// Lists the devices of a scenario; each candidate setting is checked on the stack at rest,
     /// without the motion.
-    pub(crate) fn of(scenario: &Scenario) -> Self {
+    pub(crate) fn of(scenario: &Scenario, language: Language) -> Self {
         let mut still = scenario.clone();
         still.motion.source = MotionSource::None;
         let text = still.to_resolved_toml();
@@ -54,11 +55,15 @@ impl Devices {
             let settings = words.settings(stack.levels);
             if on.contains(words) {
                 let table = settings.iter().find_map(|(_, changes)| table(changes.first()?));
-                present.extend(table.map(|table| DeviceTable { name: words.many, table }));
+                present.extend(
+                    table.map(|table| DeviceTable { name: language.text(words.many), table }),
+                );
                 continue;
             }
-            let of = |(name, changes)| Candidate { device: words.one, name, changes };
-            candidates.extend(settings.into_iter().filter(|(_, changes)| fits(changes)).map(of));
+            for (name, changes) in settings.into_iter().filter(|(_, changes)| fits(changes)) {
+                let name = language.text(&name);
+                candidates.push(Candidate { device: words.one, name, changes });
+            }
         }
         Self { present, candidates }
     }

@@ -31,6 +31,9 @@
 //! ([`RequestKind::Variants`]), and one engine combines all results obtained so far
 //! ([`RequestKind::Verdict`]). The combined results are bit-identical to those of a single engine
 //! that runs all variants.
+//!
+//! A request states the language of its answer. The module contains the catalogs of other languages
+//! than English only if it is built with the feature `languages`, which makes it larger.
 
 mod cases;
 mod devices;
@@ -50,7 +53,7 @@ use barrelstack::variants::{
     Advance, Answer, Plane, RunChoice, answer, answer_of, planes, run_some,
 };
 use barrelstack::{RunFailure, Scenario, export, report};
-use barrelstack_report::{Fragment, fragment};
+use barrelstack_report::{Fragment, Language, fragment};
 use serde::{Deserialize, Serialize};
 
 pub use cases::Case;
@@ -84,7 +87,7 @@ pub enum RequestKind {
     /// The verdict on given results, as JSON. The request contains the numbers of the variants, of
     /// which the first is 0, and their results in each plane.
     Verdict,
-    /// The summary of a run and its variants, as JSON.
+    /// The summary of a run and its variants, as JSON, which is the same in all languages.
     Summary,
     /// The report of a run and its variants, as a page.
     Report,
@@ -101,6 +104,9 @@ pub struct Request {
     /// Kind of the request.
     #[serde(rename = "ask")]
     pub kind: RequestKind,
+    /// Code of the language of the answer, such as "es"; English if empty.
+    #[serde(default)]
+    pub language: String,
     /// The text of the scenario.
     #[serde(default)]
     pub scenario: String,
@@ -168,7 +174,31 @@ pub fn answered(
     request: &[u8],
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
 ) -> Result<Vec<u8>, String> {
-    let Opened { request, records, trails } = read(request)?;
+    let opened = read(request)?;
+    let language = match opened.request.language.as_str() {
+        "" => Language::English,
+        code => code.parse().map_err(words_of)?,
+    };
+    answered_in(language, opened, observer).map_err(|refusal| refused(&refusal, language))
+}
+
+/// Translates a message line by line; lines of the scenario, after a `|`, stay.
+fn refused(message: &str, language: Language) -> String {
+    let line = |line: &str| {
+        let start = line.find(|c: char| c.is_alphabetic() || c == '`').unwrap_or(line.len());
+        let (mark, words) = line.split_at(start);
+        let words = if mark.contains('|') { words.to_owned() } else { language.text(words) };
+        format!("{mark}{words}")
+    };
+    message.split('\n').map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn answered_in(
+    language: Language,
+    opened: Opened<'_>,
+    observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
+) -> Result<Vec<u8>, String> {
+    let Opened { request, records, trails } = opened;
     if request.kind == RequestKind::Scenarios {
         let text = |name| Some((name, builtin::get(name)?));
         // The page supports only planar scenarios.
@@ -178,7 +208,7 @@ pub fn answered(
     } else if request.kind == RequestKind::Catalog {
         return json(&look::Catalog::new());
     } else if request.kind == RequestKind::Records {
-        let (found, bytes) = records::of(&records, &request.reading)?;
+        let (found, bytes) = records::of(&records, &request.reading, language)?;
         let bytes: Vec<&[u8]> = bytes.iter().map(Vec::as_slice).collect();
         return Ok(enveloped(&json(&found)?, &bytes));
     }
@@ -197,19 +227,21 @@ pub fn answered(
         Advance::Run(run) => observer(run.time, run.end_time),
     };
     match request.kind {
-        RequestKind::Devices => json(&devices::Devices::of(scenario)),
-        RequestKind::Look => json(&look::Looked::of(scenario, &planes()?).map_err(placed)?),
+        RequestKind::Devices => json(&devices::Devices::of(scenario, language)),
+        RequestKind::Look => {
+            json(&look::Looked::of(scenario, &planes()?, language).map_err(placed)?)
+        }
         RequestKind::Show => {
             let number = request.numbers.first().copied().unwrap_or(0);
             let shown =
                 answer(scenario, RunChoice::Alone(number), &mut progress).map_err(placed)?;
-            json(&Shown::of(&shown, number))
+            json(&Shown::of(&shown, number, language))
         }
         RequestKind::Variants => some(&planes()?, &request.numbers, observer),
-        RequestKind::Verdict => json(&Verdict::of(&planes()?, request)?),
+        RequestKind::Verdict => json(&Verdict::of(&planes()?, request, language)?),
         RequestKind::Report => {
             let found = answer(scenario, RunChoice::Typical, &mut progress).map_err(placed)?;
-            let document = report::answer_document(&found);
+            let document = report::answer_document(&found).in_language(language);
             Ok(barrelstack_report::html(&document).into_bytes())
         }
         RequestKind::Files => {
@@ -219,9 +251,7 @@ pub fn answered(
                 let results = verdict::results(&planes()?, request, trails)?;
                 answer_of(scenario, results, &mut progress)
             };
-            let files =
-                export::files(&found.map_err(placed)?, barrelstack_report::Language::English)
-                    .map_err(words_of)?;
+            let files = export::files(&found.map_err(placed)?, language).map_err(words_of)?;
             let head: Vec<_> = files.iter().map(|(name, bytes)| (name, bytes.len())).collect();
             let rest: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
             Ok(enveloped(&json(&head)?, &rest))
@@ -267,22 +297,26 @@ struct Shown<'a> {
     sentences: Vec<String>,
     /// Outcomes of the planes, the governing plane first.
     outcomes: Vec<&'a barrelstack::summary::OutcomeSummary>,
-    warnings: &'a [String],
+    warnings: Vec<String>,
     stage: Fragment,
 }
 
 impl<'a> Shown<'a> {
-    fn of(answer: &'a Answer, variant: u32) -> Self {
+    fn of(answer: &'a Answer, variant: u32, language: Language) -> Self {
         let decides = &answer.decides;
         let shown = std::iter::once(decides).chain(&answer.other);
         Self {
             variant,
-            sentences: report::sentences(&decides.run, &decides.summary),
+            sentences: translated(&report::sentences(&decides.run, &decides.summary), language),
             outcomes: shown.map(|shown| &shown.summary.outcome).collect(),
-            warnings: &decides.run.warnings,
-            stage: fragment(&[report::stage(answer)]),
+            warnings: translated(&decides.run.warnings, language),
+            stage: fragment(&[report::stage(answer)], language),
         }
     }
+}
+
+fn translated(texts: &[String], language: Language) -> Vec<String> {
+    texts.iter().map(|text| language.text(text)).collect()
 }
 
 fn json(value: &impl Serialize) -> Result<Vec<u8>, String> {

@@ -6,7 +6,7 @@ use barrelstack::scenario::field::Section;
 use barrelstack::scenario::{ROOT, Scenario, catalog};
 use barrelstack::variants::Plane;
 use barrelstack::{RunFailure, report};
-use barrelstack_report::{Fragment, fragment};
+use barrelstack_report::{Fragment, Language, fragment};
 use serde::Serialize;
 
 /// The catalog of barrels and racks.
@@ -51,7 +51,7 @@ pub(crate) struct Looked {
     /// Results of the check of each plane.
     checked: Vec<Checked>,
     /// Names of the devices on the stack.
-    devices: Vec<&'static str>,
+    devices: Vec<String>,
     /// Number of steps of one variant in all planes multiplied by the number of moving bodies; used
     /// to estimate the computation time.
     work: f64,
@@ -110,10 +110,17 @@ struct Stated {
 }
 
 impl Looked {
-    pub(crate) fn of(scenario: &Scenario, planes: &[Plane]) -> Result<Self, RunFailure> {
+    pub(crate) fn of(
+        scenario: &Scenario,
+        planes: &[Plane],
+        language: Language,
+    ) -> Result<Self, RunFailure> {
         let checked: Result<Vec<Checked>, RunFailure> =
             planes.iter().map(|plane| check(&plane.scenario)).collect();
-        let checked = checked?;
+        let mut checked = checked?;
+        for motion in checked.iter_mut().filter_map(|plane| plane.motion.as_mut()) {
+            motion.name = language.text(&motion.name);
+        }
         let work = checked.iter().map(|plane| {
             let motion = plane.motion.as_ref().map_or(0.0, |motion| motion.duration);
             let bodies = plane.barrels + plane.racks + plane.free_bodies;
@@ -129,16 +136,19 @@ impl Looked {
         let mut settings: Vec<Stated> = settings.collect();
         let present: Vec<String> = settings.iter().map(|one| one.path.clone()).collect();
         absent(&mut settings, &present, "", &ROOT);
+        for Stated { help, source, .. } in &mut settings {
+            (*help, *source) = (language.text(help), language.text(source));
+        }
         let devices = scenario.stack().map(|stack| stack.devices.present()).unwrap_or_default();
         Ok(Self {
-            title: scenario.title.clone(),
+            title: language.text(&scenario.title),
             variants: planes.first().map_or(0, Plane::count),
             resolved: scenario.to_resolved_toml(),
             settings,
-            devices: devices.iter().map(|words| words.many).collect(),
+            devices: devices.iter().map(|words| language.text(words.many)).collect(),
             work: work.sum(),
             opening: ground.and_then(|ground| ground.motion.as_ref().map(opening)),
-            stage: fragment(&[report::still(planes)?]),
+            stage: fragment(&[report::still(planes)?], language),
             checked,
         })
     }

@@ -7,6 +7,7 @@ use barrelstack::motion::{
     Channel, Given, Instrument, ReadError, ReadOptions, Record, Refusal, group_files, read,
     station_xml, write,
 };
+use barrelstack_report::Language;
 use serde::{Deserialize, Serialize};
 
 /// Information supplied by the user that the files lack.
@@ -60,6 +61,7 @@ const COMPONENTS: usize = 3;
 pub(crate) fn of(
     files: &BTreeMap<String, &[u8]>,
     reading: &Reading,
+    language: Language,
 ) -> Result<(Files, Vec<Vec<u8>>), String> {
     let mut options = ReadOptions { time_step: reading.time_step, ..ReadOptions::default() };
     if let Some(unit) = &reading.unit {
@@ -81,6 +83,10 @@ pub(crate) fn of(
         let (motion, bytes) = Motion::of(&records, !stations.is_empty())?;
         found.motions.push(motion);
         gathered.push(bytes);
+    }
+    let channels = found.motions.iter_mut().flat_map(|motion| &mut motion.channels);
+    for text in channels.chain(found.refused.iter_mut().map(|refused| &mut refused.why)) {
+        *text = language.text(text);
     }
     Ok((found, gathered))
 }

@@ -25,14 +25,18 @@ pub(crate) struct Verdict {
 struct Judged {
     view: &'static str,
     /// Name of the plane, such as "across the barrels".
-    words: &'static str,
+    words: String,
     /// Result in this plane, such as "falls in 97 % of variants".
     fate: String,
     spread: Spread,
 }
 
 impl Verdict {
-    pub(crate) fn of(planes: &[Plane], request: Request) -> Result<Self, String> {
+    pub(crate) fn of(
+        planes: &[Plane],
+        request: Request,
+        language: Language,
+    ) -> Result<Self, String> {
         let numbers = request.numbers.clone();
         let found = together(planes, &numbers, given(planes, request)?);
         let spreads: Vec<(View, &Spread)> =
@@ -40,13 +44,13 @@ impl Verdict {
         let tone = words::tone(&spreads);
         let judged = |&(view, spread): &(View, &Spread)| Judged {
             view: view.name(),
-            words: view.words(),
-            fate: words::fate(spread),
+            words: language.text(view.words()),
+            fate: language.text(&words::fate(spread)),
             spread: spread.clone(),
         };
         Ok(Self {
-            headline: words::headline(&spreads),
-            badge: badge(tone, Language::English),
+            headline: language.text(&words::headline(&spreads)),
+            badge: badge(tone, language),
             tone: tone.class(),
             planes: spreads.iter().map(judged).collect(),
         })

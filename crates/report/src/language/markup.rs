@@ -6,47 +6,65 @@ use super::Language;
 const ATTRIBUTES: [&str; 4] = ["aria-label=\"", "title=\"", "placeholder=\"", "alt=\""];
 
 impl Language {
-    /// Translates the texts of markup: those between tags, and labels in attributes.
+    /// Translates the texts of markup: those between tags, and labels in attributes. An element with
+    /// `translate="no"` stays.
     ///
     /// The markup must be well formed, without scripts and style sheets.
     pub fn markup(self, markup: &str) -> String {
         if self == Self::English {
             return markup.to_owned();
         }
-        let (mut out, mut rest) = (String::with_capacity(markup.len()), markup);
-        while let Some(at) = rest.find('<') {
-            out += &self.node(&rest[..at]);
-            let end = rest[at..].find('>').map_or(rest.len(), |end| at + end + 1);
-            out += &self.tag(&rest[at..end]);
-            rest = &rest[end..];
-        }
-        out + &self.node(rest)
-    }
-
-    fn node(self, text: &str) -> String {
-        let inner = text.trim();
-        if inner.is_empty() {
-            return text.to_owned();
-        }
-        let at = text.find(inner).unwrap_or(0);
-        format!("{}{}{}", &text[..at], self.text(inner), &text[at + inner.len()..])
-    }
-
-    fn tag(self, tag: &str) -> String {
-        let mut out = tag.to_owned();
-        for name in ATTRIBUTES {
-            let opened = format!(" {name}");
-            let Some(start) = out.find(&opened).map(|at| at + opened.len()) else { continue };
-            let Some(end) = out[start..].find('"').map(|end| start + end) else { continue };
-            let text = self.text(&out[start..end]);
-            out.replace_range(start..end, &text);
-        }
-        out
+        replaced(markup, &mut |text| self.text(text))
     }
 }
 
+/// Returns the texts of markup that [`Language::markup`] translates.
+pub(crate) fn texts_of_markup(markup: &str) -> Vec<String> {
+    let mut texts = Vec::new();
+    replaced(markup, &mut |text| {
+        texts.push(text.to_owned());
+        text.to_owned()
+    });
+    texts
+}
+
+fn replaced(markup: &str, new: &mut dyn FnMut(&str) -> String) -> String {
+    let (mut out, mut rest) = (String::with_capacity(markup.len()), markup);
+    let mut kept = false;
+    loop {
+        let at = rest.find('<').unwrap_or(rest.len());
+        let text = &rest[..at];
+        let inner = if kept { "" } else { text.trim() };
+        if inner.is_empty() {
+            out += text;
+        } else {
+            out += &text.replacen(inner, &new(inner), 1);
+        }
+        if at == rest.len() {
+            return out;
+        }
+        let end = rest[at..].find('>').map_or(rest.len(), |end| at + end + 1);
+        let element = &rest[at..end];
+        kept = element.contains(" translate=\"no\"");
+        out += &if kept { element.to_owned() } else { tag(element, new) };
+        rest = &rest[end..];
+    }
+}
+
+fn tag(tag: &str, new: &mut dyn FnMut(&str) -> String) -> String {
+    let mut out = tag.to_owned();
+    for name in ATTRIBUTES {
+        let opened = format!(" {name}");
+        let Some(start) = out.find(&opened).map(|at| at + opened.len()) else { continue };
+        let Some(end) = out[start..].find('"').map(|end| start + end) else { continue };
+        let text = new(&out[start..end]);
+        out.replace_range(start..end, &text);
+    }
+    out
+}
+
 /// Returns the texts that a script gives to its function `t`, as first argument in double quotes.
-pub(super) fn texts_of_script(script: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn texts_of_script(script: &str) -> impl Iterator<Item = &str> {
     script.match_indices("t(\"").filter_map(|(at, opening)| {
         let before = script[..at].chars().next_back();
         let inner = &script[at + opening.len()..];
