@@ -223,6 +223,9 @@ impl Translator {
                 best = found;
             }
         }
+        if best.text == text && is_quotation(text) {
+            best.missing.clear();
+        }
         best
     }
 
@@ -382,6 +385,12 @@ fn is_prose(text: &str) -> bool {
             && !word.starts_with('-')
             && !UNITS.contains(&word)
     })
+}
+
+/// `true` if a text is a quotation as a whole, from a file of the user.
+fn is_quotation(text: &str) -> bool {
+    let inner = |mark| text.strip_prefix(mark).and_then(|rest| rest.strip_suffix(mark));
+    inner('"').or_else(|| inner('`')).is_some_and(|inner| !inner.contains("\" "))
 }
 
 /// `true` if a text has a word of at least four letters that is not in capitals.

@@ -28,7 +28,7 @@ const FELT = {
 const LIKE = [
   [3, t("South Napa 2014 at Concord")],
   [23, t("Northridge 1994 at Arleta")],
-  [31, t("El Centro 1940")],
+  [31, "El Centro 1940"],
   [49, t("Maule 2010 at Curicó")],
   [57, t("South Napa 2014 at Napa College")],
   [101, t("Kaikōura 2016 at Waiau")],

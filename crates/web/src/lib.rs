@@ -182,13 +182,21 @@ pub fn answered(
     answered_in(language, opened, observer).map_err(|refusal| refused(&refusal, language))
 }
 
-/// Translates a message line by line; lines of the scenario, after a `|`, stay.
+/// Start of the list of the keys or names that are valid in a place.
+const VALID: &str = "valid here: ";
+
+/// Translates a message line by line; places, lines of the scenario after a `|`, and valid keys stay.
 fn refused(message: &str, language: Language) -> String {
     let line = |line: &str| {
         let start = line.find(|c: char| c.is_alphabetic() || c == '`').unwrap_or(line.len());
         let (mark, words) = line.split_at(start);
-        let words = if mark.contains('|') { words.to_owned() } else { language.text(words) };
-        format!("{mark}{words}")
+        if mark.contains(['|', '>']) {
+            return line.to_owned();
+        }
+        match words.strip_prefix(VALID) {
+            Some(keys) => format!("{mark}{}{keys}", language.text(VALID)),
+            None => format!("{mark}{}", language.text(words)),
+        }
     };
     message.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }

@@ -50,6 +50,9 @@ fn a_text_without_an_entry_stays_and_is_reported() {
         "Sacudida a lo largo de las barricas, the cat permanece en pie. Nothing else."
     );
     assert_eq!(found.missing, ["the cat", "Nothing else."]);
+    let quoted = es.translated("Shaken \"with the cat\", \"the stack\" stands.");
+    assert_eq!(quoted.text, "Sacudida \"with the cat\", \"la pila\" permanece en pie.");
+    assert!(quoted.missing.is_empty());
     let names = format!("R3, South Napa 2014, 0.35 g, motion.scale=2, {}out", "--");
     assert!(es.translated(&names).missing.is_empty());
 }
