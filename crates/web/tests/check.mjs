@@ -1,6 +1,6 @@
 // Runs the engine in a browser and holds what it says against the program on this machine, number by number.
 //
-//     BARRELSTACK=<the program> ENGINE=<the module> PAGE=<the page that holds it> node check.mjs
+//     BARRELSTACK=<the program> ENGINE=<the module> PAGE=<the page that holds it> PAGE_ES=<the page in Spanish> node check.mjs
 //
 // `cargo xtask test` calls this file; $CHROMIUM names the browser, whose driver is that of the checks of reports.
 // Exit status: 0 when all checks pass, 1 when one fails, 2 when the browser or a file is missing.
@@ -13,12 +13,13 @@ import { promisify } from "node:util";
 import { gzipSync } from "node:zlib";
 import { launch, missing } from "../../report/tests/browser/lib/browser.mjs";
 import { checkPage } from "./page.mjs";
+import { checkSpanish } from "./spanish.mjs";
 import { Suite, demand } from "../../report/tests/browser/lib/suite.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const record = join(here, "../../motion/records/napa-college-2014.txt");
-const { BARRELSTACK: program, ENGINE: engine, PAGE: file } = process.env;
-for (const [name, path] of Object.entries({ BARRELSTACK: program, ENGINE: engine, PAGE: file })) {
+const { BARRELSTACK: program, ENGINE: engine, PAGE: file, PAGE_ES: spanish } = process.env;
+for (const [name, path] of Object.entries({ BARRELSTACK: program, ENGINE: engine, PAGE: file, PAGE_ES: spanish })) {
   if (!path || !existsSync(path)) missing(`${path} is not there; set ${name}`);
 }
 
@@ -152,7 +153,8 @@ await suite.check("memory does not grow from run to run", async () => {
 });
 await suite.check("nothing is asked of any network", () => demand(asked.length === 0, asked.join("\n")));
 await context.close();
-await checkPage(browser, suite, { file, program, native });
+await checkPage(browser, suite, { file, spanish, program, native });
+await checkSpanish(browser, suite, { file: spanish, english: file, native });
 await browser.close();
 process.exit(suite.close() ? 0 : 1);
 
