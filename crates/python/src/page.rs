@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use barrelstack::export::Folder;
-use barrelstack_report::{Document, Paper, described, document_pdf, html};
+use barrelstack_report::{
+    Document, Language, Paper, UnknownLanguage, described, document_pdf, html,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -43,23 +45,43 @@ impl Page {
         self.document.warnings.clone()
     }
 
-    fn html(&self, py: Python<'_>) -> String {
-        py.detach(|| html(&self.document))
+    #[pyo3(signature = (language = "en"))]
+    fn html(&self, py: Python<'_>, language: &str) -> PyResult<String> {
+        let language = language_of(language)?;
+        Ok(py.detach(|| html(&self.document.in_language(language))))
     }
 
-    fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let paper = paper_of(paper)?;
-        Ok(bytes(py, &py.detach(|| document_pdf(&self.document, paper))))
+    fn pdf<'py>(
+        &self,
+        py: Python<'py>,
+        paper: &str,
+        language: &str,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let (paper, language) = (paper_of(paper)?, language_of(language)?);
+        let pdf = py.detach(|| document_pdf(&self.document.in_language(language), paper));
+        Ok(bytes(py, &pdf))
     }
 
     /// Writes `report.html`, `report.md` and `figures/`.
-    fn write(&self, py: Python<'_>, folder: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        overwrite: bool,
+        language: &str,
+    ) -> PyResult<()> {
+        let language = language_of(language)?;
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            folder.write_page(&self.document)
+            folder.write_page(&self.document.in_language(language))
         });
         written.map_err(errors::general)
     }
+}
+
+/// Returns the language of a code.
+pub(crate) fn language_of(code: &str) -> PyResult<Language> {
+    code.parse().map_err(|error: UnknownLanguage| PyValueError::new_err(error.to_string()))
 }
 
 /// Returns the paper size of a name.

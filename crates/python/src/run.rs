@@ -9,14 +9,14 @@ use barrelstack::render::{Part, RenderFolder, Rendered, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::watch::{Joint, StressEnvelope};
-use barrelstack_report::{Format, Language, Player, Scene, document_pdf, html, player_html};
+use barrelstack_report::{Format, Player, Scene, document_pdf, html, player_html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors;
-use crate::page::paper_of;
+use crate::page::{language_of, paper_of};
 use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{Numbers, Rows, rows, view};
@@ -244,13 +244,23 @@ impl Run {
         Some(Table { columns: ensemble::variants(results.iter()) })
     }
 
-    fn html(&self, py: Python<'_>) -> String {
-        py.detach(|| html(&report::answer_document(&self.answer)))
+    #[pyo3(signature = (language = "en"))]
+    fn html(&self, py: Python<'_>, language: &str) -> PyResult<String> {
+        let language = language_of(language)?;
+        Ok(py.detach(|| html(&report::answer_document(&self.answer).in_language(language))))
     }
 
-    fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let paper = paper_of(paper)?;
-        Ok(bytes(py, &py.detach(|| document_pdf(&report::answer_document(&self.answer), paper))))
+    fn pdf<'py>(
+        &self,
+        py: Python<'py>,
+        paper: &str,
+        language: &str,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let (paper, language) = (paper_of(paper)?, language_of(language)?);
+        let pdf = py.detach(|| {
+            document_pdf(&report::answer_document(&self.answer).in_language(language), paper)
+        });
+        Ok(bytes(py, &pdf))
     }
 
     /// Returns a page with nothing but the player.
@@ -281,10 +291,10 @@ impl Run {
         between: Option<[f64; 2]>,
         largest: u32,
         overwrite: bool,
+        language: &str,
     ) -> PyResult<Vec<(PathBuf, usize)>> {
         let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
-        let language = Language::English;
-        let paper = paper_of(paper)?;
+        let (paper, language) = (paper_of(paper)?, language_of(language)?);
         let how = Rendering { formats, dpi, paper, rate, between, largest, language };
         let (run, summary) = (self.run(), &self.shown().summary);
         rendered(py, (&folder, &parts, overwrite), (&how, run.end_time), |folder| {
@@ -293,10 +303,17 @@ impl Run {
     }
 
     /// Writes the same files as the command.
-    fn write(&self, py: Python<'_>, folder: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        overwrite: bool,
+        language: &str,
+    ) -> PyResult<()> {
+        let language = language_of(language)?;
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            folder.write(&self.answer, Language::English)
+            folder.write(&self.answer, language)
         });
         written.map_err(errors::general)
     }

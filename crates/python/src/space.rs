@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use barrelstack::export::Folder;
 use barrelstack::render::Rendering;
-use barrelstack_report::{Format, Language, document_pdf, html};
+use barrelstack_report::{Format, document_pdf, html};
 use barrelstack_space::drawing::coarse_scene;
 use barrelstack_space::report::{document, player};
 use barrelstack_space::run::Frames;
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors;
-use crate::page::paper_of;
+use crate::page::{language_of, paper_of};
 use crate::run::{animated, chosen, rendered};
 use crate::scenario::bytes;
 use crate::table::Table;
@@ -98,13 +98,21 @@ impl SpatialRun {
         Some(Table { columns: columns::variants(cases) })
     }
 
-    fn html(&self, py: Python<'_>) -> String {
-        py.detach(|| html(&document(&self.answer)))
+    #[pyo3(signature = (language = "en"))]
+    fn html(&self, py: Python<'_>, language: &str) -> PyResult<String> {
+        let language = language_of(language)?;
+        Ok(py.detach(|| html(&document(&self.answer).in_language(language))))
     }
 
-    fn pdf<'py>(&self, py: Python<'py>, paper: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let paper = paper_of(paper)?;
-        Ok(bytes(py, &py.detach(|| document_pdf(&document(&self.answer), paper))))
+    fn pdf<'py>(
+        &self,
+        py: Python<'py>,
+        paper: &str,
+        language: &str,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let (paper, language) = (paper_of(paper)?, language_of(language)?);
+        let pdf = py.detach(|| document_pdf(&document(&self.answer).in_language(language), paper));
+        Ok(bytes(py, &pdf))
     }
 
     /// Returns a page with nothing but the player.
@@ -130,10 +138,10 @@ impl SpatialRun {
         between: Option<[f64; 2]>,
         largest: u32,
         overwrite: bool,
+        language: &str,
     ) -> PyResult<Vec<(PathBuf, usize)>> {
         let formats = chosen("format", &formats, Format::ALL, Format::extension)?;
-        let language = Language::English;
-        let paper = paper_of(paper)?;
+        let (paper, language) = (paper_of(paper)?, language_of(language)?);
         let how = Rendering { formats, dpi, paper, rate, between, largest, language };
         rendered(py, (&folder, &parts, overwrite), (&how, self.answer.run.end_time), |folder| {
             export::render(&self.answer, folder, &how)
@@ -147,10 +155,12 @@ impl SpatialRun {
         folder: PathBuf,
         stated: &str,
         overwrite: bool,
+        language: &str,
     ) -> PyResult<()> {
+        let language = language_of(language)?;
         let written = py.detach(|| {
             let folder = Folder::prepare(&folder, overwrite)?;
-            folder.write_files(&export::files(&self.answer, stated, Language::English))
+            folder.write_files(&export::files(&self.answer, stated, language))
         });
         written.map_err(errors::general)
     }

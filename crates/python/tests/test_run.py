@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 import threading
@@ -102,6 +103,33 @@ def test_a_run_shows_its_page_and_writes_the_files_of_the_command(run: Run, tmp_
     assert {"summary.json", "histories.npz", "report.html"} <= set(os.listdir(tmp_path / "files"))
     with pytest.raises(barrelstack.Error, match="not empty"):
         run.write(tmp_path / "files")
+
+
+def test_a_report_is_written_in_spanish_and_in_no_unknown_language(run: Run, tmp_path: Path) -> None:
+    page = run.html(language="es")
+    assert '<html lang="es">' in page
+    assert '<html lang="en">' in run.html()
+    run.report(tmp_path / "a.html", language="es")
+    assert (tmp_path / "a.html").read_text(encoding="utf-8") == page
+    run.report(tmp_path / "en.pdf")
+    run.report(tmp_path / "es.pdf", language="es")
+    assert (tmp_path / "en.pdf").read_bytes() != (tmp_path / "es.pdf").read_bytes()
+    run.write(tmp_path / "out", language="es")
+    assert '<html lang="es">' in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "**Figura 1." in (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
+    for write in (
+        lambda: run.html(language="fr"),
+        lambda: run.report(tmp_path / "b.html", language="fr"),
+        lambda: run.report(tmp_path / "b.pdf", language="fr"),
+        lambda: run.write(tmp_path / "b", language="fr"),
+        lambda: run.render(tmp_path / "b", "figures", language="fr"),
+    ):
+        with pytest.raises(ValueError, match='there is no language "fr"; pages are written in en or es'):
+            write()
+    again = pickle.loads(pickle.dumps(run))
+    assert again.html() == run.html()
+    with pytest.raises(barrelstack.RunError, match="this run was pickled"):
+        again.html(language="es")
 
 
 def frames_of(page: str) -> int:

@@ -351,7 +351,8 @@ fn flipped_back(translation: &str, original: &str) -> String {
 fn sentences(text: &str) -> Vec<&str> {
     let (mut parts, mut start) = (Vec::new(), 0);
     for (at, _) in text.match_indices(' ') {
-        let ends = text[..at].ends_with(['.', '?', '!']);
+        let before = &text[start..at];
+        let ends = before.ends_with(['.', '?', '!']) && !ends_in_initials(before);
         let next = text[at + 1..].chars().next();
         if ends && at > start && next.is_some_and(|c| !c.is_lowercase() && c != ' ') {
             parts.push(&text[start..at]);
@@ -360,6 +361,14 @@ fn sentences(text: &str) -> Vec<&str> {
     }
     parts.push(&text[start..]);
     parts
+}
+
+/// `true` if a text ends in the initials of a name, such as "A.P.".
+fn ends_in_initials(text: &str) -> bool {
+    let word = text.rsplit(|c: char| !c.is_alphanumeric() && c != '.').next().unwrap_or("");
+    let initial =
+        |part: &str| part.len() == 1 && part.starts_with(|c: char| c.is_ascii_uppercase());
+    word.strip_suffix('.').is_some_and(|word| word.contains('.') && word.split('.').all(initial))
 }
 
 fn letters(text: &str) -> usize {

@@ -7,13 +7,13 @@ import { demand } from "../../report/tests/browser/lib/suite.mjs";
 import { drop, idle, last, look, opened, sameSpreads, type } from "./using.mjs";
 
 /** English words that are no Spanish words and no part of a command, a key or a name. */
-const ENGLISH = /\b(the|and|with|without|this|that|which|of|from|falls?|stands?|stack|barrels?|levels?|shaken|shaking|variants?|strength|fields?|file|run|report|device|given|default|warnings?|seconds?|largest|across|along)\b/i;
+const ENGLISH = /(?<!\p{L})(the|and|with|without|this|that|which|of|from|falls?|stands?|stack|barrels?|levels?|shaken|shaking|variants?|strength|fields?|file|run|report|device|given|default|warnings?|seconds?|largest|across|along)(?!\p{L})/iu;
 
 /** The lines of text that a reader sees, and the texts that a screen reader says. */
 const texts = (frame) => frame.evaluate(() => {
   for (const fold of document.querySelectorAll("details")) fold.open = true;
   // Commands, keys and values of the scenario, names of files and of organizations are the same in all languages.
-  const kept = "script, style, code, pre, kbd, textarea, [translate=no], #files, #field-rows td:first-child";
+  const kept = "script, style, code, pre, kbd, textarea, [translate=no], #files, #field-rows td:first-child, [data-name=valor]";
   const found = [];
   const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (walk.nextNode()) {
@@ -29,7 +29,7 @@ const texts = (frame) => frame.evaluate(() => {
 });
 
 /** What is quoted, a key, or a name is no English text. */
-const plain = (text) => text.replace(/"[^"]*"|`[^`]*`|“[^”]*”|\b[\w-]+[._=][\w.=-]+|California Geological Survey/g, "");
+const plain = (text) => text.replace(/"[^"]*"|`[^`]*`|“[^”]*”|\b[\w-]+[-._=][\w.=-]+|Dimensions of a Bordeaux Barrel|California Geological Survey/g, "");
 
 export async function checkSpanish(browser, suite, { file, english, native }) {
   const { page, faults, context } = await opened(browser, file);

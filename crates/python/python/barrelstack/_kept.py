@@ -39,8 +39,6 @@ class Kept:
             raise AttributeError(name)
         if name in self._properties:
             return self._properties[name]
-        if name in self._answers:
-            return lambda: self._answers[name][0]
         if name in self._rows:
             return self._rows[name].__getitem__
 
@@ -50,4 +48,6 @@ class Kept:
                 "files and pictures"
             )
 
-        return lost
+        # The page is kept in English.
+        answers = self._answers.get(name)
+        return lost if answers is None else lambda *others: lost() if others else answers[0]

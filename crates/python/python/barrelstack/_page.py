@@ -61,7 +61,7 @@ class Page(Reported[_native.Page]):
         """Caveats for the reader, one sentence each."""
         return self._native.warnings
 
-    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False, language: str = "en") -> None:
         """Writes the page as HTML and as Markdown with its figures and their numbers.
 
         Parameters
@@ -70,8 +70,15 @@ class Page(Reported[_native.Page]):
             A folder that is new or empty.
         overwrite
             Whether to write into a folder that contains an earlier page.
+        language
+            ``"en"`` or ``"es"``, the language of the page; numbers and units stay as they are.
+
+        Raises
+        ------
+        ValueError
+            When there is no such language.
         """
-        self._native.write(os.fspath(folder), overwrite)
+        self._native.write(os.fspath(folder), overwrite, language)
 
     def _repr_html_(self) -> str:
         return frame(self.html())

@@ -90,16 +90,26 @@ class Reported(Generic[Native]):
 
     _native: Native
 
-    def html(self) -> str:
+    def html(self, *, language: str = "en") -> str:
         """Returns the report as one page that needs no network.
+
+        Parameters
+        ----------
+        language
+            ``"en"`` or ``"es"``, the language of the page; numbers and units stay as they are.
 
         Returns
         -------
         str
-        """
-        return self._native.html()
 
-    def report(self, path: str | os.PathLike[str], *, paper: str = "a4") -> None:
+        Raises
+        ------
+        ValueError
+            When there is no such language.
+        """
+        return self._native.html() if language == "en" else self._native.html(language)
+
+    def report(self, path: str | os.PathLike[str], *, paper: str = "a4", language: str = "en") -> None:
         """Writes the report.
 
         Parameters
@@ -108,9 +118,16 @@ class Reported(Generic[Native]):
             A file that ends with ``.html`` or ``.pdf``.
         paper
             ``"a4"`` or ``"letter"``.
+        language
+            ``"en"`` or ``"es"``, the language of the report; numbers and units stay as they are.
+
+        Raises
+        ------
+        ValueError
+            When there is no such paper or language.
         """
         pdf = os.fspath(path).lower().endswith(".pdf")
-        store(path, self._native.pdf(paper) if pdf else self.html().encode())
+        store(path, self._native.pdf(paper, language) if pdf else self.html(language=language).encode())
 
 
 class Pictured(Reported[NativeRun]):
@@ -162,6 +179,7 @@ class Pictured(Reported[NativeRun]):
         between: tuple[float, float] | None = None,
         size: int = 480,
         overwrite: bool = False,
+        language: str = "en",
     ) -> dict[str, int]:
         """Writes figures, animations and series of the shown run, like ``barrelstack render``.
 
@@ -186,6 +204,8 @@ class Pictured(Reported[NativeRun]):
             Longer side of animations (pixels), 64 to 4096.
         overwrite
             Whether to remove the files of an earlier rendering of these parts.
+        language
+            ``"en"`` or ``"es"``, the language of the figures and of the report; numbers and units stay as they are.
 
         Returns
         -------
@@ -195,12 +215,12 @@ class Pictured(Reported[NativeRun]):
         Raises
         ------
         ValueError
-            When there is no such part or format, or a number is out of range.
+            When there is no such part, format or language, or a number is out of range.
         Error
             When the folder contains an earlier rendering, or cannot be written.
         """
         window = None if between is None else [float(time) for time in between]
         written = self._native.render(
-            os.fspath(folder), list(parts), list(formats), dpi, paper, rate, window, size, overwrite
+            os.fspath(folder), list(parts), list(formats), dpi, paper, rate, window, size, overwrite, language
         )
         return {os.fspath(place): files for place, files in written}

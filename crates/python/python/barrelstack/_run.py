@@ -365,7 +365,7 @@ class Run(Pictured[_native.Run]):
         other = self._native.other()
         return None if other is None else Run(other)
 
-    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False, language: str = "en") -> None:
         """Writes the files of ``barrelstack run --out``: report, summary, histories, forces, envelopes, frames.
 
         Parameters
@@ -374,8 +374,15 @@ class Run(Pictured[_native.Run]):
             A folder that is new or empty.
         overwrite
             Whether to write into a folder that is not empty.
+        language
+            ``"en"`` or ``"es"``, the language of the report; numbers and units stay as they are.
+
+        Raises
+        ------
+        ValueError
+            When there is no such language.
         """
-        self._native.write(os.fspath(folder), overwrite)
+        self._native.write(os.fspath(folder), overwrite, language)
 
     def plot(self, *names: str, ax: Axes | None = None) -> Axes:
         """Plots histories over time.

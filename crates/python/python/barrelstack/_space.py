@@ -133,7 +133,7 @@ class SpatialRun(Pictured[_native.SpatialRun]):
         """The scenario of the shown run, including all defaults (TOML)."""
         return self._native.toml
 
-    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False, language: str = "en") -> None:
         """Writes the files of ``barrelstack run --out``: report, summary, frames, variants.
 
         Parameters
@@ -142,8 +142,15 @@ class SpatialRun(Pictured[_native.SpatialRun]):
             A folder that is new or empty.
         overwrite
             Whether to write into a folder that is not empty.
+        language
+            ``"en"`` or ``"es"``, the language of the report; numbers and units stay as they are.
+
+        Raises
+        ------
+        ValueError
+            When there is no such language.
         """
-        self._native.write(os.fspath(folder), self._stated, overwrite)
+        self._native.write(os.fspath(folder), self._stated, overwrite, language)
 
     def __copy__(self) -> SpatialRun:
         return self

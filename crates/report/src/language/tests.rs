@@ -61,6 +61,7 @@ fn a_text_without_an_entry_stays_and_is_reported() {
 fn sentences_end_before_capitals_and_numbers() {
     assert_eq!(sentences("One. Two! 3 is more? Yes"), ["One.", "Two!", "3 is more?", "Yes"]);
     assert_eq!(sentences("see e.g. the rack"), ["see e.g. the rack"]);
+    assert_eq!(sentences("by A.P. John. It moves E. Now"), ["by A.P. John.", "It moves E.", "Now"]);
     assert_eq!(flipped("Stack"), Some("stack".to_owned()));
     assert_eq!(flipped("PGA"), None);
     assert!(is_prose("it falls") && !is_prose("PGV 12 cm/s") && !is_prose("stack.levels"));
