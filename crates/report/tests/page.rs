@@ -41,7 +41,7 @@ fn hostile_page() -> String {
             id: HOSTILE.into(),
             caption: HOSTILE.into(),
             kind: FigureKind::Plot(plot),
-            language: barrelstack_report::Language::English,
+            language: Language::English,
         }),
         Block::Details { summary: HOSTILE.into(), blocks: vec![Block::Paragraph("x".into())] },
     ]);
@@ -193,7 +193,7 @@ fn a_plot_whose_x_turns_back_is_drawn_and_never_live() {
             id: "a".into(),
             caption: "A.".into(),
             kind: FigureKind::Plot(plot),
-            language: barrelstack_report::Language::English,
+            language: Language::English,
         })
     };
     let page = html(&document(vec![figure(vec![0.0, 1.0, 0.5])]));
@@ -225,7 +225,7 @@ fn on_paper_a_player_beside_a_strip_of_the_same_scene_is_one_picture() {
         id: "strip".into(),
         caption: "A strip.".into(),
         kind: FigureKind::Strip(Strip::of_run(shared, 6)),
-        language: barrelstack_report::Language::English,
+        language: Language::English,
     });
     let pictures = |page: &str| markup(page).matches("<svg class=\"bs\"").count();
     let with = html(&document(vec![Block::Player(alone.clone()), strip]));
@@ -246,7 +246,7 @@ fn what_stands_still_has_a_drawing_for_a_phone_with_letters_as_large() {
         id: "a".into(),
         caption: "A.".into(),
         kind,
-        language: barrelstack_report::Language::English,
+        language: Language::English,
     })]));
     let drawing = |class: &str| {
         let start = page.find(&format!("<div class=\"{class}\"><svg")).unwrap();

@@ -44,8 +44,8 @@ fn document(answer: &[u8]) -> Value {
     if let Ok(whole) = serde_json::from_slice(answer) {
         return whole;
     }
-    let (length, rest) = answer.split_first_chunk::<4>().unwrap();
-    serde_json::from_slice(&rest[..u32::from_le_bytes(*length) as usize]).unwrap()
+    let (length, rest) = answer.split_first_chunk::<4>().expect("an answer with a length");
+    serde_json::from_slice(&rest[..u32::from_le_bytes(*length) as usize]).expect("a head of JSON")
 }
 
 /// Texts without a translation, and the number of texts that differ from English.
@@ -77,7 +77,7 @@ impl Found {
                 a.iter().zip(b).for_each(|(a, b)| self.compare(key, a, b));
             }
             (Value::String(a), Value::String(b)) if key == "data" => {
-                let parsed = |text: &str| serde_json::from_str(text).unwrap();
+                let parsed = |text: &str| serde_json::from_str(text).expect("JSON");
                 self.compare("stage", &parsed(a), &parsed(b));
             }
             (Value::String(a), Value::String(b)) if TEXTS.contains(&key) => {
@@ -90,18 +90,17 @@ impl Found {
         }
     }
 
-    /// Asks the engine in both languages, and returns the answer in English.
-    fn ask(&mut self, request: &Request, files: &[&[u8]]) -> Value {
+    /// Asks the engine in both languages.
+    fn ask(&mut self, request: &Request, files: &[&[u8]]) {
         let both = [Language::English, Language::Spanish]
-            .map(|language| document(&answer(request, language, files).unwrap()));
+            .map(|language| document(&answer(request, language, files).expect("an answer")));
         self.compare("", &both[0], &both[1]);
-        both.into_iter().next().unwrap()
     }
 
     /// Asks for something that is refused.
     fn refused(&mut self, request: &Request) {
         let [english, spanish] = [Language::English, Language::Spanish]
-            .map(|language| answer(request, language, &[]).unwrap_err());
+            .map(|language| answer(request, language, &[]).expect_err("a refusal"));
         assert_eq!(english.lines().count(), spanish.lines().count());
         for (english, spanish) in english.lines().zip(spanish.lines()) {
             let place = english.contains("-->") || english.contains('|');
@@ -138,8 +137,10 @@ fn the_page_and_its_scripts_are_translated() {
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
     let names = names.map(|name| name.into_string().unwrap());
-    let scripts: Vec<String> =
-        names.filter(|name| name.ends_with(".js")).map(|name| read(&name)).collect();
+    let scripts: Vec<String> = names
+        .filter(|name| Path::new(name).extension().is_some_and(|end| end == "js"))
+        .map(|name| read(&name))
+        .collect();
     let scripts: Vec<&str> = scripts.iter().map(String::as_str).collect();
     let body = read("page.html");
     let page = Shell {
@@ -206,7 +207,7 @@ fn runs_and_verdicts_are_translated() {
 #[test]
 fn what_is_said_of_files_is_translated() {
     let column: String =
-        (0..1500).map(|at| format!("{:.6}\n", (f64::from(at) / 12.0).sin())).collect();
+        (0..1500).map(|at| (f64::from(at) / 12.0).sin().to_string() + "\n").collect();
     let files: [(&str, &[u8]); 4] = [
         ("R1.csv", column.as_bytes()),
         ("R2.txt", b"no numbers\n"),
