@@ -1,5 +1,6 @@
-//! Builds the pages that contain the engine, in English and in Spanish: compiles the engine to WebAssembly with the tools of
-//! this machine, and checks that the engine imports only functions that the page provides.
+//! Builds the pages that contain the engine, in English and in Spanish: compiles the engine to
+//! WebAssembly with the tools of this machine, and checks that it imports only functions that the
+//! page provides.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -141,7 +141,7 @@ async function start() {
     event.target.value = "";
   });
   // The page in the other language opens with the same stack.
-  const other = document.querySelector(".languages a:not(:lang(" + language + "))");
+  const other = document.querySelector(`.languages a:not(:lang(${language}))`);
   other.hidden = Boolean(find("start"));
   other.addEventListener("click", async (event) => {
     if (event.ctrlKey || event.metaKey || event.shiftKey) return;

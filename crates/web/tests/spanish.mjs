@@ -1,10 +1,13 @@
 // The page in Spanish: what its reader sees is Spanish, and its numbers are those of the program.
 
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
 import { accessible } from "../../report/tests/browser/lib/access.mjs";
-import { PHONE } from "../../report/tests/browser/lib/browser.mjs";
+import { DESKTOP, PHONE } from "../../report/tests/browser/lib/browser.mjs";
 import { demand } from "../../report/tests/browser/lib/suite.mjs";
-import { drop, idle, last, look, opened, sameSpreads, type } from "./using.mjs";
+import { PATIENCE, drop, idle, last, look, opened, sameSpreads, type } from "./using.mjs";
 
 /** English words that are no Spanish words and no part of a command, a key or a name. */
 const ENGLISH = /(?<!\p{L})(the|and|with|without|this|that|which|of|from|falls?|stands?|stack|barrels?|levels?|shaken|shaking|variants?|strength|fields?|file|run|report|device|given|default|warnings?|seconds?|largest|across|along)(?!\p{L})/iu;
@@ -100,4 +103,21 @@ export async function checkSpanish(browser, suite, { file, english, native }) {
     demand(wide <= PHONE.width, `${wide} px wide`);
   });
   await context.close();
+  await suite.check("a report in Spanish answers with it, without a link to a file that is not there", async () => {
+    const folder = mkdtempSync(join(tmpdir(), "barrelstack-page-"));
+    const out = join(folder, "out");
+    native("run", "demo-napa", "--set", "stack.levels=2", "--set", "run.duration=5 s", "--variants", "2", "--out", out, "--quiet", "--no-remedy", "--language", "es", "--with-engine", file);
+    const context = await browser.newContext({ viewport: DESKTOP });
+    const report = await context.newPage();
+    await report.goto(pathToFileURL(join(out, "report.html")).href);
+    await report.click("#try");
+    await report.locator("#trial iframe").waitFor();
+    const frame = report.frames().find((one) => one !== report.mainFrame());
+    await frame.waitForFunction(() => window.barrelstack?.started > 0, null, { timeout: PATIENCE });
+    demand(!(await frame.isVisible(".languages a")), "there is a link");
+    const note = await spanish(frame, 100);
+    await context.close();
+    rmSync(folder, { recursive: true });
+    return note;
+  });
 }
