@@ -88,7 +88,8 @@ impl Check {
         // The exit status is not checked: it reports whether the stack falls.
         demo.status().context("cannot start the program")?;
         let report = folder.join("report.html");
-        let status = command.arg(report).args([FILMED, PICTURED]).status().context("cannot start node")?;
+        let status =
+            command.arg(report).args([FILMED, PICTURED]).status().context("cannot start node")?;
         Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 

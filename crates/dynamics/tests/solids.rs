@@ -90,9 +90,15 @@ fn barrels_are_as_far_from_each_other_as_they_are() {
 /// Returns points and gaps of a hull on the floor.
 fn on_floor(hull: Hull, height: f64, turned: Rotation3) -> Vec<f64> {
     let mut gaps = Vec::new();
-    Rounded::centered(hull).meet(&Solid::HalfSpace, Vec3::new(0.0, 0.0, height), turned, |patch| {
-        gaps.push(patch.deepest.gap.distance);
-    });
+    Rounded::centered(hull).meet(
+        &Solid::HalfSpace,
+        Vec3::new(0.0, 0.0, height),
+        turned,
+        true,
+        |patch| {
+            gaps.push(patch.deepest.gap.distance);
+        },
+    );
     gaps
 }
 

@@ -5,8 +5,7 @@ use crate::{
     drawing::{Drawing, Item},
 };
 
-/// Outcomes of the variants in one plane or in space, drawn on paper below the headline as one dot for each
-/// variant.
+/// Outcomes of the variants in one plane or in space, drawn below the headline as one dot for each variant.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dots {
     /// Direction of the shaking, such as "along the barrels"; empty in space.

@@ -178,6 +178,14 @@ impl<'a> Writer<'a> {
         self.element("<p class=\"title\">", &document.title, "</p>");
         self.put(&badge(tone, document.language));
         self.element("<h1>", verdict.opening().0, "</h1>");
+        for dots in &verdict.dots {
+            if let Some(drawing) = dots.draw(document.language) {
+                let words = dots.words(document.language);
+                self.element("<p class=\"dots\"><span>", &words, "</span>");
+                self.put(&drawing.inline());
+                self.put("</p>\n");
+            }
+        }
         let count = document.warnings.len();
         if count > 0 {
             let plural = if count == 1 { "" } else { "s" };

@@ -21,9 +21,9 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let path = |change: &str| change.split('=').next().unwrap_or_default().trim().to_owned();
     // A view that is given has the variants of a run.
     let chosen = args.set.iter().any(|given| path(given) == path(IN_SPACE[0]));
-    let own = IN_SPACE.iter().filter(|own| {
-        !chosen && args.set.iter().all(|given| path(given) != path(own))
-    });
+    let own = IN_SPACE
+        .iter()
+        .filter(|own| !chosen && args.set.iter().all(|given| path(given) != path(own)));
     let set: Vec<String> = own.map(|&own| own.to_owned()).chain(args.set.clone()).collect();
     let mut scenario = Scenario::builtin(NAME, &set)?;
     let selection = super::run::selected(&mut scenario, args.variants)?;

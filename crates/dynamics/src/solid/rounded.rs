@@ -200,15 +200,11 @@ fn meeting<R: Real>(
     let mut shares = Shares { deepest: one, others: R::zero(), aside: R::zero() };
     let mut changes = Slopes::default();
     let (mut solved, mut left) = (R::Mask::default(), near);
-    if let Some((found, place, lanes)) = together(hull, surface, origin, frame) {
-        (gap, point, solved) = (found, place, lanes & near);
+    if let Some(tube) = tube_on_barrel(hull, surface, origin, frame) {
+        (gap, point, solved) = (tube.gap, tube.point, tube.found & near);
         gap.distance = R::select(near, gap.distance, one);
         // On the stave of the barrel, or without contact, there is no patch.
-        let along = match surface {
-            Solid::Barrel(_) => gap.normal.x,
-            _ => frame.unapply(gap.normal).x,
-        };
-        let flat = gap.distance.lt(R::zero()) & R::splat(MOST_ON_STAVE).le(along.abs());
+        let flat = gap.distance.lt(R::zero()) & R::splat(MOST_ON_STAVE).le(tube.along.abs());
         left = near & (!solved | flat);
     }
     for lane in (0..R::LANES).filter(|lane| left.lane(*lane)) {
@@ -249,15 +245,25 @@ fn meeting<R: Real>(
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
 }
 
-/// Returns the gap, the closest point of the contactor (m), and the lanes in which these are found, for a tube and a
-/// barrel in bundles; `None` for all others.
+/// Closest points of a tube and a barrel, in all lanes together.
+struct TubeOnBarrel<R: Real> {
+    gap: Gap<Spatial<R>>,
+    /// The closest point (m) of the contactor.
+    point: Vec3<R>,
+    /// The lanes in which the search found the closest points.
+    found: R::Mask,
+    /// Component of the normal along the axis of the barrel.
+    along: R,
+}
+
+/// Returns the closest points of a tube and a barrel in bundles; `None` for all other solids, and in a single run.
 #[inline(always)]
-fn together<R: Real>(
+fn tube_on_barrel<R: Real>(
     hull: &Hull<R>,
     surface: &Solid<R>,
     origin: Vec3<R>,
     frame: Rotation3<R>,
-) -> Option<(Gap<Spatial<R>>, Vec3<R>, R::Mask)> {
+) -> Option<TubeOnBarrel<R>> {
     // In a single run, the search with its fallback is one function.
     if R::LANES == 1 {
         return None;
@@ -268,23 +274,27 @@ fn together<R: Real>(
             let end = frame.apply(Vec3::new(capsule.half_length, R::zero(), R::zero()));
             let (place, gap, found) = along_barrel(target, origin, end);
             let center = origin + end * place;
-            let point = center - gap.normal * capsule.radius;
-            Some((
-                Gap { distance: gap.distance - capsule.radius, normal: gap.normal },
-                point,
+            Some(TubeOnBarrel {
+                gap: Gap { distance: gap.distance - capsule.radius, normal: gap.normal },
+                point: center - gap.normal * capsule.radius,
                 found,
-            ))
+                along: gap.normal.x,
+            })
         }
         (Hull::Barrel(barrel), Solid::Capsule(target)) => {
             let end = frame.unapply(Vec3::new(target.half_length, R::zero(), R::zero()));
             let middle = frame.unapply(-origin);
             let (place, gap, found) = along_barrel(barrel, middle, end);
             let nearest = middle + end * place - gap.normal * gap.distance;
-            let own =
-                Gap { distance: gap.distance - target.radius, normal: -frame.apply(gap.normal) };
-            Some((own, origin + frame.apply(nearest), found))
+            let normal = -frame.apply(gap.normal);
+            Some(TubeOnBarrel {
+                gap: Gap { distance: gap.distance - target.radius, normal },
+                point: origin + frame.apply(nearest),
+                found,
+                along: frame.unapply(normal).x,
+            })
         }
-        _ => None,
+        (Hull::Capsule(_) | Hull::Barrel(_) | Hull::Block(_), _) => None,
     }
 }
 
