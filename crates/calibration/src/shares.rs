@@ -78,7 +78,7 @@ struct Fit {
 /// Estimates parameters of a stack from statements on how many stacks fell in an earthquake.
 ///
 /// `heights` holds the scenario at every height that a statement names. Each of `settings.simulations` parameter sets is
-/// drawn from the range and used to simulate one stack at one of the heights, with random offsets of racks and barrels,
+/// drawn from the prior ranges and used to simulate one stack at one of the heights, with random offsets of its bodies,
 /// and with a motion that differs from that of the scenario by a factor, as a cellar differs from the station
 /// ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that fall as a function of
 /// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the
@@ -91,8 +91,8 @@ struct Fit {
 /// cancel the calibration.
 ///
 /// # Errors
-/// If a scenario is not a stack of linear laws or cannot be simulated, if a height is missing, or if too few simulations
-/// run to their end; [`CalibrateError::Stopped`] if `report` canceled it.
+/// If a scenario is not a stack whose contact laws are linear, or cannot be simulated, if a height is missing, or if too
+/// few simulations run to their end; [`CalibrateError::Stopped`] if `report` canceled it.
 pub fn shares(
     earthquake: &Earthquake,
     statements: &[&Statement],

@@ -162,6 +162,8 @@ fn whole(velocity: f64) -> u32 {
 pub struct Sheet {
     /// The scored scenario, with the number of levels that the protocol requires.
     pub scenario: Scenario,
+    /// Number of levels that the scenario states, which the protocol replaces by its own.
+    pub stated_levels: u32,
     /// Protocol of the score.
     pub protocol: Protocol,
     /// Result of every state in every direction.
@@ -222,7 +224,7 @@ pub enum ScoreError {
     )]
     NoStack(String),
     /// A state cannot be applied to the stack.
-    #[error("the state \"{state}\" cannot be tried on this stack")]
+    #[error("the state \"{state}\" cannot be evaluated for this stack")]
     State {
         /// Name of the state.
         state: String,
@@ -258,6 +260,8 @@ pub enum ScoreError {
 /// A stack to be scored, with the studies of all its states and directions.
 struct Prepared {
     stack: Scenario,
+    /// Number of levels that the scenario states.
+    stated_levels: u32,
     protocol: Protocol,
     studies: Vec<(State, Direction, Study)>,
 }
@@ -281,9 +285,9 @@ pub fn score(
 
 /// Prepares a score: stacks the rack as the protocol requires, and checks that the stack stands in every state.
 fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreError> {
-    if scenario.stack().is_none() {
+    let Some(stated) = scenario.stack() else {
         return Err(ScoreError::NoStack(scenario.title.clone()));
-    }
+    };
     // The motion of the scenario is removed, since the protocol sets the motions.
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
@@ -306,7 +310,7 @@ fn prepared(scenario: &Scenario, protocol: &Protocol) -> Result<Prepared, ScoreE
         }
     }
     let protocol = protocol.of(&stack);
-    Ok(Prepared { stack, protocol, studies })
+    Ok(Prepared { stack, stated_levels: stated.levels, protocol, studies })
 }
 
 impl Prepared {
@@ -323,7 +327,7 @@ impl Prepared {
         report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
     ) -> Result<Sheet, ScoreError> {
         let all = self.cases();
-        let Self { stack, protocol, studies } = self;
+        let Self { stack, stated_levels, protocol, studies } = self;
         let (mut before, mut rows) = (0, Vec::new());
         for (state, direction, study) in studies {
             let below = Path::new(&slug(&state.name)).join(direction.name());
@@ -355,7 +359,8 @@ impl Prepared {
             rows.push((row, sample));
         }
         let rows = over_constants(rows, &protocol);
-        let mut sheet = Sheet { scenario: stack, protocol, rows, document: Document::default() };
+        let document = Document::default();
+        let mut sheet = Sheet { scenario: stack, stated_levels, protocol, rows, document };
         sheet.document = page::document(&sheet);
         Ok(sheet)
     }

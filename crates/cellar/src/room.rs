@@ -112,8 +112,8 @@ pub enum RoomFailure {
     Empty,
     /// There are too many bodies.
     #[error(
-        "the room has {bodies} barrels, racks and other bodies, more than {MOST_BODIES}, whose run needs about 3 GB: divide \
-         it into rooms between which nothing can fall"
+        "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed, with which a run needs about 3 GB: \
+         divide it into rooms between which nothing can fall"
     )]
     Large {
         /// Number of bodies.

@@ -691,7 +691,7 @@ pub(crate) fn barrels(scenario: &Scenario) -> u64 {
     })
 }
 
-/// Returns the scenario of the stack with the first shock as its motion, and with a change.
+/// Returns the scenario of the stack with the first shock as its motion; `change` replaces one field.
 fn model(host: &Host, change: Option<(&'static str, Node)>) -> Result<Scenario, ScenarioError> {
     let reader = host.reader(&CELLAR)?;
     let motion = reader.table("motion").ok().and_then(|motion| motion.get("sequence"));

@@ -221,7 +221,7 @@ pub fn to_csv(columns: &[Column]) -> String {
     csv_heading(columns) + &csv_rows(columns)
 }
 
-/// Writes the heading line of columns as CSV.
+/// Returns the header row of the columns as CSV.
 pub fn csv_heading(columns: &[Column]) -> String {
     let heading = |column: &Column| csv_field(&column.spec.heading());
     columns.iter().map(heading).collect::<Vec<_>>().join(",") + "\n"

@@ -92,7 +92,7 @@ const RATE: f64 = 20.0;
 /// Number of steps of the view direction of a body per right angle.
 const STEPS: f64 = 6.0;
 
-/// Number of steps of the view direction of a body per right angle in a [`coarse_scene`].
+/// Number of steps per right angle to which the direction from which a body is viewed is rounded in a [`coarse_scene`].
 const COARSE_STEPS: f64 = 3.0;
 
 /// Returns the drawing of a run in a view direction.

@@ -29,7 +29,7 @@ pub(crate) type Ready = (usize, Prepared);
 /// Runs cases in lanes on one core; `report` receives the index and the result of each finished case, and `stop` is
 /// polled. Returns the cases that have to be run one after the other.
 pub(crate) fn run(
-    width: Width,
+    in_lanes: bool,
     ready: Vec<Ready>,
     report: &mut dyn FnMut(usize, Case),
     stop: &dyn Fn() -> bool,
@@ -49,10 +49,10 @@ pub(crate) fn run(
         }
     }
     for (_, method, group) in groups {
-        if group.len() < FEWEST || width == Width::Scalar || !width.is_here() {
+        if group.len() < FEWEST || !in_lanes || !Width::Avx2.is_here() {
             alone.extend(group);
         } else {
-            width.run(InLanes { method, group: &group, report, stop });
+            Width::run_avx2(InLanes { method, group: &group, report, stop });
         }
     }
     alone

@@ -217,7 +217,8 @@ pub fn run_each<T: Sync>(
     run_each_in(Width::widest(), items, build, observer)
 }
 
-/// Runs like [`run_each`] in lanes of a given width; a machine without such lanes runs one case after the other.
+/// Runs like [`run_each`], but one case after the other if the width is that of scalars; all other widths use the lanes
+/// of AVX2 if the machine has them.
 pub fn run_each_in<T: Sync>(
     width: Width,
     items: &[T],
@@ -273,7 +274,7 @@ fn run_chunk<T>(
         }
     }
     stage.shake(items.len());
-    for (at, prepared) in lanes::run(width, ready, finished, stop) {
+    for (at, prepared) in lanes::run(width != Width::Scalar, ready, finished, stop) {
         let mut share = Share::default();
         let run = prepared.start().run_watched(&mut |progress| {
             share.reached(progress.time / progress.end_time);

@@ -36,10 +36,8 @@ fn cases_in_lanes_have_the_bits_of_single_runs() {
             cases.iter().map(|case| format!("{case:?}")).collect::<Vec<_>>()
         };
         let single = cases(Width::Scalar);
-        for width in Width::ALL.into_iter().filter(|width| width.is_here()).skip(1) {
-            for ((lane, single), number) in cases(width).iter().zip(&single).zip(&numbers) {
-                assert!(lane == single, "variant {number} of {changes:?} in {width:?}");
-            }
+        for ((lane, single), number) in cases(Width::widest()).iter().zip(&single).zip(&numbers) {
+            assert!(lane == single, "variant {number} of {changes:?}");
         }
         all += single.len();
         fallen += single.iter().filter(|case| case.contains("Collapse")).count();

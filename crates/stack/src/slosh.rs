@@ -26,15 +26,17 @@ const HALF_STRIP: f64 = 16.0;
 /// Number of quadrature points.
 const POINTS: usize = 400;
 
-/// Returns the first wave across a horizontal circular cylinder with a radius (m), filled to a fraction of its volume.
+/// Returns the first transverse sloshing mode of a horizontal circular cylinder with a radius (m), filled to a fraction
+/// of its volume.
 ///
-/// In the potential theory of small waves, the segment of the circle is mapped to a strip by `x + i z = b tanh(w/2)`,
-/// where `b` is half the width of the surface. In the strip, the normal derivative of a function `sin k ξ` on the
-/// surface is the function multiplied by `k tanh k β`, where `β` is the angle between surface and wall. The remaining
-/// eigenvalue problem on the surface has a rapidly converging basis. For a half-full cylinder, the result is `ω² R/g =
-/// 1.35573`, in agreement with McIver (1989) and Budiansky (1960). The limit for a nearly empty cylinder is `ω² R/g =
-/// 1`, and the limit for a nearly full cylinder is the ice-fishing problem with `ω² b/g = 2.0061` (Fox and Kuttler
-/// 1983). The moving mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005, section 5).
+/// In linear potential theory, the cross-section of the liquid, a segment of a circle, is mapped to a strip by `x + i z
+/// = b tanh(w/2)`, where `b` is half the width of the surface. In the strip, the normal derivative of a function `sin k
+/// ξ` on the surface is the function multiplied by `k tanh k β`, where `β` is the angle between surface and wall. The
+/// remaining eigenvalue problem on the surface has a rapidly converging basis. For a half-full cylinder, the result is
+/// `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960). The limit for a nearly empty cylinder is
+/// `ω² R/g = 1`, and the limit for a nearly full cylinder is the ice-fishing problem with `ω² b/g = 2.0061` (Fox and
+/// Kuttler 1983). The moving mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005,
+/// section 5).
 pub fn across(radius: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
     let b = sin(angle);

@@ -124,7 +124,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
             let time = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
             let counted = spread.counted("the first loss");
-            if counted.is_empty() { time } else { format!("{time}, counted{counted}") }
+            if counted.is_empty() { time } else { format!("{time}; falls are counted{counted}") }
         })
     });
     row("barrels fallen in a collapse", &|spread| {

@@ -321,7 +321,7 @@ fn assumptions() -> Vec<Block> {
             "No published drop tests of barrels with numerical results were found. About one in ten of the \
              barrels that toppled at Napa in 2014 was lost (Wines & Vines 2016); the heights of their falls are \
              not known. The central curve (lognormal, median height of fall 5 m, dispersion 0.6) was chosen to \
-             agree: if stacks of four to six levels fall completely, 7 to 18 % of the barrels above the lowest \
+             match these reports: if stacks of four to six levels fall completely, 7 to 18 % of the barrels above the lowest \
              level burst."
                 .into(),
             "\"By force\" means that the largest force on a barrel after it fell determines whether it bursts \

@@ -501,7 +501,7 @@ fn chart(all: &Heights) -> Figure {
     Figure::new(
         "height-chart",
         format!(
-            "Chance of collapse{} as a function of height, at three strengths of shaking. Each end of a vertical bar is a bound with 95 % confidence.",
+            "Chance of collapse{} as a function of height, at three strengths of shaking. Each end of a vertical bar is a one-sided bound with 95 % confidence.",
             in_planes(all, " in the weaker direction", "")
         ),
         Plot {

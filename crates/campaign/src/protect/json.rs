@@ -64,8 +64,8 @@ described! {
         /// (friction, stiffness, damping) and the sampling error. Null if a run has no verdict, if there are too few
         /// runs, or if the protection was not run in all rounds.
         pub range: Option<[f64; 2]> as "that of `collapse`" = one.range,
-        /// Share of the draws of the uncertain constants and of the sampling error in which fewer barrels fall than
-        /// with the unprotected stack, which has the same constants in each draw. Null if `range` is null, and without
+        /// Share of the draws in which fewer barrels fall than with the unprotected stack. Each draw samples the uncertain
+        /// constants, which are the same for both stacks, and the sampling error. Null if `range` is null or there are no
         /// uncertain constants.
         pub better_than_as_it_is: Option<f64> as "1" = one.better_than_as_it_is,
         /// Share of the draws in which fewer barrels fall than with the next protection of the list; computed like

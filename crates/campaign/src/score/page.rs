@@ -287,7 +287,7 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
             values.iter().map(|value| format!("{}", (scale * value * 1e6).round() / 1e6)).collect();
         words.join(", ")
     };
-    vec![
+    let mut rules = vec![
         format!(
             "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices, on level ground, {}.",
             protocol.levels,
@@ -317,7 +317,15 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
          ground that stays below 0.02 g."
             .into(),
         "A protocol never changes; any change requires a new version number.".into(),
-    ]
+    ];
+    if sheet.stated_levels != protocol.levels {
+        let stated = format!(
+            "The scenario states {} levels, which the protocol replaces by {}.",
+            sheet.stated_levels, protocol.levels
+        );
+        rules.insert(1, stated);
+    }
+    rules
 }
 
 fn warnings(sheet: &Sheet) -> Vec<String> {

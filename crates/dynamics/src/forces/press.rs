@@ -23,8 +23,8 @@ use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// For bundles of lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact.
-/// For scalars, such a loop would not be faster.
+/// For bundles of lanes in the plane, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per
+/// contact. For scalars such a loop would not be faster, and in space it would take long to compile.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -47,7 +47,7 @@ pub(super) fn touch<S: Space>(
                 tangential_stiffness,
                 tangential_damping,
             },
-        ) if S::Real::LANES > 1 => {
+        ) if S::Real::LANES > 1 && !S::SOLIDS_SHARE => {
             touch_by(
                 &pair,
                 #[inline(always)]

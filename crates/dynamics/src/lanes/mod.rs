@@ -79,6 +79,13 @@ impl Width {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }
 
+    /// Runs a task with the bundles of AVX2; `None` if this machine does not support AVX2.
+    ///
+    /// Unlike [`Width::run`], this compiles the task for one vector unit only, for tasks that take long to compile.
+    pub fn run_avx2<T: Task>(task: T) -> Option<T::Output> {
+        units::run_avx2(task)
+    }
+
     /// Runs a task with the bundles of this width; `None` if this machine does not support the width.
     pub fn run<T: Task>(self, task: T) -> Option<T::Output> {
         if !self.is_here() {
@@ -135,6 +142,10 @@ pub(crate) mod units {
         }
     }
 
+    pub(super) fn run_avx2<T: Task>(task: T) -> Option<T::Output> {
+        has_avx2().then(|| task.run::<Bundle<Avx2>>())
+    }
+
     pub(super) fn run<T: Task>(width: Width, task: T) -> Option<T::Output> {
         match width {
             Width::Scalar => Some(task.run::<f64>()),
@@ -160,6 +171,10 @@ pub(crate) mod units {
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         work()
+    }
+
+    pub(super) fn run_avx2<T: Task>(_task: T) -> Option<T::Output> {
+        None
     }
 
     pub(super) fn run<T: Task>(_width: Width, _task: T) -> Option<T::Output> {

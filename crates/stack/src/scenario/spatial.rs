@@ -28,7 +28,7 @@ section! {
     kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 
-/// A free scene in space.
+/// A free scene in three dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialScene {
     /// The ground.

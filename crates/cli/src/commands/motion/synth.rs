@@ -59,7 +59,7 @@ enum Kind {
     Ricker(Made<Size>),
     /// Gabor wavelet of velocity.
     Gabor(Made<Wavelet>),
-    /// Cycloidal pulse A: a displacement forward.
+    /// Cycloidal pulse of type A: a permanent displacement forward.
     CycloidA(Made<Size>),
     /// Cycloidal pulse B: a displacement forward and back.
     CycloidB(Made<Size>),

@@ -54,7 +54,7 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
                 }
                 (None, None) => {
                     bail!(
-                        "--at: state the target of Sa at the period of --at, with --level \"0.6 g\" or --epsilon 2"
+                        "--at: give the target value of Sa at this period with --level \"0.6 g\" or --epsilon 2"
                     )
                 }
             })
