@@ -440,7 +440,8 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     const grid = t("grid of {1}", "1\u00a0m");
     halo(pen, grid, 14, height - 14);
     // A plane models one barrel of a row.
-    if (depth.bodies.some(({ rows }) => rows.length > 1)) halo(pen, t("all barrels of a row move alike"), 14, height - 31);
+    const alike = t("all barrels of a row move alike");
+    if (depth.bodies.some(({ rows }) => rows.length > 1) && context.measureText(alike).width < width - 28) halo(pen, alike, 14, height - 31);
     if (!eye.turned && stages()[0] === stage) {
       context.textAlign = "right";
       const room = width - 48 - context.measureText(grid).width;

@@ -74,7 +74,7 @@ impl Dots {
 #[cfg(test)]
 mod tests {
     use super::Dots;
-    use crate::{Language, drawing::Item};
+    use crate::{Document, Language, Verdict, drawing::Item, html::html};
 
     fn dots(fell: u32, open: u32, stood: u32) -> Dots {
         Dots { direction: "along the barrels".into(), fell, stood, open }
@@ -112,6 +112,16 @@ mod tests {
             in_space.words(Language::English),
             "Variants: 1 falls (filled), 2 have no verdict (gray)"
         );
+    }
+
+    #[test]
+    fn a_page_shows_a_dot_for_every_variant_below_the_headline() {
+        let verdict = Verdict { dots: vec![dots(2, 0, 3)], ..Verdict::default() };
+        let page = html(&Document { verdict, ..Document::default() });
+        let header = page.split("</header>").next().unwrap();
+        assert_eq!(header.matches("class=\"variant fell\"").count(), 2);
+        assert_eq!(header.matches("class=\"variant stood\"").count(), 3);
+        assert!(header.contains("Along the barrels: 2 fall (filled), 3 stand (rings)"));
     }
 
     #[test]

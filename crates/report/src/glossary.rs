@@ -49,7 +49,15 @@ impl Glossary {
                 "<button type=\"button\" class=\"term\" aria-describedby=\"word-{at}\" \
                  data-meaning=\"{meaning}\">{shown}</button>"
             );
-            out += &button;
+            // A line may break after a button, but not between a word and what belongs to it.
+            let end = after.find(char::is_whitespace).unwrap_or(after.len());
+            let (own, after) = after.split_at(if end <= MOST_JOINED { end } else { 0 });
+            let joined = if own.is_empty() {
+                button
+            } else {
+                format!("<span class=\"joined\">{button}{}</span>", escape::html(own))
+            };
+            out += &joined;
             rest = after;
         }
         out + &escape::html(rest)
@@ -82,13 +90,22 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Finds the first occurrence of `word` or its plural, as a whole word, in `text`.
+/// Largest length (bytes) of the end of a word, with its punctuation, that is kept on the line of a marked term.
+const MOST_JOINED: usize = 4;
+
+/// Finds the first occurrence of `word` or its plural, as a whole word, in `text`; the parts of a key such as
+/// `stack.rack.mass` are not words.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
-    let letter = |c: char| c.is_alphanumeric() || c == '-';
+    let letter = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let of_key = |at: usize| {
+        let after = lower[at + word.len()..].strip_prefix('.');
+        lower[..at].ends_with('.') || after.is_some_and(|after| after.starts_with(letter))
+    };
     let whole = |at: &usize| {
         let after = &lower[at + word.len()..];
-        !lower[..*at].ends_with(letter)
+        !of_key(*at)
+            && !lower[..*at].ends_with(letter)
             && (!after.starts_with(letter)
                 || (after.starts_with('s') && !after[1..].starts_with(letter)))
     };
@@ -108,6 +125,8 @@ mod tests {
     #[test]
     fn words_are_found_whole_and_in_the_plural() {
         assert_eq!(find("A Rack", "rack"), Some(2));
+        // Parts of a key are not words.
+        assert_eq!(find("stack.rack.mass of the rack.", "rack"), Some(23));
         assert_eq!(find("Two racks.", "rack"), Some(4));
         assert_eq!(find("The tracks crack; rack-ground", "rack"), None);
         assert_eq!(find("é rack", "rack"), Some(3));

@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use crate::{
-    Language, Point, Polyline, Role, Scene, SceneBody, csv_field,
+    Event, Language, Point, Polyline, Role, Scene, SceneBody, csv_field,
     drawing::{Anchor, Body, Drawing, Item, Placed, text_width},
     number,
     scene::{Extent, hatch, window},
@@ -89,6 +89,13 @@ impl Strip {
     /// preferred to losses of seat, losses of seat to all other events, and earlier events to later
     /// events. If there are too few events, instants in the middle of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
+        let events = scene.events.clone();
+        Self::of_events(scene, &events, count)
+    }
+
+    /// Creates a strip as [`Strip::of_run`] does, with events that the scene itself does not show, such as those in
+    /// another view of the same run.
+    pub fn of_events(scene: Arc<Scene>, events: &[Event], count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
         let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
@@ -103,7 +110,7 @@ impl Strip {
             panels.iter().all(|p| (p.time - time).abs() >= least)
         };
         for kinds in [&[Fall][..], &[LossOfSeat], &[Uplift, Slip, Note]] {
-            for event in scene.events.iter().filter(|e| kinds.contains(&e.kind)) {
+            for event in events.iter().filter(|e| kinds.contains(&e.kind)) {
                 let inside = event.time > first && event.time < last;
                 if panels.len() < count && inside && far(&panels, event.time, 0.03 * span) {
                     let who = event.body.map(|b| format!("{}: ", scene.name(b)));

@@ -54,6 +54,16 @@ pub struct Comparison {
     pub why: String,
 }
 
+/// Text in place of a published result that the paper does not state.
+pub(crate) const NOT_STATED: &str = "not stated";
+
+impl Comparison {
+    /// Returns `true` if the paper states a result.
+    pub fn is_published(&self) -> bool {
+        self.published != NOT_STATED
+    }
+}
+
 /// Formats a fraction as a signed percentage.
 pub fn percent(share: f64) -> String {
     let rounded = (100.0 * share).round();

@@ -49,8 +49,9 @@ pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |agreement| rows.iter().filter(|row| row.agreement == agreement).count();
     let compared = rows.len() - count(Agreement::NotCompared);
     let agree = count(Agreement::Agrees);
-    let mut text = if compared < rows.len() {
-        format!("{compared} of {} published results could be compared: {agree} agree", rows.len())
+    let published = rows.iter().filter(|row| row.is_published()).count();
+    let mut text = if compared < published {
+        format!("{compared} of {published} published results could be compared: {agree} agree")
     } else {
         format!("{agree} of {compared} published results agree")
     };

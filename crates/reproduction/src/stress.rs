@@ -4,7 +4,7 @@ use barrelstack::run::Run;
 use barrelstack::watch::StressEnvelope;
 use barrelstack_report::significant;
 
-use super::compare::{Agreement, Comparison};
+use super::compare::{Agreement, Comparison, NOT_STATED};
 use super::numbering;
 
 /// Returns the stress envelope of the barrel with the given number of the paper.
@@ -79,7 +79,7 @@ pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Com
     let row = |(name, value, meaning): Definition| Comparison {
         place,
         quantity: format!("{case}, barrel 1, amplification defined as {name}"),
-        published: "not stated".to_owned(),
+        published: NOT_STATED.to_owned(),
         ours: value(run).map_or_else(|| "–".to_owned(), |value| significant(value, 3)),
         difference: None,
         band: None,

@@ -381,14 +381,18 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns invisible points that enlarge the picture: around a stack viewed from above, where the picture shows no floor,
-/// and around the paths of all bodies of a free scene.
+/// Returns invisible points that enlarge the picture: around the paths of all bodies, near a stack that is viewed from
+/// above, where bodies fall in all directions, and everywhere in a free scene.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
         bounds(run, sight)
     } else {
-        let far = if sight == Sight::Above { 0.7 * run.stack.height } else { 0.0 };
-        [[-far, -far], [far, far]]
+        let (least, most) = match sight {
+            Sight::Above => (0.7 * run.stack.height, 1.5 * run.stack.height),
+            Sight::Across | Sight::Along => (0.0, 0.0),
+        };
+        let [lower, upper] = bounds(run, sight);
+        [lower.map(|edge| edge.clamp(-most, -least)), upper.map(|edge| edge.clamp(least, most))]
     };
     let corners = corners.map(|corner| Polyline::open(vec![corner]));
     SceneBody::new("", Role::Block, corners.into())

@@ -326,8 +326,19 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     };
     let lost = || "not available, because the computation failed".to_owned();
     pair("energy balance", summary.energy.as_ref().map_or_else(lost, residual));
-    for (index, step) in summary.provenance.motion.iter().enumerate() {
-        pair(&format!("motion, step {}", index + 1), step.clone());
+    let mut motion = |place: &str, steps: &[String]| {
+        for (index, step) in steps.iter().enumerate() {
+            pair(&format!("motion{place}, step {}", index + 1), step.clone());
+        }
+    };
+    match (run.assembly.view, &summary.other_plane) {
+        (Some(view), Some(other)) => {
+            motion(&format!(" {}", view.words()), &summary.provenance.motion);
+            let beside =
+                if view == View::Transverse { View::Longitudinal } else { View::Transverse };
+            motion(&format!(" {}", beside.words()), &other.provenance.motion);
+        }
+        _ => motion("", &summary.provenance.motion),
     }
     let similitude = run.scenario.run.similitude;
     if similitude != 1.0 {

@@ -523,7 +523,7 @@ fn medians(all: &Heights) -> Figure {
             .iter()
             .filter(|height| height.direction == direction)
             .filter_map(|height| {
-                let fit = height.by_velocity.fit.as_ref().ok()?;
+                let fit = determined(&height.by_velocity)?;
                 let at = f64::from(height.levels) + shift;
                 // Bars without an upper end are not drawn.
                 let bounds = height.by_velocity.median.filter(|bounds| bounds.high.is_finite());
@@ -549,15 +549,27 @@ fn medians(all: &Heights) -> Figure {
     )
 }
 
+/// Largest ratio of a fitted median to the highest level of shaking above which the cases do not determine it.
+const MOST_BEYOND: f64 = 2.0;
+
+/// Returns the fitted curve if the cases determine its median.
+fn determined(curve: &LimitCurve) -> Option<&Fit> {
+    let highest = curve.stripes.iter().map(|stripe| stripe.intensity).fold(0.0, f64::max);
+    curve.fit.as_ref().ok().filter(|fit| fit.curve.median <= MOST_BEYOND * highest)
+}
+
 fn median_table(all: &Heights) -> Table {
     let number = |curve: &LimitCurve, scale: f64, of: fn(&Fit) -> f64| {
-        Cell::number(curve.fit.as_ref().ok().map(|fit| scale * of(fit)), 3)
+        Cell::number(determined(curve).map(|fit| scale * of(fit)), 3)
     };
     let shown = |x: f64| if x.is_finite() { significant(100.0 * x, 3) } else { "∞".to_owned() };
     let interval = |pgv: &LimitCurve| {
-        pgv.median.filter(|_| pgv.fit.is_ok()).map(|bounds| range(bounds, shown))
+        pgv.median.filter(|_| determined(pgv).is_some()).map(|bounds| range(bounds, shown))
     };
     let remark = |pgv: &LimitCurve| match &pgv.fit {
+        Ok(_) if determined(pgv).is_none() => {
+            "the fitted median is far above all levels of shaking that were run".to_owned()
+        }
         Ok(_) if pgv.violates_order() => "not monotone: use the counts".to_owned(),
         Ok(_) => String::new(),
         Err(reason) => refusal(reason, shaking),

@@ -2,8 +2,8 @@
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, Plot, Rating, Series, SeriesStyle, Table, Verdict,
-    capital, listed, significant,
+    Axis, Block, Cell, Document, Figure, Plot, Series, SeriesStyle, Table, Verdict, capital,
+    listed, significant,
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
@@ -228,7 +228,7 @@ fn table(all: &Ranking) -> Table {
         ("collapse", "barrels fallen", "barrels burst")
     };
     let name = |one: &Ranked| match &one.protection.name {
-        name if one.on_front => Cell::Rated(Rating::Good, format!("✓ {name}")),
+        name if one.on_front => Cell::text(format!("• {name}")),
         name => Cell::text(name),
     };
     let cost = |one: &Ranked| {
@@ -285,7 +285,7 @@ fn table(all: &Ranking) -> Table {
 
 fn legend(all: &Ranking) -> String {
     format!(
-        "✓: no other protection that was run in all rounds costs at most as much and loses fewer barrels. \
+        "•: no other protection that was run in all rounds costs at most as much and loses fewer barrels. \
          Protections with fewer motions were dropped early, because a cheaper protection is significantly better or \
          because half of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more \
          precise than the difference of two means. The next column has an interval that holds for all {} protections \

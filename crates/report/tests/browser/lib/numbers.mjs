@@ -207,7 +207,7 @@ export async function ofStudy(page, decision) {
 
 /** Finds the rows of a table by the text of their first cells, and the cells of a row by the beginnings of their heads. */
 function cellsOf({ head, rows }, name) {
-  const row = rows.find(([first]) => first.replace(/^✓\s*/, "") === name);
+  const row = rows.find(([first]) => first.replace(/^•\s*/, "") === name);
   demand(row, `no row is called ${name}`);
   return (begin, nth = 0) => {
     const columns = head.flatMap((text, at) => (text.startsWith(begin) ? [at] : []));
