@@ -89,13 +89,18 @@ impl Strip {
     /// preferred to losses of seat, losses of seat to all other events, and earlier events to later
     /// events. If there are too few events, instants in the middle of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
-        let events = scene.events.clone();
-        Self::of_events(scene, &events, count)
+        Self::of_views(Arc::clone(&scene), &[&scene], count)
     }
 
-    /// Creates a strip as [`Strip::of_run`] does, with events that the scene itself does not show, such as those in
-    /// another view of the same run.
-    pub fn of_events(scene: Arc<Scene>, events: &[Event], count: usize) -> Self {
+    /// Creates a strip as [`Strip::of_run`] does, with the events of all views of a run.
+    pub fn of_views(scene: Arc<Scene>, views: &[&Scene], count: usize) -> Self {
+        let named = |view: &'_ Scene| {
+            let named =
+                |event: &Event| (event.time, event.kind, event.body.map(|body| view.name(body)));
+            view.events.iter().map(named).collect::<Vec<_>>()
+        };
+        let mut events: Vec<_> = views.iter().flat_map(|view| named(view)).collect();
+        events.sort_by(|a, b| a.0.total_cmp(&b.0));
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
         let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
@@ -110,12 +115,12 @@ impl Strip {
             panels.iter().all(|p| (p.time - time).abs() >= least)
         };
         for kinds in [&[Fall][..], &[LossOfSeat], &[Uplift, Slip, Note]] {
-            for event in events.iter().filter(|e| kinds.contains(&e.kind)) {
-                let inside = event.time > first && event.time < last;
-                if panels.len() < count && inside && far(&panels, event.time, 0.03 * span) {
-                    let who = event.body.map(|b| format!("{}: ", scene.name(b)));
-                    let note = format!("{}{}", who.unwrap_or_default(), event.kind.word());
-                    panels.push(Panel { time: event.time, note });
+            for (time, kind, body) in events.iter().filter(|(_, kind, _)| kinds.contains(kind)) {
+                let inside = *time > first && *time < last;
+                if panels.len() < count && inside && far(&panels, *time, 0.03 * span) {
+                    let who = body.as_ref().map(|name| format!("{name}: "));
+                    let note = format!("{}{}", who.unwrap_or_default(), kind.word());
+                    panels.push(Panel { time: *time, note });
                 }
             }
         }

@@ -11,8 +11,7 @@ use barrelstack::variants::words::dots_of;
 use barrelstack::variants::{Range, Remedy};
 use barrelstack::verify::Verification;
 use barrelstack_report::{
-    Block, Cell, Document, Event, Figure, Pane, Player, Players, Scene, Strip, Table, Verdict,
-    capital,
+    Block, Cell, Document, Figure, Pane, Player, Players, Scene, Strip, Table, Verdict, capital,
 };
 
 use crate::drawing::{Sight, ground_histories, scene, traces};
@@ -70,9 +69,7 @@ pub fn document(answer: &Answer) -> Document {
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
     // All views show the same moments; each view lists only the events that it shows.
-    let mut events: Vec<Event> =
-        scenes.iter().flat_map(|(_, scene)| scene.events.iter().cloned()).collect();
-    events.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let views: Vec<&Scene> = scenes.iter().map(|(_, scene)| &**scene).collect();
     for (sight, scene) in &scenes {
         blocks.push(Block::Figure(Figure::new(
             format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
@@ -81,7 +78,7 @@ pub fn document(answer: &Answer) -> Document {
                 if free { "scene" } else { "stack" },
                 sight.words(&run.stack)
             ),
-            Strip::of_events(Arc::clone(scene), &events, 6),
+            Strip::of_views(Arc::clone(scene), &views, 6),
         )));
     }
     if let Some(found) = &summary.verification {
