@@ -89,19 +89,20 @@ impl Strip {
     /// preferred to losses of seat, losses of seat to all other events, and earlier events to later
     /// events. If there are too few events, instants in the middle of the longest gaps are added.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
-        Self::of_views(Arc::clone(&scene), &[&scene], count)
+        let own = Arc::clone(&scene);
+        Self::of_views(scene, &[&own], count)
     }
 
     /// Creates a strip as [`Strip::of_run`] does, with the events of all views of a run.
     pub fn of_views(scene: Arc<Scene>, views: &[&Scene], count: usize) -> Self {
-        let named = |view: &'_ Scene| {
+        use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
+        let named = |view: &Scene| {
             let named =
                 |event: &Event| (event.time, event.kind, event.body.map(|body| view.name(body)));
             view.events.iter().map(named).collect::<Vec<_>>()
         };
         let mut events: Vec<_> = views.iter().flat_map(|view| named(view)).collect();
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
-        use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
         let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
             return Self { scene, panels: Vec::new() };
