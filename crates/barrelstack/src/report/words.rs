@@ -326,19 +326,22 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     };
     let lost = || "not available, because the computation failed".to_owned();
     pair("energy balance", summary.energy.as_ref().map_or_else(lost, residual));
-    let mut motion = |place: &str, steps: &[String]| {
-        for (index, step) in steps.iter().enumerate() {
+    let own = &summary.provenance.motion;
+    let mut motion = |place: &str, steps: &[String], known: &[String]| {
+        let steps = steps.iter().enumerate().filter(|(_, step)| !known.contains(step));
+        for (index, step) in steps {
             pair(&format!("motion{place}, step {}", index + 1), step.clone());
         }
     };
     match (run.assembly.view, &summary.other_plane) {
         (Some(view), Some(other)) => {
-            motion(&format!(" {}", view.words()), &summary.provenance.motion);
+            motion(&format!(" {}", view.words()), own, &[]);
             let beside =
                 if view == View::Transverse { View::Longitudinal } else { View::Transverse };
-            motion(&format!(" {}", beside.words()), &other.provenance.motion);
+            // Steps that both motions share are stated once.
+            motion(&format!(" {}", beside.words()), &other.provenance.motion, own);
         }
-        _ => motion("", &summary.provenance.motion),
+        _ => motion("", own, &[]),
     }
     let similitude = run.scenario.run.similitude;
     if similitude != 1.0 {
