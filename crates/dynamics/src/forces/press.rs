@@ -33,7 +33,13 @@ pub(super) fn touch<S: Space>(
     group: usize,
     scratch: &mut Scratch<S>,
 ) {
-    let near = !asleep(model, &state.contact_elements, group);
+    // A group that is awake in a single run is awake in its only lane.
+    let all = !<S::Real as Real>::Mask::default();
+    let near = if S::SOLIDS_SHARE && S::Real::LANES > 1 {
+        !asleep(model, &state.contact_elements, group)
+    } else {
+        all
+    };
     let group = &state.contact_elements.groups[group];
     let pair = model.pair(group.pair);
     scratch.contact_evaluations += (group.end - group.first) as u64;
