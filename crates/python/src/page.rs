@@ -1,5 +1,6 @@
 //! Results with numbers and a page: comparisons, rankings, calibrations, and decisions of a study.
 
+use std::borrow::Borrow;
 use std::path::PathBuf;
 
 use barrelstack::export::Folder;
@@ -47,8 +48,7 @@ impl Page {
 
     #[pyo3(signature = (language = "en"))]
     fn html(&self, py: Python<'_>, language: &str) -> PyResult<String> {
-        let language = language_of(language)?;
-        Ok(py.detach(|| html(&self.document.in_language(language))))
+        html_in(py, language, || &self.document)
     }
 
     fn pdf<'py>(
@@ -57,9 +57,7 @@ impl Page {
         paper: &str,
         language: &str,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (paper, language) = (paper_of(paper)?, language_of(language)?);
-        let pdf = py.detach(|| document_pdf(&self.document.in_language(language), paper));
-        Ok(bytes(py, &pdf))
+        pdf_in(py, (paper, language), || &self.document)
     }
 
     /// Writes `report.html`, `report.md` and `figures/`.
@@ -82,6 +80,27 @@ impl Page {
 /// Returns the language of a code.
 pub(crate) fn language_of(code: &str) -> PyResult<Language> {
     code.parse().map_err(|error: UnknownLanguage| PyValueError::new_err(error.to_string()))
+}
+
+/// Returns the page of a document in a language, given by its code.
+pub(crate) fn html_in<D: Borrow<Document>>(
+    py: Python<'_>,
+    language: &str,
+    document: impl FnOnce() -> D + Send,
+) -> PyResult<String> {
+    let language = language_of(language)?;
+    Ok(py.detach(|| html(&document().borrow().in_language(language))))
+}
+
+/// Returns the PDF of a document on a paper and in a language, given by their names.
+pub(crate) fn pdf_in<'py, D: Borrow<Document>>(
+    py: Python<'py>,
+    (paper, language): (&str, &str),
+    document: impl FnOnce() -> D + Send,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let (paper, language) = (paper_of(paper)?, language_of(language)?);
+    let pdf = py.detach(|| document_pdf(&document().borrow().in_language(language), paper));
+    Ok(bytes(py, &pdf))
 }
 
 /// Returns the paper size of a name.

@@ -9,15 +9,14 @@ use barrelstack::render::{Part, RenderFolder, Rendered, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::watch::{Joint, StressEnvelope};
-use barrelstack_report::{Format, Player, Scene, document_pdf, html, player_html};
+use barrelstack_report::{Format, Player, Scene, player_html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors;
-use crate::page::{language_of, paper_of};
-use crate::scenario::bytes;
+use crate::page::{html_in, language_of, paper_of, pdf_in};
 use crate::table::Table;
 use crate::view::{Numbers, Rows, rows, view};
 
@@ -246,8 +245,7 @@ impl Run {
 
     #[pyo3(signature = (language = "en"))]
     fn html(&self, py: Python<'_>, language: &str) -> PyResult<String> {
-        let language = language_of(language)?;
-        Ok(py.detach(|| html(&report::answer_document(&self.answer).in_language(language))))
+        html_in(py, language, || report::answer_document(&self.answer))
     }
 
     fn pdf<'py>(
@@ -256,11 +254,7 @@ impl Run {
         paper: &str,
         language: &str,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (paper, language) = (paper_of(paper)?, language_of(language)?);
-        let pdf = py.detach(|| {
-            document_pdf(&report::answer_document(&self.answer).in_language(language), paper)
-        });
-        Ok(bytes(py, &pdf))
+        pdf_in(py, (paper, language), || report::answer_document(&self.answer))
     }
 
     /// Returns a page with nothing but the player.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use barrelstack::export::Folder;
 use barrelstack::render::Rendering;
-use barrelstack_report::{Format, document_pdf, html};
+use barrelstack_report::Format;
 use barrelstack_space::drawing::coarse_scene;
 use barrelstack_space::report::{document, player};
 use barrelstack_space::run::Frames;
@@ -15,9 +15,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors;
-use crate::page::{language_of, paper_of};
+use crate::page::{html_in, language_of, paper_of, pdf_in};
 use crate::run::{animated, chosen, rendered};
-use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{Numbers, view};
 
@@ -100,8 +99,7 @@ impl SpatialRun {
 
     #[pyo3(signature = (language = "en"))]
     fn html(&self, py: Python<'_>, language: &str) -> PyResult<String> {
-        let language = language_of(language)?;
-        Ok(py.detach(|| html(&document(&self.answer).in_language(language))))
+        html_in(py, language, || document(&self.answer))
     }
 
     fn pdf<'py>(
@@ -110,9 +108,7 @@ impl SpatialRun {
         paper: &str,
         language: &str,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (paper, language) = (paper_of(paper)?, language_of(language)?);
-        let pdf = py.detach(|| document_pdf(&document(&self.answer).in_language(language), paper));
-        Ok(bytes(py, &pdf))
+        pdf_in(py, (paper, language), || document(&self.answer))
     }
 
     /// Returns a page with nothing but the player.

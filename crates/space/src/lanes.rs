@@ -26,7 +26,7 @@ const FEWEST: usize = 3;
 /// A case whose stack is at rest, and its index among all cases.
 pub(crate) type Ready = (usize, Prepared);
 
-/// Runs cases in lanes on one core; `report` receives the index and the result of each finished case, and `stop` is
+/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has AVX2; `report` receives the index and the result of each finished case, and `stop` is
 /// polled. Returns the cases that have to be run one after the other.
 pub(crate) fn run(
     in_lanes: bool,
@@ -172,6 +172,7 @@ impl<'a, R: Real> lanes::Batch<'a, Spatial<R>> for Batch<'a> {
             (Ok(Finish::Stopped | Finish::EndTime), _) => Ending::of_time(&fixed.scenario),
         };
         share.end(end.time / fixed.settings.end_time);
+        // Evaluations are counted for all lanes together; the result of a case has only its steps.
         let work = Work { steps: end.steps, ..Work::default() };
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
         let run = watch.conclude(Arc::clone(fixed), state, ended, work, ending);

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
-use barrelstack::ensemble::{CaseResult, Share, Stage, Width};
+use barrelstack::ensemble::{CaseResult, Share, Stage};
 use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
@@ -214,13 +214,21 @@ pub fn run_each<T: Sync>(
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Vec<Case> {
-    run_each_in(Width::widest(), items, build, observer)
+    run_all_of(true, items, build, observer)
 }
 
-/// Runs like [`run_each`], but one case after the other if the width is that of scalars; all other widths use the lanes
-/// of AVX2 if the machine has them.
-pub fn run_each_in<T: Sync>(
-    width: Width,
+/// Runs like [`run_each`], but each core runs one case after the other.
+pub fn run_each_alone<T: Sync>(
+    items: &[T],
+    build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Vec<Case> {
+    run_all_of(false, items, build, observer)
+}
+
+/// Runs cases on all cores, in lanes if `in_lanes` is `true`.
+fn run_all_of<T: Sync>(
+    in_lanes: bool,
     items: &[T],
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
@@ -241,7 +249,7 @@ pub fn run_each_in<T: Sync>(
             cases[at] = case;
             report(done.fetch_add(1, Ordering::Relaxed) + 1);
         };
-        run_chunk(width, chunk, build, &mut finished, &stop);
+        run_chunk(in_lanes, chunk, build, &mut finished, &stop);
         cases
     };
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
@@ -255,7 +263,7 @@ const BATCH: usize = 32;
 
 /// Runs cases on one core: those that can share their steps in lanes, and all others one after the other.
 fn run_chunk<T>(
-    width: Width,
+    in_lanes: bool,
     items: &[T],
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
     finished: &mut dyn FnMut(usize, Case),
@@ -274,7 +282,7 @@ fn run_chunk<T>(
         }
     }
     stage.shake(items.len());
-    for (at, prepared) in lanes::run(width != Width::Scalar, ready, finished, stop) {
+    for (at, prepared) in lanes::run(in_lanes, ready, finished, stop) {
         let mut share = Share::default();
         let run = prepared.start().run_watched(&mut |progress| {
             share.reached(progress.time / progress.end_time);

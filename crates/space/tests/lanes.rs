@@ -5,10 +5,9 @@
 use std::num::NonZero;
 use std::ops::ControlFlow;
 
-use barrelstack::ensemble::Width;
 use barrelstack::variants::planes;
 use barrelstack_space::Ground;
-use barrelstack_space::variants::run_each_in;
+use barrelstack_space::variants::{Case, run_each, run_each_alone};
 
 use crate::common::soft_demo;
 
@@ -30,13 +29,12 @@ fn cases_in_lanes_have_the_bits_of_single_runs() {
         let ground = Ground::of(&plane.scenario).unwrap();
         // Every thread has enough cases for its lanes.
         let numbers: Vec<u32> = (1..=4 * u32::try_from(threads).unwrap()).collect();
-        let cases = |width| {
-            let build = |number: &u32| (plane.trial(*number), ground.clone());
-            let cases = run_each_in(width, &numbers, &build, &|_| ControlFlow::Continue(()));
-            cases.iter().map(|case| format!("{case:?}")).collect::<Vec<_>>()
-        };
-        let single = cases(Width::Scalar);
-        for ((lane, single), number) in cases(Width::widest()).iter().zip(&single).zip(&numbers) {
+        let build = |number: &u32| (plane.trial(*number), ground.clone());
+        let texts =
+            |cases: Vec<Case>| cases.iter().map(|case| format!("{case:?}")).collect::<Vec<_>>();
+        let lanes = texts(run_each(&numbers, &build, &|_| ControlFlow::Continue(())));
+        let single = texts(run_each_alone(&numbers, &build, &|_| ControlFlow::Continue(())));
+        for ((lane, single), number) in lanes.iter().zip(&single).zip(&numbers) {
             assert!(lane == single, "variant {number} of {changes:?}");
         }
         all += single.len();

@@ -121,7 +121,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const { cellar, look } = run, first = !run.shown;
     const asked = (shorter) => crew.ask(headOf({ ...cellar, changes: { ...cellar.changes, ...shorter } }, "show", { numbers: [variant] }), {
       records: cellar.records, urgency: shorter ? 3 : 2, group: "run", draws: true,
-      told: (done, of) => { if (!run.shown) find("sofar").textContent = t("shaking it: {1}", percentOf(done / of)); },
+      told: (done, of) => { if (!run.shown) find("sofar").textContent = t("shaking the stack: {1}", percentOf(done / of)); },
     });
     const put = async (answer, options) => {
       const shown = jsonOf(answer);
@@ -171,7 +171,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     marks = { from };
     window.barrelstack.marks = marks;
     find("bar").value = 0;
-    find("sofar").textContent = t("shaking it");
+    find("sofar").textContent = t("shaking the stack");
     tell(mine);
     // On a phone the stack is below the choices.
     if (find("result").getBoundingClientRect().top > 0.5 * window.innerHeight) find("result").scrollIntoView({ block: "start" });

@@ -90,14 +90,14 @@ impl Found {
         }
     }
 
-    /// Asks the engine in both languages.
-    fn ask(&mut self, request: &Request, files: &[&[u8]]) {
+    /// Compares the answers of the engine in both languages.
+    fn answers(&mut self, request: &Request, files: &[&[u8]]) {
         let both = [Language::English, Language::Spanish]
             .map(|language| document(&answer(request, language, files).expect("an answer")));
         self.compare("", &both[0], &both[1]);
     }
 
-    /// Asks for something that is refused.
+    /// Compares the messages of a refused request in both languages.
     fn refused(&mut self, request: &Request) {
         let [english, spanish] = [Language::English, Language::Spanish]
             .map(|language| answer(request, language, &[]).expect_err("a refusal"));
@@ -171,8 +171,8 @@ fn what_is_said_of_a_stack_is_translated() {
         &["stack.tuned_mass.level=1"],
         &["stack.isolator.path=dish"],
     ] {
-        found.ask(&request(RequestKind::Look, changes), &[]);
-        found.ask(&request(RequestKind::Devices, changes), &[]);
+        found.answers(&request(RequestKind::Look, changes), &[]);
+        found.answers(&request(RequestKind::Devices, changes), &[]);
     }
     let scenarios = answer(&Request::default(), Language::English, &[]).unwrap();
     let scenarios: Vec<(String, String)> = serde_json::from_slice(&scenarios).unwrap();
@@ -180,7 +180,7 @@ fn what_is_said_of_a_stack_is_translated() {
         let look = Request::of(RequestKind::Look, &text);
         // A scenario whose record is not bundled cannot be shown.
         if answer(&look, Language::English, &[]).is_ok() {
-            found.ask(&look, &[]);
+            found.answers(&look, &[]);
         }
     }
     found.end(1000);
@@ -195,11 +195,11 @@ fn runs_and_verdicts_are_translated() {
         &["stack.levels=3", "stack.view=longitudinal"],
         &["stack.levels=6", "stack.rack=rack-on-rack", "stack.strap.levels=6"],
     ] {
-        found.ask(&request(RequestKind::Show, changes), &[]);
-        let asked = Request { numbers: vec![0, 1, 2], ..request(RequestKind::Variants, changes) };
-        let cases = document(&answer(&asked, Language::English, &[]).unwrap());
+        found.answers(&request(RequestKind::Show, changes), &[]);
+        let base = Request { numbers: vec![0, 1, 2], ..request(RequestKind::Variants, changes) };
+        let cases = document(&answer(&base, Language::English, &[]).unwrap());
         let cases: Vec<Vec<Case>> = serde_json::from_value(cases).unwrap();
-        found.ask(&Request { kind: RequestKind::Verdict, cases, ..asked }, &[]);
+        found.answers(&Request { kind: RequestKind::Verdict, cases, ..base }, &[]);
     }
     found.end(60);
 }
@@ -217,12 +217,12 @@ fn what_is_said_of_files_is_translated() {
     let bytes: Vec<&[u8]> = files.iter().map(|(_, bytes)| *bytes).collect();
     let records = files.iter().map(|(name, bytes)| ((*name).to_owned(), bytes.len())).collect();
     let mut found = Found::default();
-    let asked = Request { records, ..Request::of(RequestKind::Records, "") };
-    found.ask(&asked, &bytes);
+    let base = Request { records, ..Request::of(RequestKind::Records, "") };
+    found.answers(&base, &bytes);
     let reading = Reading { unit: None, time_step: Some(0.01) };
-    found.ask(&Request { reading: reading.clone(), ..asked.clone() }, &bytes);
+    found.answers(&Request { reading: reading.clone(), ..base.clone() }, &bytes);
     let reading = Reading { unit: Some("g".into()), ..reading };
-    found.ask(&Request { reading, ..asked }, &bytes);
+    found.answers(&Request { reading, ..base }, &bytes);
     found.end(5);
 }
 
@@ -259,16 +259,16 @@ fn refusals_are_translated() {
 
 #[test]
 fn reports_and_files_are_in_the_language() {
-    let asked = request(RequestKind::Files, &["stack.levels=1", "stack.view=transverse"]);
+    let base = request(RequestKind::Files, &["stack.levels=1", "stack.view=transverse"]);
     let [english, spanish] = [Language::English, Language::Spanish].map(|language| {
-        String::from_utf8_lossy(&answer(&asked, language, &[]).unwrap()).into_owned()
+        String::from_utf8_lossy(&answer(&base, language, &[]).unwrap()).into_owned()
     });
     assert!(english.contains("<html lang=\"en\">") && !english.contains("<html lang=\"es\">"));
     assert!(spanish.contains("<html lang=\"es\">") && spanish.contains(">Advertencias<"));
-    let asked = Request { kind: RequestKind::Report, ..asked };
-    let report = String::from_utf8(answer(&asked, Language::Spanish, &[]).unwrap()).unwrap();
+    let base = Request { kind: RequestKind::Report, ..base };
+    let report = String::from_utf8(answer(&base, Language::Spanish, &[]).unwrap()).unwrap();
     assert!(report.contains("<html lang=\"es\">"));
-    let unknown = Request { language: "fr".into(), ..asked };
+    let unknown = Request { language: "fr".into(), ..base };
     let refusal =
         answered(&unknown.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(())).unwrap_err();
     assert!(refusal.contains("\"fr\""), "{refusal}");

@@ -12,19 +12,9 @@ use crate::printer;
 /// Name of the scenario.
 const NAME: &str = "demo-napa";
 
-/// Changes of the scenario: the demo shows the stack in space, with fewer variants than a run, since a variant in space
-/// takes several times as long as one in a plane.
-const IN_SPACE: [&str; 2] = ["stack.view=spatial", "imperfections.variants=16"];
-
 /// Runs the demo scenario and summarizes the result in a few sentences.
 pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
-    let path = |change: &str| change.split('=').next().unwrap_or_default().trim().to_owned();
-    // A view that is given has the variants of a run.
-    let chosen = args.set.iter().any(|given| path(given) == path(IN_SPACE[0]));
-    let own = IN_SPACE
-        .iter()
-        .filter(|own| !chosen && args.set.iter().all(|given| path(given) != path(own)));
-    let set: Vec<String> = own.map(|&own| own.to_owned()).chain(args.set.clone()).collect();
+    let set = in_space(&args.set);
     let mut scenario = Scenario::builtin(NAME, &set)?;
     let selection = super::run::selected(&mut scenario, args.variants)?;
     let folder = Folder::prepare_again(&args.out)?;
@@ -46,4 +36,35 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let report = folder.report();
     printer::lines(["", &format!("Open {} in a browser to watch it.", report.display())])?;
     Ok(super::run::status(&answer))
+}
+
+/// Returns the changes that were given, preceded by those of the demo: unless a view is given, the stack is in space, with
+/// fewer variants than in a run, since a variant takes several times as long there as in a plane.
+fn in_space(given: &[String]) -> Vec<String> {
+    let states =
+        |path: &str| given.iter().any(|one| one.split('=').next().map(str::trim) == Some(path));
+    let mut set = Vec::new();
+    if !states("stack.view") {
+        set.push("stack.view=spatial".to_owned());
+        if !states("imperfections.variants") {
+            set.push("imperfections.variants=16".to_owned());
+        }
+    }
+    set.extend_from_slice(given);
+    set
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_space;
+
+    #[test]
+    fn a_given_view_or_number_of_variants_replaces_that_of_the_demo() {
+        let set =
+            |given: &[&str]| in_space(&given.iter().map(|&one| one.to_owned()).collect::<Vec<_>>());
+        assert_eq!(set(&[]), ["stack.view=spatial", "imperfections.variants=16"]);
+        assert_eq!(set(&["stack.view = both"]), ["stack.view = both"]);
+        let few = "imperfections.variants=4";
+        assert_eq!(set(&[few, "stack.levels=3"]), ["stack.view=spatial", few, "stack.levels=3"]);
+    }
 }
