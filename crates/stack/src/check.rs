@@ -62,7 +62,7 @@ described! {
 }
 
 impl AtRest {
-    /// Creates the summary of a settled stack with the largest settlement (m) of a body.
+    /// Creates the summary of a settled stack, given the largest settlement (m) of any body.
     pub fn of(Settled { steps, unbalanced, locked }: Settled, deepest_sinking: f64) -> Self {
         let Locked { friction: locked_friction, holding, slipping } = locked;
         Self { steps, deepest_sinking, unbalanced, locked_friction, holding, slipping }

@@ -68,7 +68,7 @@ pub struct Audience<'a> {
 pub struct Ensemble {
     /// The cases; cases with the same stack or motion share the data of that stack or motion.
     pub cases: Vec<Prepared>,
-    /// Vector unit to use; by default the widest of the machine. Results do not depend on it.
+    /// Vector unit to use; by default the widest of the machine. Results do not depend on this choice.
     pub lanes: Option<Width>,
 }
 
@@ -234,14 +234,14 @@ struct Run<'a> {
     case: &'a Prepared,
     /// Index of the case.
     index: usize,
-    /// Index of its stack.
+    /// Index of the stack of the case.
     stack: usize,
     /// Latest time (s) at which the run ends.
     end_time: f64,
 }
 
 impl Run<'_> {
-    /// Returns the criteria that may end the run before its latest end.
+    /// Returns the criteria that may end the run before `end_time`.
     fn end(&self, standing: &Standing) -> End {
         End::new(&self.case.scenario, &standing.assembly, &self.case.ground)
     }

@@ -45,8 +45,8 @@ impl Scenario {
 
     /// Returns the ground motion of a record in memory, in place of the scenario's own motion.
     ///
-    /// Components, processing and scale are those of the scenario. If its own motion is not a record, the first
-    /// horizontal component with the default processing is used.
+    /// Components, processing and scale are those of the scenario. If the scenario's own motion is not a record, the
+    /// first horizontal component with the default processing is used.
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -100,7 +100,7 @@ impl Scenario {
     /// Components, processing and scale remain those of the scenario.
     ///
     /// # Errors
-    /// If the record has no channel, or channels of different steps.
+    /// If the record has no channel, or if its channels have different time steps.
     pub fn with_record(&self, record: &Record) -> Result<Self, MotionError> {
         Ok(self.with_record_file(&held(record)?))
     }

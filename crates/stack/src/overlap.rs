@@ -59,7 +59,7 @@ enum Depth {
 enum Outline {
     /// Corners (m), counterclockwise.
     Polygon(Vec<Vec2>),
-    /// Everything below a line through a point (m) with a unit normal.
+    /// The half-plane below the line that has a unit normal and passes through a point (m).
     Below(Vec2, Vec2),
 }
 

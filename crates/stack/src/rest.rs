@@ -13,8 +13,8 @@ pub struct Restless {
 impl Restless {
     /// Returns `true` if the stack falls under its own weight.
     ///
-    /// Returns `false` if this is unknown, because forces do not balance in time or a regularized friction law lets the
-    /// stack creep.
+    /// Returns `false` if this is unknown: if settling ran out of time before the forces balanced, or if a regularized
+    /// friction law lets the stack creep.
     pub fn falls(&self) -> bool {
         match self.error.lack {
             Lack::Support

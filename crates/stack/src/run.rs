@@ -228,7 +228,7 @@ pub(crate) fn conclude(
 /// At another length scale, the step is the scaled step of the full-size stack, so that both runs are equivalent.
 ///
 /// # Errors
-/// If the step in the scenario is above the critical step, at which every explicit fixed-step method is unstable.
+/// If the step in the scenario is above the critical step, beyond which every explicit fixed-step method is unstable.
 pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
@@ -333,8 +333,7 @@ pub(crate) fn check_memory(
     check_kept(frame, (end_time * history_rate + 1.0, channels))
 }
 
-/// Checks the memory needed for a number of frames, each with several numbers for each body, and for the samples of
-/// histories.
+/// Checks the memory needed for the frames, which hold several numbers per body, and for the samples of the histories.
 ///
 /// # Errors
 /// If the frames and histories take more than 2 GB.

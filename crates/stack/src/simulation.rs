@@ -24,8 +24,8 @@ use crate::watch::{
 /// A run of a scenario in a plane, which advances by any number of steps.
 ///
 /// [`Scenario::run`] is a simulation that is run to its end, so the results of both are bit-identical. A clone has the
-/// complete state: positions, velocities, sticks, history of devices, recordings and stop criteria; it continues with
-/// bit-identical results. Clones share the stack and the ground motion.
+/// complete state: positions, velocities, friction springs, history of devices, recordings and stop criteria. It
+/// continues with bit-identical results. Clones share the stack and the ground motion.
 ///
 /// ```
 /// use barrelstack_dynamics::{Applied, Vec2};
@@ -100,8 +100,8 @@ impl Simulation {
         Ok(Self { fixed, state, scratch, stepper, watch, failure: None })
     }
 
-    /// Advances by up to `most` steps, or by fewer if the run ends. During impacts, a step is divided into several,
-    /// which all count.
+    /// Advances by up to `most` steps, or by fewer if the run ends. During impacts, a step is divided into shorter
+    /// steps, and each of these counts.
     ///
     /// Returns the number of steps that were taken.
     pub fn step(&mut self, most: u64) -> u64 {
@@ -182,7 +182,7 @@ impl Simulation {
             conclude(&assembly, &ground, &fates, ended, state.time, ending);
         warnings.extend(restitution_warning(&scenario));
         if outcome == Outcome::Stable {
-            // Soft sticks falsify small slips only, which are of no interest once the stack has collapsed.
+            // Soft friction springs falsify small slips only, which are of no interest once the stack has collapsed.
             let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
             let most = slips.fold(0.0, f64::max);
             warnings.extend(

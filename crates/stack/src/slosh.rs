@@ -1,18 +1,18 @@
-//! First sloshing wave of the wine in a partly filled barrel: its period, and the share of the wine that moves with the
-//! wave.
+//! First sloshing mode of the wine in a partly filled barrel: its period, and the share of the wine that moves in this
+//! mode.
 
 use std::f64::consts::PI;
 
 use barrelstack_dynamics::math::{acos, cos, exp, sin, sin_cos};
 
-/// The first sloshing wave of a tank as an equivalent pendulum.
+/// The first sloshing mode of a tank as an equivalent pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
-    /// Fraction of the mass of the liquid that moves with the wave.
+    /// Sloshing mass, as a fraction of the mass of the liquid.
     pub share: f64,
     /// Length (m) of the pendulum, `g/ω²`.
     pub length: f64,
-    /// Depth (m) of the moving mass below the middle of the tank, if the wave is modeled as a mass on a spring.
+    /// Depth (m) of the sloshing mass below the middle of the tank, if the mode is modeled as a mass on a spring.
     pub depth: f64,
 }
 
@@ -26,8 +26,8 @@ const HALF_STRIP: f64 = 16.0;
 /// Number of quadrature points.
 const POINTS: usize = 400;
 
-/// Returns the first transverse sloshing mode of a horizontal circular cylinder with a radius (m), filled to a fraction
-/// of its volume.
+/// Returns the first transverse sloshing mode of a horizontal circular cylinder with the given radius (m), filled to
+/// the given fraction of its volume.
 ///
 /// In linear potential theory, the cross-section of the liquid, a segment of a circle, is mapped to a strip by `x + i z
 /// = b tanh(w/2)`, where `b` is half the width of the surface. In the strip, the normal derivative of a function `sin k
@@ -35,7 +35,7 @@ const POINTS: usize = 400;
 /// remaining eigenvalue problem on the surface has a rapidly converging basis. For a half-full cylinder, the result is
 /// `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960). The limit for a nearly empty cylinder is
 /// `ω² R/g = 1`, and the limit for a nearly full cylinder is the ice-fishing problem with `ω² b/g = 2.0061` (Fox and
-/// Kuttler 1983). The moving mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005,
+/// Kuttler 1983). The sloshing mass follows from the excitation of the mode by a lateral acceleration (Ibrahim 2005,
 /// section 5).
 pub fn across(radius: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
@@ -80,11 +80,11 @@ pub fn across(radius: f64, filled: f64) -> Wave {
     Wave { share: push * push / (norm * inverse * area), length, depth: length }
 }
 
-/// Returns the first wave along a barrel, approximated by the first wave of a rectangular tank.
+/// Returns the first sloshing mode along a barrel, approximated by the first sloshing mode of a rectangular tank.
 ///
-/// The tank has the length L (m) of the barrel, and is filled to the mean depth h of the wine under its surface:
-/// `ω² = π g/L tanh(π h/L)`, where the fraction `8 tanh(π h/L)/(π³ h/L)` of the mass moves (Ibrahim 2005, section 5).
-/// This is an approximation, since the bottom of a barrel is round.
+/// The tank has the length L (m) of the barrel, and its depth h (m) is the mean depth of the wine under its surface.
+/// The frequency is `ω² = π g/L tanh(π h/L)`, and the sloshing mass is the fraction `8 tanh(π h/L)/(π³ h/L)` of the
+/// liquid (Ibrahim 2005, section 5). This is an approximation, since the bottom of a barrel is round.
 pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
     let (b, area) = (sin(angle), angle - sin(angle) * cos(angle));
@@ -92,12 +92,13 @@ pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let ratio = depth / room_length;
     let swing = tanh(PI * ratio);
     let share = 8.0 * swing / (PI * PI * PI * ratio);
-    // With the rest of the wine at the middle of the barrel, this depth preserves the center of mass of the wine.
+    // This depth preserves the center of mass of the wine, because the wine that does not slosh is at the middle of the
+    // barrel.
     let center = radius * 2.0 * b * b * b / (3.0 * area);
     Wave { share, length: room_length / (PI * swing), depth: center / share }
 }
 
-/// Returns half the angle (rad) of the circular segment whose area is a fraction of the area of its circle.
+/// Returns half the central angle (rad) of the circular segment that covers the given fraction of its circle.
 fn wetted(filled: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI);
     for _ in 0..60 {

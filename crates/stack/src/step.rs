@@ -39,8 +39,8 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// springs.
 ///
 /// Bodies at rest require stability only. For resting contacts, steps are not divided up to twice the penetration
-/// [`WHOLE_STEP`]. There, the step is 0.83 of the critical step, since the stiffness grows with the square root of the
-/// penetration.
+/// [`WHOLE_STEP`]. At twice this penetration, the step is 0.83 of the critical step, since the stiffness grows with the
+/// square root of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.
@@ -381,11 +381,12 @@ fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     }
 }
 
-/// Returns an upper bound of the lever arm (m) of the normal force on a round piece. The normals of the piece pass
-/// through its center.
+/// Returns an upper bound of the lever arm (m) of the normal force on a round piece, whose normals pass through its
+/// center of curvature.
 ///
-/// The center of nearly straight staves is hundreds of meters away, but contacts lie between the ends of the staves.
-/// The bound is therefore the larger lever arm of the two outermost normals, which are perpendicular to the limits.
+/// The center of curvature of nearly straight staves is hundreds of meters away, but contacts lie between the ends of
+/// the staves. For such pieces, the bound is therefore the lever arm of the normal at one of the two ends, whichever
+/// arm is larger.
 fn lever(basis: Basis, round: &Round<Planar>) -> f64 {
     let center = round.center;
     let is_bounded = round.limits.iter().all(|limit| limit.length() > 0.0);

@@ -1,9 +1,10 @@
-//! Error of the elastic stick under reversing slip.
+//! Error that an elastic friction spring causes when the slip reverses.
 //!
-//! An elastic stick reverses its friction gradually, over twice its yield displacement, so every reversal of slip is
-//! delayed by √(4 yield / acceleration). For a block on oscillating ground, this delay changed the slip, up or down, by
-//! 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). Therefore, √(yield / amplitude) is
-//! reported as the relative error.
+//! In Coulomb friction, the tangential spring of a contact (its stick) is elastic. When the slip reverses, the friction
+//! force therefore changes its sign gradually, over twice the yield displacement of the spring, which delays every
+//! reversal by √(4 yield / acceleration). For a block on oscillating ground, this delay increased or decreased the slip
+//! by 0.3 to 2.7 times √(yield / amplitude) (`crates/dynamics/tests/reversal.rs`). The relative error is therefore
+//! reported as √(yield / amplitude).
 
 use std::fmt;
 
@@ -15,12 +16,12 @@ use crate::assemble::Assembly;
 /// Relative error of slip above which the error is reported.
 const REPORTED: f64 = 0.05;
 
-/// An interface whose elastic stick is too soft for the ground motion.
+/// An interface whose friction springs are too soft for the ground motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
-    /// Tangential displacement (m) at which the sticks of all contacts of the interface yield together under their
-    /// normal forces at rest.
+    /// Tangential displacement (m) at which the friction springs of the interface yield together under the normal
+    /// forces at rest.
     yields: f64,
     /// Peak displacement of the ground (m).
     swing: f64,
@@ -29,7 +30,7 @@ pub(crate) struct SoftStick {
 }
 
 impl SoftStick {
-    /// Returns the interfaces of a stack at rest whose sticks are too soft for a ground motion.
+    /// Returns those interfaces of a stack at rest whose friction springs are too soft for a ground motion.
     pub(crate) fn of(
         assembly: &Assembly,
         rest: &Scratch<Planar>,
@@ -55,7 +56,7 @@ impl SoftStick {
         model.interfaces().iter().zip(sums).filter_map(soft).collect()
     }
 
-    /// Returns `true` if a slip (m) exceeds the elastic range of the stick.
+    /// Returns `true` if a slip (m) exceeds the elastic range of the friction springs.
     pub(crate) fn shows_in(&self, slip: f64) -> bool {
         slip > 2.0 * self.yields
     }

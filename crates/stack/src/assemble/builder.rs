@@ -19,7 +19,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) parts: Vec<Part>,
     /// Moment of inertia (kg·m²) of an unmodified barrel.
     inertia: f64,
-    /// Contact data of every surface, grouped by body in the order of the bodies.
+    /// Contact data of all surfaces: one list per body, in the order of the bodies.
     pub(super) touches: Vec<Vec<Touch>>,
     /// Index of the contact law between barrels and their cradles.
     pub(crate) cradle_law: usize,
@@ -27,8 +27,8 @@ pub(crate) struct Builder<'a> {
     pub(super) laws: Vec<Interface<Planar>>,
     /// Contact pairs of devices, which use the laws of devices.
     pub(crate) pairs: Vec<ContactPair>,
-    /// Force elements that act from the start, because the stack does not stand without them, each with the description
-    /// of its device.
+    /// Force elements that act from the start because the stack does not stand without them. Each element is stored
+    /// with the description of its device.
     pub(super) held: Vec<(Element<Planar>, &'static Words)>,
     /// Force elements of devices that are installed after the stack has settled.
     pub(crate) loose: Vec<Loose>,
@@ -52,7 +52,7 @@ pub(crate) struct Draft {
     pub(crate) inertia: Option<f64>,
     /// Position (m) of the origin of the body frame.
     pub(crate) position: Vec2,
-    /// Characteristic size (m) of the body; the radius of a barrel.
+    /// Characteristic size (m) of the body; for a barrel, its radius.
     pub(crate) size: f64,
     pub(crate) solids: Vec<Solid>,
     pub(crate) carrier: Option<BodyId>,

@@ -1,8 +1,8 @@
 //! Number of seats of a rack that one contact of the model represents.
 //!
 //! Seats that stand one behind the other coincide in a planar model. Where constants are stated per seat, a contact has
-//! the combined stiffness and damping of all seats that it represents. The same stack is therefore equally stiff,
-//! damped and rough in either plane and in space, however `stack.rack.contact` divides its seats.
+//! the combined stiffness and damping of all seats that it represents. A stack thus has the same stiffness, damping and
+//! friction in either planar model and in the three-dimensional model, however `stack.rack.contact` divides its seats.
 //!
 //! | seat | a contact across the barrels | a contact along the barrels | a contact in space |
 //! |---|---|---|---|
@@ -27,7 +27,7 @@ const RAILS: f64 = 2.0;
 pub(super) enum Shown {
     /// A model in the plane across or along the barrels.
     Plane(View),
-    /// A model in space, where every seat is a separate contact.
+    /// A three-dimensional model, in which every seat is a separate contact.
     Space,
 }
 

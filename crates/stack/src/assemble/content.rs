@@ -1,9 +1,10 @@
 //! Sloshing wine in partly filled barrels.
 //!
-//! Across the barrels, the pressure between wall and wine acts through the axis of the barrel. The first wave is
-//! therefore modeled as a pendulum that hangs from the axis, whatever the motion of the barrel, and the rest of the
-//! wine moves with the axis. Along the barrels, the first wave is approximated by a mass on a spring, as in a
-//! rectangular tank of the same length and fill. The depth of the mass preserves the center of mass of the wine.
+//! Across the barrels, the pressure between wall and wine acts through the axis of the barrel. The first sloshing mode
+//! is therefore modeled as a pendulum that hangs from the axis. This model holds for any motion of the barrel. The wine
+//! that does not slosh moves with the axis. Along the barrels, the first sloshing mode is approximated by a mass on a
+//! spring, as in a rectangular tank of the same length and filling. The mass is placed at a depth that preserves the
+//! center of mass of the wine.
 
 use std::f64::consts::PI;
 
@@ -17,18 +18,20 @@ use crate::slosh::Wave;
 /// Description of the elements that hold the wine. These elements never break and appear in no report.
 static WORDS: Words = Words::silent("wine");
 
-/// Damping ratio of a wave, an assumption: viscosity alone gives less in a smooth barrel, and breaking waves give more.
+/// Damping ratio of the sloshing mode. The value is an assumption: viscosity alone gives less damping in a smooth
+/// barrel, and breaking waves give more.
 const DAMPING_RATIO: f64 = 0.01;
 
-/// Natural frequency (rad/s) of the support of the wave mass: 15 Hz.
+/// Natural frequency (rad/s) of the sloshing mass on the spring that supports it: 15 Hz.
 ///
-/// This is far above the frequency of the waves, while the support is no stiffer than a seat.
+/// This is far above the sloshing frequency, but the support is not stiffer than a seat.
 const HOLDING: f64 = 30.0 * PI;
 
-/// Damping ratio of the support of the wave mass, an assumption: wine that strikes the wall does not bounce back.
+/// Damping ratio of the sloshing mass on its support. The value is an assumption: wine that strikes the wall does not
+/// bounce back.
 const HOLDING_DAMPING: f64 = 0.2;
 
-/// Radius (m) of the disc that represents the wave mass in drawings.
+/// Radius (m) of the disc that represents the sloshing mass in drawings.
 const BOB: f64 = 0.03;
 
 /// Adds a sloshing mass to every partly filled barrel.
@@ -49,7 +52,7 @@ pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
     }
 }
 
-/// Moves the mass of the wave from a barrel that holds `wine` (kg) to a new body, which is suspended in the barrel.
+/// Moves the sloshing mass from a barrel that holds `wine` (kg) to a new body, which is suspended in the barrel.
 fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravity: f64) {
     let scale = builder.scale;
     let mass = wave.share * wine;
@@ -85,7 +88,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
     let damping = 2.0 * DAMPING_RATIO * mass * rate * scale.damping(false);
     let stiff = mass * HOLDING * HOLDING * scale.stiffness(1.0, false);
     let hard = 2.0 * HOLDING_DAMPING * mass * HOLDING * scale.damping(false);
-    // Static deflection of the support under the weight of the wave mass.
+    // Static deflection of the support under the weight of the sloshing mass.
     let sag = gravity / (HOLDING * HOLDING);
     let link = |what: &str| Link {
         name: format!("{name} {what}"),

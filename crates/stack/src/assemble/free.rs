@@ -125,7 +125,7 @@ struct Outer<'a> {
     boundaries: Vec<Boundary<'a>>,
 }
 
-/// Index ranges of the surfaces and node sets of a body that have the same kind.
+/// Surfaces and node sets of a body that have the same kind, as index ranges.
 ///
 /// The surface and the nodes of a part have the same position in both ranges; nodes at individually chosen points have
 /// no surface.

@@ -118,8 +118,8 @@ fn friction_of(
             let reference = STICK_REFERENCE * scale.length;
             let stiffness = normal.tangent_stiffness(reference);
             let damping = match normal {
-                // The damping of a rebound law has no constant coefficient, so the damping of the stick follows from a
-                // damping ratio.
+                // The damping of a rebound law has no constant coefficient, so the damping of the tangential spring
+                // follows from a damping ratio.
                 NormalLaw::Rebound { .. } => {
                     let mass =
                         STICK_MASS * scale.mass() / if per_length { scale.length } else { 1.0 };

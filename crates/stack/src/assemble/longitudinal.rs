@@ -19,12 +19,12 @@ use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 /// Radius (m) of the rounding of a barrel's chime: an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
-/// Cosine of the largest angle (73°) between the normal of a contact and the normal of a rail's face at which the nodes
-/// of the face carry the contact.
+/// Cosine of the largest angle (73°) between contact normal and face normal at which the nodes of a rail's face carry
+/// the contact.
 ///
-/// Contacts at larger angles, such as the chime of a barrel that has slid off, are tested exactly. Among cosines from 0
-/// to 0.7, tried on seven stacks that include the worst known cases, this value gave the smallest residual of the
-/// energy balance: 8.3e-5 at most.
+/// Contacts at larger angles, such as the chime of a barrel that has slid off, are tested exactly. Cosines from 0 to
+/// 0.7 were compared on seven stacks, including the worst known cases; this cosine gave the smallest residual of the
+/// energy balance, at most 8.3e-5.
 const WIDEST: f64 = 0.3;
 
 /// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer

@@ -39,7 +39,7 @@ pub enum PartKind {
     Rack,
     /// A protective device.
     Device,
-    /// The mass of the sloshing wave in a barrel.
+    /// The sloshing mass of the wine in a barrel.
     Wine,
     /// A body of a free scene.
     Body,
@@ -84,7 +84,7 @@ pub struct Part {
     pub carrier: Option<BodyId>,
     /// Bodies on which a rack above the first level stands; empty for all other bodies.
     pub supports: Vec<BodyId>,
-    /// Characteristic size (m) of the body; the radius of a barrel.
+    /// Characteristic size (m) of the body; for a barrel, its radius.
     pub size: f64,
     /// Volume (m³) of the wine in a barrel at full scale, whatever the length scale; 0 for all other bodies.
     pub wine: f64,
@@ -144,9 +144,9 @@ pub struct Assembly {
     pub view: Option<View>,
     /// Largest force (N) between a barrel and a rack that the staves can bear; infinite for a free scene.
     pub stave_capacity: f64,
-    /// Displacement (m) of a rack, relative to the barrels below, beyond which the rack is no longer supported.
+    /// Displacement (m) of a rack relative to the barrels below, beyond which the rack is no longer supported.
     ///
-    /// Beyond this displacement across the barrels, friction no longer holds the rack on the round of the barrel.
+    /// Beyond this displacement across the barrels, friction no longer holds the rack on the curved side of the barrel.
     /// Beyond this displacement along the barrels, the rail of the rack has passed the ends of the barrels.
     pub rack_reach: f64,
 }
@@ -194,19 +194,19 @@ pub enum AssembleError {
         /// Depth of the overlap (m).
         depth: f64,
     },
-    /// An analysis in a plane was requested for a stack in space.
+    /// A planar analysis was requested for a three-dimensional stack.
     #[error(
         "this analysis works in a plane, but the scenario has its stack in space: set stack.view to \"transverse\" \
          (across the barrels), to \"longitudinal\" (along them), or to \"both\""
     )]
     Space,
-    /// An analysis in a plane was requested for a free scene in space.
+    /// A planar analysis was requested for a three-dimensional scene.
     #[error(
         "this analysis works in a plane, but the bodies of the scenario are in space: state them in a plane, with \
          kind = \"free\""
     )]
     FreeInSpace,
-    /// The scenario uses a feature that is not supported in space.
+    /// The scenario uses a feature that is not supported in three dimensions.
     #[error("{reason}")]
     NotInSpace {
         /// Path of the field in the scenario.
@@ -253,19 +253,20 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     Ok(assembly)
 }
 
-/// Returns the contact laws of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL).
+/// Returns the contact laws of a three-dimensional stack, in the order of
+/// [`StackPair::ALL`](crate::scenario::StackPair::ALL).
 ///
 /// The laws are the same as in a planar model, except that every seat is a separate contact.
 pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
     stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }
 
-/// Converts a contact law of a scenario to a contact law of a model in space.
+/// Converts a contact law of a scenario to a contact law of a three-dimensional model.
 pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
     interfaces::interface(name, law, bundle::Bundle::ONE, Similitude::FULL)
 }
 
-/// Returns the contact laws of a free scene in space, in the order of its interfaces.
+/// Returns the contact laws of a three-dimensional scene, in the order of its interfaces.
 pub fn laws_of_free(scene: &SpatialScene) -> Vec<Interface<Spatial>> {
     let law = |law: &FreeInterface| law_in_space(&law.between.join("-"), &law.law);
     scene.interfaces.iter().map(law).collect()

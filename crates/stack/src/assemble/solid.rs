@@ -5,7 +5,7 @@ use barrelstack_dynamics::{
     Body, Face, Linear as _, Node, Nodes, Placed, Planar, Round, Shape, Vec2,
 };
 
-/// A convex part of a body at full scale, in the frame of the draft of that body.
+/// A convex part of a body at full scale, in the frame of that body's `Draft`.
 pub(crate) struct Solid {
     pub(super) shape: Shape,
     /// Position of the frame of the shape (m).
@@ -16,8 +16,8 @@ pub(crate) struct Solid {
     pub(super) below: Vec<(Vec2, f64)>,
     /// Nodes along the flat top; empty if the top is tested exactly.
     pub(super) above: Vec<(Vec2, f64)>,
-    /// Cosine of the largest angle from the normal of a face with nodes at which a contact still belongs to the face;
-    /// see [`Face::widest`].
+    /// Cosine of the largest angle between contact normal and face normal at which a contact still belongs to a face
+    /// with nodes; see [`Face::widest`].
     pub(super) widest: f64,
     /// `true` if the solid contributes to the mass of its body.
     pub(super) weighs: bool,
@@ -25,7 +25,7 @@ pub(crate) struct Solid {
     pub(super) out_of_plane: bool,
 }
 
-/// Role of a solid of a rack in supporting the rack, a barrel, or the next rack.
+/// What a solid of a rack supports: the rack itself, a barrel, or the next rack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seat {
     /// None: the solid touches other bodies in impacts only.
@@ -36,8 +36,8 @@ pub(crate) enum Seat {
     OnSupports,
     /// The solid carries the barrel of the rack with this index.
     Barrel(usize),
-    /// Along the barrels, the solid carries the barrel with this index, and stands on the ground or on the support
-    /// below that barrel.
+    /// In the plane along the barrels: the solid carries the barrel with this index, and stands on the ground or on the
+    /// support below that barrel.
     Along(usize),
     /// The next rack stands on this solid.
     Rack,
@@ -187,7 +187,7 @@ pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     }
 }
 
-/// Returns the center of mass (m) and the squared radius of gyration (m²) of solids of one density.
+/// Returns the center of mass (m) and the squared radius of gyration (m²) of solids that all have the same density.
 pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
     let sections = || {
         solids.iter().filter(|solid| solid.weighs).filter_map(|solid| {

@@ -10,8 +10,8 @@ use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
 use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
-/// Lever arm (m) of the rolling resistance of barrels that roll with their hoops on floors, racks or other barrels: an
-/// assumption.
+/// Lever arm (m) of the rolling resistance of barrels, which roll on their hoops over floors, racks or other barrels.
+/// The value is an assumption.
 const ROLLING_LEVER: f64 = 0.01;
 
 /// Angular velocity (rad/s) at which the rolling resistance is close to its full value.

@@ -26,7 +26,8 @@ pub const BAR_RADIUS: f64 = 0.015;
 
 /// Corner radius (m) of tubes: an assumption.
 ///
-/// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes, inside the rounding, never touch.
+/// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes (the parts inside the rounding) never
+/// touch.
 pub const TUBE_CORNER: f64 = 0.012;
 
 /// Adds all levels. Returns the height (m) of the stack and the displacement (m) beyond which a rack is no longer
@@ -60,9 +61,10 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
 
 /// Returns the displacement (m) across the barrels below beyond which a rack is no longer supported.
 ///
-/// A rack with feet is supported until the feet stand beside the crowns and the beam rests on the round of a barrel. A
-/// rack without feet is supported until the end of its beam has passed the crown and stands on the descending side of
-/// the round, where friction holds it up to a slope of arctan μ.
+/// A rack with feet is supported until its feet stand beside the crowns and its beam rests on the curved side of a
+/// barrel. A rack without feet is supported until the end of its beam has passed the crown and has reached the point
+/// where the surface of the barrel descends at an angle of arctan μ, the steepest slope on which friction holds the
+/// beam.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
         return posts::reach(rack, posts.half_spacing);
@@ -73,7 +75,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
         Friction::Regularized { coefficient, .. } => coefficient,
     };
     if rack.foot_height > 0.0 {
-        // A foot bears on the descending side of the round until the beam has come down on the barrel.
+        // A foot bears on the descending side of the barrel until the beam has come down on the barrel.
         let height = (radius - rack.foot_height).max(0.0);
         return rack.foot_half_length + (radius * radius - height * height).sqrt();
     }

@@ -133,8 +133,8 @@ pub struct Words {
     /// Settings that represent a badly maintained or badly fitted device, to be applied [over](Setting::over) a
     /// candidate.
     pub degraded: &'static [Setting],
-    /// Settings, applied [over](Setting::over) a candidate, with which the device has no effect, because it is out of
-    /// reach or as slack or weak as possible.
+    /// Settings, applied [over](Setting::over) a candidate, that leave the device without effect: out of reach, or as
+    /// slack or weak as possible.
     ///
     /// The results are then bit-identical to results without the device, if the time step and its division in impacts
     /// are the same.
@@ -221,7 +221,7 @@ impl Words {
 /// A number of levels, counted from the top; 0 for none.
 const LEVELS: Kind = Kind::Integer(0, 12);
 
-/// Returns the lowest level that has a device, if the device is on the top `highest` levels of a stack with `levels`
+/// Returns the lowest level with a device that is installed on the top `highest` levels of a stack with `levels`
 /// levels.
 pub fn lowest(highest: u32, levels: u32) -> u32 {
     levels.saturating_sub(highest) + 1

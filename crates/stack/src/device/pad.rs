@@ -23,7 +23,7 @@ pub(super) static WORDS: Words = Words {
             "stack.pad.friction=0.3",
         ],
     }],
-    // Pads and seats get the same stiffness, damping and friction, so that pads change nothing.
+    // Pads and seats get the same stiffness, damping and friction, so that the pads have no effect.
     idle: &[
         "interface.barrel-rack.law=kelvin-voigt",
         "interface.barrel-rack.basis=seat",
@@ -71,7 +71,7 @@ impl Pads {
         self.stiffness.is_some()
     }
 
-    /// Returns the contact law of the pad on one support, if the stack has pads.
+    /// Returns the contact law of the pad at one support; `None` if the stack has no pads.
     pub fn law(&self) -> Option<Interface> {
         self.stiffness.map(|stiffness| Interface {
             basis: Basis::Seat,

@@ -106,8 +106,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
     Ok(mass)
 }
 
-/// Natural frequency (Hz) of the support of a mass. It is far above the natural frequency of any stack, while the
-/// support is no stiffer than a seat.
+/// Natural frequency (Hz) of the support of a mass. It is far above the natural frequency of any stack, but the support
+/// is not stiffer than a seat.
 const HOLDING: f64 = 15.0;
 
 impl TunedMass {

@@ -74,7 +74,7 @@ struct Batch<'a, 'b, R: Real> {
     runs: Vec<usize>,
     /// Fates of the bodies of every lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
-    /// Node forces of every lane.
+    /// Observer of the contact stresses in every lane.
     stresses: StressWatch<R>,
     /// Forces between bodies of every lane; `None` before the first run is loaded.
     joints: Option<Joints<R>>,
@@ -84,7 +84,7 @@ struct Batch<'a, 'b, R: Real> {
     trails: Vec<Trail>,
     /// Time (s) at which the next sample of every lane is due; infinite in lanes without a case.
     due: R,
-    /// Progress of the case in every lane; `None` without a case.
+    /// Progress of the case in every lane; `None` in lanes without a case.
     shares: Vec<Option<Share>>,
     /// The lanes that met the rest criterion in the last step.
     rested: R::Mask,

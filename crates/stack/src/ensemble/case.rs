@@ -56,11 +56,11 @@ pub struct CaseResult {
     pub demands: Demands,
     /// Demands over the whole run.
     pub demands_whole_run: Demands,
-    /// Name of each pair of bodies that support or have touched each other, and the forces between the two, at rest and
-    /// at their maximum; empty if the case could not run or is invalid.
+    /// Forces between bodies that support or have touched each other: for each pair, its name, and its forces at rest
+    /// and at their maximum. Empty if the case could not run or is invalid.
     pub joints: Vec<(String, Joint)>,
-    /// Largest residual displacement (m) of a barrel relative to the ground: along x in a planar model, horizontal in
-    /// space.
+    /// Largest residual displacement (m) of a barrel relative to the ground: along x in a planar model, horizontal in a
+    /// three-dimensional model.
     pub residual_displacement: Option<f64>,
     /// Reason for the end of the run.
     pub ending: Option<Ending>,

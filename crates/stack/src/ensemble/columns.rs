@@ -22,7 +22,7 @@ pub struct CaseColumn {
     pub get: Get,
 }
 
-/// Accessor of a value of a case.
+/// Function that returns a value of a case, by the type of the value.
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
     /// An integer.
@@ -69,7 +69,7 @@ impl CaseColumn {
     }
 }
 
-/// Returns a table of cases, one row each in their order, with the columns of [`CASE_COLUMNS`].
+/// Returns a table of cases with the columns of [`CASE_COLUMNS`]: one row per case, in order.
 ///
 /// ```
 /// use barrelstack_stack::ensemble::{Ensemble, Prepared, table};

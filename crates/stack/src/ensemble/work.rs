@@ -19,14 +19,14 @@ static EPOCH: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 /// Progress of all cases of this process.
 ///
-/// The progress of a case is the simulated time divided by the longest duration of the case.
+/// The progress of a case is its simulated time divided by its maximum duration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Sum of the progress of all cases, finished or not, since the process began.
     pub done: f64,
     /// Sum of the progress of the cases that are running.
     pub under_way: f64,
-    /// Number of cases that ended before their longest duration, since the process began.
+    /// Number of cases that ended before their maximum duration, since the process began.
     pub early: f64,
     /// Number of cases whose stack has been brought to rest, since the process began.
     pub at_rest: f64,

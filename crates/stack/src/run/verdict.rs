@@ -108,7 +108,7 @@ pub fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     (ending == Ending::Duration && left > CUT).then_some(left)
 }
 
-/// Returns a warning if the outcome is open because of how the run ended.
+/// Returns a warning if the run ended too early to determine the outcome.
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
         Ending::Interrupted => Some(format!(

@@ -125,8 +125,9 @@ impl Barrel {
     /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
     /// capacity. The mass of the contents is `mass` minus `empty_mass`. A frozen filling rotates with the wood. An
     /// ideal fluid does not rotate about the axis, except for a layer at the wall that is half as thick as the Stokes
-    /// layer at 1 Hz. About a transverse axis, an ideal fluid rotates like the fluid in a spheroid with the same
-    /// moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
+    /// layer at 1 Hz. About a transverse axis, the effective moment of inertia of an ideal fluid is taken as `(I_t -
+    /// I_a)² / I_t`, which holds for the fluid in a spheroid with the same transverse and axial moments `I_t` and `I_a`
+    /// of the frozen filling (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -135,7 +136,7 @@ impl Barrel {
         }
     }
 
-    /// Returns the first sloshing wave in the plane of a view; `None` for a full or empty barrel.
+    /// Returns the first sloshing mode of the wine in the plane of a view; `None` for a full or empty barrel.
     pub fn wave(&self, view: View) -> Option<Wave> {
         (self.fill == Fill::Part).then(|| {
             let length = 2.0 * self.half_room();
@@ -187,7 +188,7 @@ impl Barrel {
             }
             Fill::FullFluid | Fill::Part => {
                 let lag = frozen.transverse - frozen.axial;
-                // The wave is a separate mass; the rest of the wine rotates as in a full barrel.
+                // The sloshing mass is a separate body; the other wine rotates as in a full barrel.
                 let rest = self.wave(View::Longitudinal).map_or(1.0, |wave| 1.0 - wave.share);
                 Moments {
                     axial: wine_density * stokes_layer(half_room, inner),
@@ -283,8 +284,8 @@ const CATALOG: Default = Default::Derived("the value of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 
-/// Range of the filled fraction: above this range, the free surface is too small for a significant wave; below this
-/// range, the wine is a puddle.
+/// Range of the filled fraction: above this range, the free surface is too small for significant sloshing; below this
+/// range, the wine is only a puddle.
 const FILLED: Range = Range::between(0.02, 0.995);
 
 /// Definition of the table of a barrel.

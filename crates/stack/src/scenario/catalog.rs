@@ -126,8 +126,8 @@ const STICK_ON_FLOOR: f64 = 4.0;
 /// Ratio of the tangential to the normal stiffness of seats on posts. The ratio is smaller than on the floor, because
 /// tangential forces turn light racks with the height of the posts as the lever arm.
 ///
-/// With a ratio of four, racks on posts, computed along the barrels, oscillate from one time step to the next: after
-/// 0.05 s the error of the energy balance is 1.4e-3; with a ratio of two it is 2e-12.
+/// With a ratio of four, racks on posts oscillate from one time step to the next in the model along the barrels: after
+/// 0.05 s, the error of the energy balance is 1.4e-3. With a ratio of two, this error is 2e-12.
 const STICK_ON_POST: f64 = 2.0;
 
 /// Contact constants of the seats of a rack. The constants are the medians over the variants of a stack;

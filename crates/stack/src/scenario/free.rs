@@ -1,4 +1,4 @@
-//! A free scene: arbitrary planar bodies on a ground, for verification and teaching.
+//! A free scene: arbitrary planar bodies on a ground instead of a stack, for verification and teaching.
 
 use std::collections::BTreeSet;
 
@@ -106,7 +106,7 @@ pub struct FreeInterface {
     pub law: Interface,
 }
 
-/// A free scene.
+/// A free scene: arbitrary planar bodies on a ground, instead of a stack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeScene {
     /// The ground.

@@ -128,7 +128,8 @@ impl Scenario {
         Self::parse_file(path, &bytes_of(path)?, overrides)
     }
 
-    /// Reads a scenario like [`Scenario::load`], from the bytes of its file: a pipe can be read only once.
+    /// Reads a scenario like [`Scenario::load`], from the bytes of its file. This allows the file to be a pipe, which
+    /// can be read only once.
     ///
     /// # Errors
     ///

@@ -124,8 +124,8 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Sources of the values of a scenario, from which errors determine their place in a file, and warnings about the text
-/// of the scenario. Ignored in comparisons.
+/// Sources of the values of a scenario, which give the place of an error in a file, and warnings about the text of the
+/// scenario. Ignored in comparisons.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>, Vec<String>);
 
@@ -158,7 +158,7 @@ pub enum Scene {
     },
     /// Arbitrary planar bodies.
     Free(FreeScene),
-    /// Arbitrary bodies in space.
+    /// Arbitrary three-dimensional bodies.
     Spatial(SpatialScene),
 }
 
@@ -176,7 +176,7 @@ impl Scenario {
         }
     }
 
-    /// Returns `true` if the bodies are in space, for a stack or a free scene.
+    /// Returns `true` if the model is three-dimensional, for a stack or a free scene.
     pub fn is_spatial(&self) -> bool {
         match &self.scene {
             Scene::Stack { stack, .. } => stack.space.is_some(),

@@ -34,7 +34,7 @@ macro_rules! pairs {
         }
 
         impl StackPair {
-            /// All pairs, each at the index that is its discriminant.
+            /// All pairs, in the order of their discriminants.
             pub const ALL: &[Self] = &[$(Self::$pair),*];
 
             /// Returns the name in files.

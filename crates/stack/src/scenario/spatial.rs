@@ -1,4 +1,5 @@
-//! A free scene in space: bodies on a ground, each made of one or more solids.
+//! A free scene in three dimensions: arbitrary bodies on a ground instead of a stack. Each body consists of one or more
+//! solids.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +17,7 @@ use super::free::{FreeInterface, clash};
 use super::interface::{self, Basis};
 
 section! {
-    /// The ground of a free scene in space: everything below a plane through the origin.
+    /// The ground of a three-dimensional scene: everything below a plane through the origin.
     #[derive(Debug, Clone, PartialEq)]
     pub struct SpatialGround;
     /// The ground: everything below a plane through the origin.
@@ -28,7 +29,7 @@ section! {
     kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 
-/// A free scene in three dimensions.
+/// A free scene in three dimensions: arbitrary bodies on a ground, instead of a stack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialScene {
     /// The ground.
@@ -39,10 +40,10 @@ pub struct SpatialScene {
     pub interfaces: Vec<FreeInterface>,
 }
 
-/// Maximum number of bodies of a free scene in space. The number is limited because all pairs of bodies are listed.
+/// Maximum number of bodies of a three-dimensional scene. The number is limited because all pairs of bodies are listed.
 const MOST_BODIES: usize = 500;
 
-/// Maximum number of pairs of solids of a free scene in space, whether an interface names them or not.
+/// Maximum number of pairs of solids of a three-dimensional scene; pairs without an interface also count.
 const MOST_PAIRS: usize = 1_000_000;
 
 /// Returns the number of solids of a body.
@@ -50,7 +51,7 @@ fn solids(body: &SpatialBody) -> usize {
     if let Solid::Compound { parts } = &body.solid { parts.len() } else { 1 }
 }
 
-/// Reads the fields of a free scene in space from the top level of the file.
+/// Reads the fields of a three-dimensional scene from the top level of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
     let ground = SpatialGround::read(root.section("ground")?)?;
     let mut bodies: Vec<SpatialBody> = Vec::new();
@@ -134,7 +135,7 @@ fn read_interfaces(
     Ok(interfaces)
 }
 
-/// Writes a free scene in space to the top level of the file.
+/// Writes a three-dimensional scene to the top level of the file.
 pub(super) fn write(writer: &mut Writer, scene: &SpatialScene) {
     writer.table("ground", scene.ground.write());
     writer.tables("body", scene.bodies.iter().map(SpatialBody::write).collect());

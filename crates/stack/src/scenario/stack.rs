@@ -39,9 +39,9 @@ pub struct StackSpec {
     ///
     /// If both planes are requested, `view` is the transverse plane.
     pub columns_along: Option<u32>,
-    /// Properties of the stack in space; `None` if the stack is modeled in a plane.
+    /// Additional properties of a three-dimensional model; `None` if the stack is modeled in a plane.
     ///
-    /// In space, `view` is the transverse plane.
+    /// In three dimensions, `view` is the transverse plane.
     pub space: Option<InSpace>,
     /// The barrel that is used everywhere unless overridden.
     pub barrel: Barrel,
@@ -80,7 +80,7 @@ impl StackSpec {
         })
     }
 
-    /// Returns the planar model of a stack that is modeled in space.
+    /// Returns the planar model of a stack that is modeled in three dimensions.
     ///
     /// Overrides of single rows are dropped. In the plane along the barrels, overrides of single columns are dropped as
     /// well.
@@ -111,7 +111,8 @@ impl StackSpec {
         Some(along)
     }
 
-    /// Returns the number of racks on one level in space, counted along the barrels; 1 in a plane.
+    /// Returns the number of racks on one level of a three-dimensional model, counted along the barrels; 1 for a planar
+    /// model.
     pub fn racks_along(&self) -> u32 {
         self.space.map_or(1, |space| space.columns_along / self.rack.barrels_deep.max(1))
     }
@@ -122,13 +123,13 @@ impl StackSpec {
     }
 }
 
-/// Properties of a stack that is modeled in space.
+/// Properties of a stack that is modeled in three dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InSpace {
     /// Number of barrels per level, counted along the barrels.
     pub columns_along: u32,
-    /// Angle (rad) by which the stack is turned, counterclockwise viewed from above; at zero, the component of the
-    /// scenario acts across the barrels.
+    /// Angle (rad) by which the stack is turned, counterclockwise viewed from above; at zero, the motion component that
+    /// the scenario names acts across the barrels.
     pub azimuth: f64,
 }
 

@@ -102,7 +102,8 @@ impl Opened {
     }
 }
 
-/// A file of another kind that has the tables of a scenario with a stack among tables of its own, such as a cellar.
+/// A file of another kind, such as a cellar, that contains the tables of a stack scenario in addition to tables of its
+/// own.
 ///
 /// Values carry the place where they were written, so that an error can name this place.
 #[derive(Clone, Debug)]
@@ -198,8 +199,8 @@ impl Host {
         self.sources.error(written.unwrap_or(Origin::Whole(0)), Problem::Inconsistent { message })
     }
 
-    /// Returns the scenario of the stack, in space and without the file's `own` fields, with the given values set at the
-    /// given paths.
+    /// Returns the scenario of the stack, in three dimensions and without the file's `own` fields, with the given
+    /// values set at the given paths.
     ///
     /// # Errors
     /// Returns the first problem found, with the place where the value was written.

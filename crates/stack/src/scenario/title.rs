@@ -40,7 +40,7 @@ impl Scenario {
 }
 
 fn stands(stack: &StackSpec) -> String {
-    // In space, and in both planes, barrels also stand behind each other.
+    // In three dimensions, and in both planes, barrels also stand behind each other.
     let rows = stack.space.map(|space| space.columns_along).or(stack.columns_along).unwrap_or(1);
     let mut barrels = counted(stack.levels * stack.columns * rows, "barrel");
     barrels[..1].make_ascii_uppercase();

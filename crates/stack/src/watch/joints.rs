@@ -156,8 +156,8 @@ impl<S: Space> ForceBetween<S> {
     }
 }
 
-/// Returns two bodies that do not support each other by design in the order of their names in results: the ground comes
-/// last, and of other bodies the one with the lower index comes first.
+/// Returns two bodies that do not support each other by design, in the order in which results name them: the ground
+/// comes last, and of two other bodies, the body with the lower index comes first.
 fn named_first(one: BodyId, other: BodyId) -> (BodyId, BodyId) {
     let (first, second) = (one.min(other), one.max(other));
     if first == Assembly::GROUND { (second, first) } else { (first, second) }
@@ -224,8 +224,8 @@ impl Joints {
 }
 
 impl Joints {
-    /// Returns the largest vertical force (N) between a barrel and any rack in a span of the run; `None` without such a
-    /// joint.
+    /// Returns the largest vertical force (N) between a barrel and any rack in a span of the run; `None` if no barrel
+    /// is joined to a rack.
     pub fn stave_load(
         &self,
         barrel: BodyId,

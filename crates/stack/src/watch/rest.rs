@@ -23,9 +23,9 @@ pub const HOLD: f64 = 3.0;
 
 /// Largest acceleration of calm ground, as a fraction of gravity.
 ///
-/// Such an acceleration is too small to slide or tip bodies, and the last third of many records is weaker. A standing
-/// stack is nevertheless simulated to the end of the motion, since its displacements are results, unless only the
-/// verdict is requested.
+/// Such an acceleration is too small to slide or tip bodies, and the last third of many records is weaker. Unless only
+/// the verdict is requested, a standing stack is nevertheless simulated to the end of the motion, since its
+/// displacements are results.
 const CALM: f64 = 0.02;
 /// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
@@ -39,11 +39,11 @@ pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
     /// calm ground is sufficient.
     Rest,
-    /// The time that the scenario allows after a collapse had elapsed.
+    /// The time for which the scenario continues a run after a collapse had elapsed.
     AfterCollapse,
     /// The duration that the scenario sets was reached.
     Duration,
-    /// The maximum time after the motion had passed, while bodies still moved.
+    /// The maximum time after the end of the motion had elapsed while bodies still moved.
     Patience,
     /// The caller stopped the run.
     Interrupted,
@@ -79,7 +79,7 @@ impl Ending {
 /// Detects when all bodies are at rest, in one run or in one run per lane.
 ///
 /// A body rests when its kinetic energy could not lift it by half a centimeter. A barrel that rolls away on the floor
-/// also counts as at rest if it approaches no other body: it slows down by about 0.2 m/s² and cannot reach any body.
+/// and approaches no other body also counts as at rest: it decelerates at about 0.2 m/s² and cannot reach any body.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
     /// Time (s) from which the ground is still; infinite if the run ends by its duration only.

@@ -22,7 +22,7 @@ named! {
     }
 }
 
-/// Dissipation of a normal law with which the restitution depends on the mass or speed of the impact.
+/// Dissipation of a normal law whose restitution depends on the mass or the speed of the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m) of a Hunt-Crossley

@@ -14,11 +14,11 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// Bounds of the current place of a contact element on one of its bodies, with the largest force of the element at this
-/// place.
+/// Range of contact points for which a contact element loads the same cells of one of its bodies, and the largest force
+/// of the element since its contact point entered this range.
 ///
-/// As long as the contact stays between the same bounds, it loads the same cells, and only its largest force matters.
-/// Most contacts in most steps therefore need only a few comparisons.
+/// As long as the contact point stays in this range, only the largest force matters. In most steps, most contacts
+/// therefore need only a few comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds<R: Real = f64> {
     /// First point or direction of the range.
@@ -42,7 +42,7 @@ enum CellRange {
     Strip,
 }
 
-/// A body of a contact pair that has an envelope.
+/// A body of a contact pair for which a stress envelope is recorded.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: BodyId,
@@ -60,7 +60,7 @@ lanewise!(struct Pair<R> { bodies, sides, count, offset, rotation });
 struct Pair<R: Real> {
     /// The contactor and the target.
     bodies: [BodyId; 2],
-    /// The bodies that have an envelope.
+    /// The bodies for which a stress envelope is recorded.
     sides: Vec<Side>,
     /// Number of contact elements.
     count: usize,
