@@ -19,7 +19,7 @@ described! {
         pub schema: &'static str ["check/1"],
         /// The scenario's title.
         pub title: String,
-        /// Plane of the model, or `spatial` for a stack in space; null for a free scene.
+        /// Plane of the model, or `spatial` for a stack in three dimensions; null for a free scene.
         pub view: Option<&'static str> ["transverse", "longitudinal", "spatial"],
         /// Number of barrels.
         pub barrels: usize,

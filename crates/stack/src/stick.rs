@@ -66,7 +66,7 @@ impl fmt::Display for SoftStick {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}: the elastic stick yields after {:.2} mm, so reversing slip on ground that moves by \
+            "{}: the friction spring yields after {:.2} mm, so reversing slip on ground that moves by \
              {:.0} mm may differ by {:.0} % from slip with rigid friction; a \
              friction.tangential_stiffness_ratio {:.0} times as large reduces this error to {:.0} %",
             self.interface,

@@ -98,8 +98,9 @@ class BarrelFields(TypedDict, total=False):
     the barrel above the rails of the rack.
     """
     stave_capacity: Quantity
-    """Force between a barrel and a rack at which the staves are crushed: an assumption, from 4.3 MPa for white oak
-    across the grain (Record 1914) over 10 cm under each of two rails that are 5 cm wide. Default: 43 kN.
+    """Force between a barrel and a rack at which the staves are crushed. The default is an assumption: the
+    strength of white oak across the grain, 4.3 MPa (Record 1914), times the area on which two rails 5 cm wide
+    bear over 10 cm each. Default: 43 kN.
     """
     stave_thickness: Quantity
     """Thickness of staves and heads. Default: the value of the catalog."""
@@ -276,7 +277,7 @@ class ElementFields(TypedDict, total=False):
     disengages.
     """
     stop_damping: Quantity
-    """Damping of the stops, on approach only. Default: 0 N s/m."""
+    """Damping of the stops, which acts in compression only. Default: 0 N s/m."""
     stop_stiffness: Quantity
     """Stiffness of the stops. Default: 0 N/m."""
 
@@ -287,7 +288,9 @@ class FreeInterfaceFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     between: list[str]
-    """The two kinds: the first has the contact nodes, the second the surface; in space, the order does not matter."""
+    """The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order does
+    not matter.
+    """
     damping: Quantity
     """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
     derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
@@ -335,12 +338,12 @@ class FrictionFields(TypedDict, total=False):
     static_coefficient: Union[float, Quantity]
     """Static coefficient of friction, not below the kinetic one. Default: `coefficient`."""
     tangential_damping_ratio: Union[float, Quantity]
-    """Ratio of the tangential damping of the stick to the normal damping. Default: 1.0."""
+    """Ratio of the damping of the tangential spring to the normal damping. Default: 1.0."""
     tangential_stiffness_ratio: Union[float, Quantity]
-    """Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses friction
-    sooner, but needs a smaller time step. Default: for constants per seat, the ratio that the catalog gives for
-    the seats of the rack: 2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4
-    on the ground, where tubes that do not lie flat bend; 1 otherwise.
+    """Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
+    reverses sooner, but the time step must be smaller. Default: for constants per seat, the ratio that the
+    catalog gives for the seats of the rack: 2 on barrels, whose staves are softer across than along their
+    surface; 2 on posts; 4 on the ground, where tubes that do not lie flat bend; 1 otherwise.
     """
     velocity: Quantity
     """Slip rate at which the friction is fully developed."""
@@ -407,7 +410,7 @@ class ImpactFields(TypedDict, total=False):
 
 class ImperfectionsFields(TypedDict, total=False):
     """Random differences from stack to stack, centered on the values of the scenario, and the number of variants
-    of the stack that are drawn; the table `unknowns` states the differences that a whole stack shares.
+    of the stack. The uncertain constants that all bodies of a stack share are in the table `unknowns`.
     """
 
     drawn: bool
@@ -425,12 +428,12 @@ class ImperfectionsFields(TypedDict, total=False):
     precisely). Default: 1 mm.
     """
     seed: int
-    """Seed of the random sequence that draws the variants, their imperfections and their unknown constants.
+    """Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
     Default: 1.
     """
     sign: bool
-    """True to shake half of the variants with the opposite sign, as for stacks that face the other way. Default:
-    false.
+    """True to reverse the motion for half of the variants, as if these stacks faced the opposite direction.
+    Default: false.
     """
     until: Literal["rest", "verdict", "duration"]
     """Criterion that ends a variant if `run.until` is "rest": "verdict" ends it 2 s after the first loss of a
@@ -515,7 +518,7 @@ class IsolatorFields(TypedDict, total=False):
     """
     dish_radius: Quantity
     """Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default
-    is an assumption, with a period of 2 s. Default: 1 m.
+    is an assumption; it gives a period of 2 s. Default: 1 m.
     """
     friction: Union[float, Quantity]
     """Friction coefficient of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for
@@ -528,7 +531,7 @@ class IsolatorFields(TypedDict, total=False):
     recentring: Quantity
     """Stiffness of the springs that pull the platform back to its initial position. Default: 0 N/m."""
     stop_damping: Quantity
-    """Damping of a stop, on approach only: an assumption. Default: 5 kN s/m."""
+    """Damping of a stop, which acts in compression only. The default is an assumption. Default: 5 kN s/m."""
     stop_stiffness: Quantity
     """Stiffness of a stop: an assumption. Default: 500 kN/m."""
     stroke: Quantity
@@ -541,7 +544,9 @@ class LidFields(TypedDict, total=False):
     """
 
     damping: Quantity
-    """Damping of one lid, force per speed, on approach only: an assumption. Default: 2 kN s/m."""
+    """Damping of one lid (force per speed), which acts in compression only. The default is an assumption. Default:
+    2 kN s/m.
+    """
     gap: Quantity
     """Rise of a barrel from its position at rest before it touches its lid: an assumption. Default: 1 cm."""
     levels: int
@@ -628,8 +633,8 @@ class OutcomeFields(TypedDict, total=False):
     """Inclination of the bottom rack above which the stack has overturned. Default: 30 deg."""
     rack_slide_ratio: Union[float, Quantity]
     """Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
-    barrels. Across the barrels, the reach ends where friction cannot hold the rack on the round of the barrels;
-    along the barrels, where the rail of the rack passes the ends of the barrels. Default: 1.0.
+    barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
+    barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels. Default: 1.0.
     """
     rocking_angle: Quantity
     """Inclination of a rack above which its level has rocked over. Default: 20 deg."""
@@ -643,8 +648,9 @@ class OverrideFields(TypedDict, total=False):
     """A body of the stack that differs from the others."""
 
     column: int
-    """Column, 1 at the left before mirroring; for a rack, columns of racks are counted; for a barrel, columns of
-    barrels. In both planes or in space, columns count across the barrels. Default: every column of the level.
+    """Column, 1 at the left before mirroring. The columns of racks and those of barrels are numbered separately.
+    In both planes or in three dimensions, columns are counted across the barrels. Default: every column of the
+    level.
     """
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
     """Contents of the barrel, instead of the regular contents; for barrels only."""
@@ -657,12 +663,12 @@ class OverrideFields(TypedDict, total=False):
     offset_x: Quantity
     """Displacement from the regular position, positive to the right before mirroring. Default: 0 m."""
     offset_y: Quantity
-    """Displacement from the regular position along the barrels, positive away from the viewer; in space only.
-    Default: 0 m.
+    """Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
+    only. Default: 0 m.
     """
     row: int
-    """Row along the barrels in space, 1 nearest to the viewer; for a rack, rows of racks are counted; for a
-    barrel, rows of barrels. Default: every row.
+    """Row along the barrels in a three-dimensional model, 1 nearest to the viewer. The rows of racks and those of
+    barrels are numbered separately. Default: every row.
     """
 
 
@@ -672,11 +678,13 @@ class PadFields(TypedDict, total=False):
     """
 
     damping: Quantity
-    """Damping of the pad on one support, on approach and separation: an assumption for rubber. Default: 5 kN s/m."""
+    """Damping of the pad at one support, which acts in both compression and rebound. The default is an assumed
+    value for rubber. Default: 5 kN s/m.
+    """
     friction: Union[float, Quantity]
     """Friction coefficient of wood on pads: an assumption. Default: 0.6."""
     stiffness: Quantity
-    """Stiffness of the pad on one support of a cradle; if not given, there are no pads."""
+    """Stiffness of the pad at one support of a cradle; if not given, there are no pads."""
 
 
 class PartFields(TypedDict, total=False):
@@ -786,8 +794,8 @@ class RackFields(TypedDict, total=False):
     the value of the catalog.
     """
     incline: Quantity
-    """Angle by which the rails raise the right end of a barrel, along the barrels. Default: the value of the
-    catalog.
+    """Inclination of the barrels along their axes, positive if the rails raise the right end. Default: the value
+    of the catalog.
     """
     mass: Quantity
     """Mass of one rack. Default: the value of the catalog."""
@@ -1049,7 +1057,7 @@ class StackFields(TypedDict, total=False):
     azimuth: Quantity
     """Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes
     the stack across the barrels, and the other horizontal component shakes it along the barrels. Default: in
-    space, 0 deg; must not be given otherwise.
+    three dimensions, 0 deg; must not be given otherwise.
     """
     barrel: Union[Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"], "BarrelFields"]
     """The barrel. Default: bordeaux-225."""
@@ -1057,11 +1065,12 @@ class StackFields(TypedDict, total=False):
     """Chocks beside the barrels that keep them from rolling out."""
     columns: int
     """Number of barrels per level, a multiple of the number that one rack carries: in a single plane, the barrels
-    in that plane; in both planes or in space, the barrels that lie side by side.
+    in that plane; in both planes or in three dimensions, the barrels that lie side by side.
     """
     columns_along: int
-    """Number of barrels per level, counted along the barrels, if the model is in both planes or in space. Default:
-    in both planes and in space, the number that one rack carries; must not be given otherwise.
+    """Number of barrels per level, counted along the barrels, if the model is in both planes or in three
+    dimensions. Default: in both planes and in three dimensions, the number that one rack carries; must not be
+    given otherwise.
     """
     gap: Quantity
     """Free distance between racks side by side. Default: 0.05 m."""
@@ -1087,8 +1096,8 @@ class StackFields(TypedDict, total=False):
     """Masses on springs and dampers on the racks of one level."""
     view: Literal["transverse", "longitudinal", "both", "spatial"]
     """Model of the stack: in the plane across the barrels, in the plane along the barrels, in both planes one
-    after the other, each under one horizontal component of the record, or in space ("spatial") under all
-    components at once. Default: transverse.
+    after the other, each under one horizontal component of the record, or in three dimensions ("spatial") under
+    all components at once. Default: transverse.
     """
     walking_stop: "WalkingStopFields"
     """Stops that keep racks from walking on the barrels below."""
@@ -1217,8 +1226,8 @@ class UnknownsFields(TypedDict, total=False):
     """Largest excess of static over kinetic friction of barrels on racks, as a fraction of the kinetic coefficient
     and in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Tests of
     chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in
-    planes, an excess of 0.4 changes shares of collapses by less than their sampling error; in space, 39 of 64
-    variants of the demo on four levels collapse instead of 53, which has not been repeated with another seed.
+    planar models, an excess of 0.4 changes shares of collapses by less than their sampling error; in three
+    dimensions, 39 of 64 variants of the demo on four levels collapse instead of 53, a result of a single seed.
     Default: 0.
     """
     stick: Union[float, Quantity]
@@ -1255,7 +1264,9 @@ class WalkingStopFields(TypedDict, total=False):
     """Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap."""
 
     damping: Quantity
-    """Damping of the lips at one barrel, force per speed, on approach only: an assumption. Default: 2 kN s/m."""
+    """Damping of the lips at one barrel (force per speed), which acts in compression only. The default is an
+    assumption. Default: 2 kN s/m.
+    """
     gap: Quantity
     """Displacement of a rack from its position at rest, to either side, before it meets a lip: an assumption.
     Default: 2 cm.

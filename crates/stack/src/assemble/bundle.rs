@@ -4,7 +4,7 @@
 //! the combined stiffness and damping of all seats that it represents. A stack thus has the same stiffness, damping and
 //! friction in either planar model and in the three-dimensional model, however `stack.rack.contact` divides its seats.
 //!
-//! | seat | a contact across the barrels | a contact along the barrels | a contact in space |
+//! | seat | a contact across the barrels | a contact along the barrels | a contact in three dimensions |
 //! |---|---|---|---|
 //! | a rail on the crown of a barrel | both rails | one rail | one rail |
 //! | a support of a cradle | both rails | both supports on a rail, which wedge the barrel | one support |

@@ -196,13 +196,13 @@ pub enum AssembleError {
     },
     /// A planar analysis was requested for a three-dimensional stack.
     #[error(
-        "this analysis works in a plane, but the scenario has its stack in space: set stack.view to \"transverse\" \
-         (across the barrels), to \"longitudinal\" (along them), or to \"both\""
+        "this analysis works in a plane, but the stack of the scenario is three-dimensional: set stack.view to \
+         \"transverse\" (across the barrels), to \"longitudinal\" (along them), or to \"both\""
     )]
     Space,
     /// A planar analysis was requested for a three-dimensional scene.
     #[error(
-        "this analysis works in a plane, but the bodies of the scenario are in space: state them in a plane, with \
+        "this analysis works in a plane, but the bodies of the scenario are three-dimensional: state planar bodies, with \
          kind = \"free\""
     )]
     FreeInSpace,

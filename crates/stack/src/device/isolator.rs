@@ -77,7 +77,7 @@ section! {
     path: Path = Kind::Choice(names::<Path>), Default::Value("\"none\"");
     /// Friction coefficient of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for sheets, 0.6 if seized.
     friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.01");
-    /// Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default is an assumption, with a period of 2 s.
+    /// Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default is an assumption; it gives a period of 2 s.
     dish_radius: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.3, 100.0)), Default::Value("\"1 m\"");
     /// Stroke of the platform to either side before it meets a stop: an assumption.
@@ -86,7 +86,7 @@ section! {
     /// Stiffness of a stop: an assumption.
     stop_stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
-    /// Damping of a stop, on approach only: an assumption.
+    /// Damping of a stop, which acts in compression only. The default is an assumption.
     stop_damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
     /// Stiffness of the springs that pull the platform back to its initial position.
@@ -123,7 +123,7 @@ const STEEPEST: f64 = 0.5;
 /// Half of the angle (rad) that a dish spans. A dish extends beyond its stops.
 const DISH: f64 = 1.2;
 
-/// Damping of bearings divided by their stiffness (s): an assumption. The damping acts on approach only.
+/// Damping of bearings divided by their stiffness (s): an assumption. The damping acts in compression only.
 const BEARING_DAMPING: f64 = 5e-4;
 
 impl Isolators {

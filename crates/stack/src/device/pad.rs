@@ -50,10 +50,11 @@ section! {
     /// Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still applies
     /// to racks that lie on barrels.
     pub static SECTION = "pad";
-    /// Stiffness of the pad on one support of a cradle; if not given, there are no pads.
+    /// Stiffness of the pad at one support of a cradle; if not given, there are no pads.
     stiffness: Option<f64> =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Nothing;
-    /// Damping of the pad on one support, on approach and separation: an assumption for rubber.
+    /// Damping of the pad at one support, which acts in both compression and rebound. The default is an assumed value
+    /// for rubber.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
     /// Friction coefficient of wood on pads: an assumption.

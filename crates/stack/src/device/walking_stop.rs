@@ -50,7 +50,7 @@ named! {
     pub enum Holds {
         /// Along the barrels: a hook over the hoop or the end of a barrel.
         Along = "along",
-        /// Across the barrels: a saddle on the round of a barrel, without friction.
+        /// Across the barrels: a saddle on the curved side of a barrel, without friction.
         Across = "across",
         /// Both along and across the barrels.
         Both = "both",
@@ -75,7 +75,8 @@ section! {
     /// Stiffness of the lips at one barrel, force per displacement: an assumption for bent steel plate.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
-    /// Damping of the lips at one barrel, force per speed, on approach only: an assumption.
+    /// Damping of the lips at one barrel (force per speed), which acts in compression only. The default is an
+    /// assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
     /// Force above which the lips at one barrel break permanently; if not given, lips never break.

@@ -1,4 +1,4 @@
-//! Verdict at the end of a run, in a plane or in space.
+//! Verdict at the end of a run, planar or three-dimensional.
 
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Space;

@@ -14,9 +14,9 @@ use super::tree::Table;
 named! {
     /// Kind of body that an override changes.
     pub enum StackBody {
-        /// A barrel; its column is counted in barrels.
+        /// A barrel; `column` is its number among the barrels of its level, from the left.
         Barrel = "barrel",
-        /// A rack; its column is counted in racks.
+        /// A rack; `column` is its number among the racks of its level, from the left.
         Rack = "rack",
     }
 }
@@ -33,11 +33,11 @@ section! {
     body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
-    /// Column, 1 at the left before mirroring; for a rack, columns of racks are counted; for a barrel, columns of
-    /// barrels. In both planes or in space, columns count across the barrels.
+    /// Column, 1 at the left before mirroring. The columns of racks and those of barrels are numbered separately. In
+    /// both planes or in three dimensions, columns are counted across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
-    /// Row along the barrels in space, 1 nearest to the viewer; for a rack, rows of racks are counted; for a barrel,
-    /// rows of barrels.
+    /// Row along the barrels in a three-dimensional model, 1 nearest to the viewer. The rows of racks and those of
+    /// barrels are numbered separately.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
     /// Mass of the body, instead of the regular mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
@@ -46,7 +46,8 @@ section! {
     /// Displacement from the regular position, positive to the right before mirroring.
     offset_x: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
-    /// Displacement from the regular position along the barrels, positive away from the viewer; in space only.
+    /// Displacement from the regular position along the barrels, positive away from the viewer; in three dimensions
+    /// only.
     offset_y: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
 }

@@ -9,11 +9,11 @@ use super::run::Until;
 const SHARE: Kind = Kind::Number(Range::between(0.0, 0.1));
 
 section! {
-    /// Random differences from stack to stack, and how many stacks are drawn.
+    /// Random differences from stack to stack, and the number of variants that are drawn.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Imperfections;
     /// Random differences from stack to stack, centered on the values of the scenario, and the number of variants of
-    /// the stack that are drawn; the table `unknowns` states the differences that a whole stack shares.
+    /// the stack. The uncertain constants that all bodies of a stack share are in the table `unknowns`.
     pub static IMPERFECTIONS = "imperfections";
     /// Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run only
     /// the stack as stated.
@@ -21,7 +21,7 @@ section! {
     /// Criterion that ends a variant if `run.until` is "rest": "verdict" ends it 2 s after the first loss of a seat, or
     /// at rest on ground that stays below 0.02 g; "rest" ends it when all bodies have come to rest.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
-    /// Seed of the random sequence that draws the variants, their imperfections and their unknown constants.
+    /// Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
     /// True to draw the position and the mass of every rack and barrel; false to keep them as stated in all variants.
     drawn: bool = Kind::Flag, Default::Value("true");
@@ -33,6 +33,6 @@ section! {
     /// off at three standard deviations, with one draw for each body (assumption: 3 L of missing wine, or of water in
     /// the wood, in a full barrel).
     mass: f64 = SHARE, Default::Value("0.01");
-    /// True to shake half of the variants with the opposite sign, as for stacks that face the other way.
+    /// True to reverse the motion for half of the variants, as if these stacks faced the opposite direction.
     sign: bool = Kind::Flag, Default::Value("false");
 }

@@ -119,7 +119,7 @@ known! {
     rail_half_spacing: f64 = size(0.01, 10.0), CATALOG;
     /// Width of one rail, along the axis of the barrel.
     rail_width: f64 = size(1e-3, 1.0), CATALOG;
-    /// Angle by which the rails raise the right end of a barrel, along the barrels.
+    /// Inclination of the barrels along their axes, positive if the rails raise the right end.
     incline: f64 = Kind::Quantity(&[Dimension::ANGLE], Range::between(-0.2, 0.2)), CATALOG;
     /// Height of the lowest point of a carried barrel above the underside of the rack.
     clearance: f64 = size(1e-3, 10.0), CATALOG;

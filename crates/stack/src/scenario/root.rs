@@ -69,7 +69,7 @@ table! {
             element = Kind::Tables(&element::ELEMENT), Default::Nothing;
 
         }
-        /// Arbitrary bodies in space on a ground.
+        /// Arbitrary three-dimensional bodies on a ground.
         "free-spatial" {
             /// The ground.
             ground = Kind::Table(&spatial::GROUND), Default::Nothing;

@@ -142,8 +142,8 @@ section! {
     fall_drop: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"0.2 m\"");
     /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which the rack has left the
-    /// barrels. Across the barrels, the reach ends where friction cannot hold the rack on the round of the barrels;
-    /// along the barrels, where the rail of the rack passes the ends of the barrels.
+    /// barrels. Across the barrels, the reach ends where friction cannot hold the rack on the curved sides of the
+    /// barrels; along the barrels, it ends where the rail of the rack passes the ends of the barrels.
     rack_slide_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("1.0");
     /// Inclination of a rack above which its level has rocked over.
     rocking_angle: f64 =

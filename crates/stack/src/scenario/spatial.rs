@@ -59,7 +59,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
     let (mut pairs, mut before) = (0_usize, 1_usize);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
-            let message = format!("a free scene in space has at most {MOST_BODIES} bodies");
+            let message = format!("a three-dimensional scene has at most {MOST_BODIES} bodies");
             return Err(reader.inconsistent("name", message));
         }
         let name = reader.text("name")?;

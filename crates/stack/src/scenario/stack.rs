@@ -175,21 +175,23 @@ const TURN: f64 = 2.0 * std::f64::consts::PI;
 /// Fields of the stack other than devices and overrides.
 const OWN: [Field; 9] = fields! {
     /// Model of the stack: in the plane across the barrels, in the plane along the barrels, in both planes one after
-    /// the other, each under one horizontal component of the record, or in space ("spatial") under all components at
-    /// once.
+    /// the other, each under one horizontal component of the record, or in three dimensions ("spatial") under all
+    /// components at once.
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
     /// Number of barrels per level, a multiple of the number that one rack carries: in a single plane, the barrels in
-    /// that plane; in both planes or in space, the barrels that lie side by side.
+    /// that plane; in both planes or in three dimensions, the barrels that lie side by side.
     columns = COLUMNS, Default::Required;
-    /// Number of barrels per level, counted along the barrels, if the model is in both planes or in space.
+    /// Number of barrels per level, counted along the barrels, if the model is in both planes or in three dimensions.
     columns_along = COLUMNS,
-        Default::Derived("in both planes and in space, the number that one rack carries; must not be given otherwise");
+        Default::Derived(
+            "in both planes and in three dimensions, the number that one rack carries; must not be given otherwise",
+        );
     /// Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes the
     /// stack across the barrels, and the other horizontal component shakes it along the barrels.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
-        Default::Derived("in space, 0 deg; must not be given otherwise");
+        Default::Derived("in three dimensions, 0 deg; must not be given otherwise");
     /// The barrel.
     barrel = Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL), Default::Derived("bordeaux-225");
     /// The rack.

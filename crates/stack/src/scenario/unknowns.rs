@@ -47,9 +47,9 @@ section! {
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// Largest excess of static over kinetic friction of barrels on racks, as a fraction of the kinetic coefficient and
     /// in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Tests of chestnut on
-    /// chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in planes, an excess
-    /// of 0.4 changes shares of collapses by less than their sampling error; in space, 39 of 64 variants of the demo on
-    /// four levels collapse instead of 53, which has not been repeated with another seed.
+    /// chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in planar models, an
+    /// excess of 0.4 changes shares of collapses by less than their sampling error; in three dimensions, 39 of 64
+    /// variants of the demo on four levels collapse instead of 53, a result of a single seed.
     static_friction: f64 = DISPERSION, Default::Value("0");
     /// Standard deviation of the logarithm of the ratio of tangential to normal stiffness, lognormal, one draw for all
     /// seats. Not drawn by default, because a factor of 2 changes shares of collapses by less than their sampling error.

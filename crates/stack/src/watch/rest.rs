@@ -39,7 +39,7 @@ pub enum Ending {
     /// All bodies had come to rest on ground that was still. After a collapse, or if only the verdict is requested,
     /// calm ground is sufficient.
     Rest,
-    /// The time for which the scenario continues a run after a collapse had elapsed.
+    /// The run had continued after a collapse for the time that the scenario states.
     AfterCollapse,
     /// The duration that the scenario sets was reached.
     Duration,

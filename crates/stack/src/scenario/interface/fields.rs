@@ -204,7 +204,7 @@ pub static FREE_INTERFACE: Section = Section {
             "between",
             Kind::Pair,
             Default::Required,
-            "The two kinds: the first has the contact nodes, the second the surface; in space, the order does not matter.",
+            "The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order does not matter.",
         ),
         Field::new(
             "within_groups",
@@ -241,13 +241,13 @@ table! {
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
-            /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
-            /// friction sooner, but needs a smaller time step.
+            /// Ratio of the stiffness of the tangential spring to the normal stiffness; with a stiffer spring, friction
+            /// reverses sooner, but the time step must be smaller.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
                 Default::Derived("for constants per seat, the ratio that the catalog gives for the seats of the rack: \
                     2 on barrels, whose staves are softer across than along their surface; 2 on posts; 4 on the \
                     ground, where tubes that do not lie flat bend; 1 otherwise");
-            /// Ratio of the tangential damping of the stick to the normal damping.
+            /// Ratio of the damping of the tangential spring to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
         /// Sliding friction smoothed around zero slip rate; contacts creep and never stick.
