@@ -98,9 +98,9 @@ class BarrelFields(TypedDict, total=False):
     the barrel above the rails of the rack.
     """
     stave_capacity: Quantity
-    """Force between a barrel and a rack at which the staves are crushed. The default is an assumption: the
-    strength of white oak across the grain, 4.3 MPa (Record 1914), times the area on which two rails 5 cm wide
-    bear over 10 cm each. Default: 43 kN.
+    """Force between a barrel and a rack at which the staves are crushed. The default is an assumption: 4.3 MPa,
+    the strength of white oak across the grain (Record 1914), over two contact areas of 10 cm by 5 cm, one under
+    each rail. Default: 43 kN.
     """
     stave_thickness: Quantity
     """Thickness of staves and heads. Default: the value of the catalog."""
@@ -217,8 +217,8 @@ class ChockFields(TypedDict, total=False):
     """
 
     angle: Quantity
-    """Angle of the top of a chock from the vertical through the center of the barrel: an assumption. Default: 55
-    deg.
+    """Angle between the vertical and the line from the center of the barrel to the top of the chock. The default
+    is an assumption. Default: 55 deg.
     """
     gap: Quantity
     """Clearance between a chock and its barrel: an assumption. Default: 5 mm."""
@@ -230,7 +230,9 @@ class CradleFields(TypedDict, total=False):
     """Cradle of a barrel in the plane across the barrels."""
 
     angle: Quantity
-    """Angle of each support from the vertical through the center of the barrel. Default: the value of the catalog."""
+    """Angle between the vertical and the line from the center of the barrel to each support. Default: the value of
+    the catalog.
+    """
     type: Union[Literal["supports"], Literal["arc"]]
     half_angle: Quantity
     """Half the angle that the trough spans."""
@@ -292,11 +294,11 @@ class FreeInterfaceFields(TypedDict, total=False):
     not matter.
     """
     damping: Quantity
-    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
-    derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
-    22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the elastic
-    force, per unit of penetration rate. Default: must be given, unless `restitution` and `reference_speed` are
-    given.
+    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
+    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
+    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
+    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    `reference_speed` are given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
@@ -314,10 +316,10 @@ class FreeInterfaceFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent
-    1.5. Default: in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of
-    the rack, with a linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8
-    N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
+    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
+    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
+    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     within_groups: bool
     """True if the interface also acts between bodies of the same `group`. Default: true."""
@@ -373,11 +375,11 @@ class ImpactFields(TypedDict, total=False):
     basis: Literal["node", "length", "seat"]
     """Unit for which stiffness and damping are stated: one contact node, or one meter of boundary. Default: node."""
     damping: Quantity
-    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
-    derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
-    22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the elastic
-    force, per unit of penetration rate. Default: must be given, unless `restitution` and `reference_speed` are
-    given.
+    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
+    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
+    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
+    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    `reference_speed` are given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
@@ -395,10 +397,10 @@ class ImpactFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent
-    1.5. Default: in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of
-    the rack, with a linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8
-    N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
+    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
+    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
+    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -418,14 +420,14 @@ class ImperfectionsFields(TypedDict, total=False):
     variants. Default: true.
     """
     mass: Union[float, Quantity]
-    """Standard deviation of the mass of every barrel and rack as a fraction of that mass, normally distributed and
-    cut off at three standard deviations, with one draw for each body (assumption: 3 L of missing wine, or of
-    water in the wood, in a full barrel). Default: 0.01.
+    """Standard deviation of the mass of every barrel and rack, as a fraction of that mass. The mass is normally
+    distributed, cut off at three standard deviations, and drawn for each body. The default is an assumption;
+    for a full barrel, it is equivalent to 3 L of missing wine, or of water in the wood. Default: 0.01.
     """
     placement: Quantity
-    """Largest offset to either side of every rack on its supports and of every barrel in its cradle, uniformly
-    distributed, with one draw for each body (assumption: forklifts do not place racks and barrels more
-    precisely). Default: 1 mm.
+    """Largest offset, to either side, of every rack on its supports and of every barrel in its cradle. The offset
+    is uniformly distributed and drawn for each body. The default is an assumption: forklifts do not place racks
+    and barrels more precisely. Default: 1 mm.
     """
     seed: int
     """Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
@@ -436,9 +438,9 @@ class ImperfectionsFields(TypedDict, total=False):
     Default: false.
     """
     until: Literal["rest", "verdict", "duration"]
-    """Criterion that ends a variant if `run.until` is "rest": "verdict" ends it 2 s after the first loss of a
-    seat, or at rest on ground that stays below 0.02 g; "rest" ends it when all bodies have come to rest.
-    Default: verdict.
+    """Criterion that ends a variant if `run.until` is "rest". With "verdict", a variant ends 2 s after its first
+    loss of a seat, or when it is at rest on ground that stays below 0.02 g. With "rest", a variant ends when
+    all bodies have come to rest. Default: verdict.
     """
     variants: int
     """Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run
@@ -455,11 +457,11 @@ class InterfaceFields(TypedDict, total=False):
     boundary. Default: seat.
     """
     damping: Quantity
-    """Damping c: N s/m per seat or node or N s/m^2 per length. Default: in a stack, with constants per seat
-    derived from the restitution that the catalog gives for the seats of the rack, and with constants per node
-    22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the elastic
-    force, per unit of penetration rate. Default: must be given, unless `restitution` and `reference_speed` are
-    given.
+    """Damping c, in N s/m per seat or node, or in N s/m^2 per length. Default: in a stack: with constants per
+    seat, derived from the restitution that the catalog gives for the seats of the rack; with constants per
+    node, 22 N s/cm if the stiffness is not given either. Or: Damping d: ratio of the damping force to the
+    elastic force, per unit of penetration rate. Default: must be given, unless `restitution` and
+    `reference_speed` are given.
     """
     friction: "FrictionFields"
     """Friction law, which gives the tangential force. Default: Coulomb friction with the coefficient of the pair
@@ -477,10 +479,10 @@ class InterfaceFields(TypedDict, total=False):
     Or: Ratio of normal speeds after and before an impact. Default: 0.3.
     """
     stiffness: Quantity
-    """Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent
-    1.5. Default: in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of
-    the rack, with a linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8
-    N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
+    """Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in
+    N/m^1.5 or N/m^2.5. Default: in a stack: with a linear law per seat, the stiffness that the catalog gives
+    for the seats of the rack; with a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9
+    N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise.
     """
     exponent: Union[float, Quantity]
     """Exponent of the penetration: 1 or 1.5. Default: 1.5."""
@@ -552,7 +554,7 @@ class LidFields(TypedDict, total=False):
     levels: int
     """Number of levels with lids, counted from the top; 0 for none. Default: 0."""
     stiffness: Quantity
-    """Stiffness of one lid, force per displacement: an assumption. Default: 500 kN/m."""
+    """Stiffness of one lid (force per displacement): an assumption. Default: 500 kN/m."""
     strength: Quantity
     """Force above which a lid breaks permanently; if not given, lids never break."""
 
@@ -782,7 +784,7 @@ class RackFields(TypedDict, total=False):
     """
     contact: Literal["nodes", "element", "rails"]
     """Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each
-    of two rails. Every element has the constants stated per node; constants stated per seat are divided among
+    of two rails. Constants stated per node apply to every element; constants stated per seat are divided among
     the elements. Default: the value of the catalog.
     """
     cradle: Union[Literal["supports", "arc"], "CradleFields"]
@@ -1056,8 +1058,8 @@ class StackFields(TypedDict, total=False):
 
     azimuth: Quantity
     """Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes
-    the stack across the barrels, and the other horizontal component shakes it along the barrels. Default: in
-    three dimensions, 0 deg; must not be given otherwise.
+    the stack across the barrels, and the other horizontal component shakes it along the barrels. Default: 0 deg
+    in three dimensions; must not be given otherwise.
     """
     barrel: Union[Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"], "BarrelFields"]
     """The barrel. Default: bordeaux-225."""
@@ -1069,7 +1071,7 @@ class StackFields(TypedDict, total=False):
     """
     columns_along: int
     """Number of barrels per level, counted along the barrels, if the model is in both planes or in three
-    dimensions. Default: in both planes and in three dimensions, the number that one rack carries; must not be
+    dimensions. Default: the number that one rack carries, in both planes and in three dimensions; must not be
     given otherwise.
     """
     gap: Quantity
@@ -1107,7 +1109,7 @@ class StrapFields(TypedDict, total=False):
     """Straps on the top levels, which pull but never push and have no mass."""
 
     damping: Quantity
-    """Damping of one strap, force per rate of elongation, while it is taut. Default: 0 N s/m."""
+    """Damping of one strap while it is taut (force per rate of elongation). Default: 0 N s/m."""
     levels: int
     """Number of levels that are strapped, counted from the top; 0 for no straps. Default: 0."""
     pretension: Quantity
@@ -1117,7 +1119,7 @@ class StrapFields(TypedDict, total=False):
     slack: Quantity
     """Slack of one strap on the stack at rest: the elongation at which the strap begins to pull. Default: 0 m."""
     stiffness: Quantity
-    """Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of about 5 to 7 % of
+    """Stiffness of one strap (force per elongation); a polyester strap tears at an elongation of about 5 to 7 % of
     its length. Default: 100 kN/m.
     """
     strength: Quantity
@@ -1134,7 +1136,7 @@ class TieFields(TypedDict, total=False):
     """
 
     damping: Quantity
-    """Damping of one tie, force per rate of elongation, while it is taut. Default: 0 N s/m."""
+    """Damping of one tie while it is taut (force per rate of elongation). Default: 0 N s/m."""
     distance: Quantity
     """Distance from the end of a rack to the wall or the ceiling; the default is the clearance of 18 inches that
     one winery keeps from its walls (Press Democrat 2014). Default: 45 cm.
@@ -1146,8 +1148,9 @@ class TieFields(TypedDict, total=False):
     slack: Quantity
     """Slack of one tie on the stack at rest: the elongation at which the tie begins to pull. Default: 1 cm."""
     stiffness: Quantity
-    """Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of about 2 MN
-    divided by the length of the cable, and anchors make a tie softer. Default: 500 kN/m.
+    """Stiffness of one tie (force per elongation). The default is an assumption: an 8 mm steel cable has a
+    stiffness of about 2 MN divided by the length of the cable, and anchors make a tie softer. Default: 500
+    kN/m.
     """
     strength: Quantity
     """Force above which a tie tears permanently; if not given, ties never tear."""
@@ -1181,64 +1184,68 @@ class TunedMassFields(TypedDict, total=False):
 
 
 class UnknownsFields(TypedDict, total=False):
-    """Uncertainty of constants that nobody has measured on this stack. Every variant draws a factor of each
-    constant, lognormal around the stated value and cut off at three standard deviations, and the whole stack
-    shares the factor. Factors are independent of each other, except those of friction if a correlation is
-    stated. 0 keeps a constant as stated.
+    """Uncertainty of constants that nobody has measured on this stack. In every variant, each constant is
+    multiplied by a factor that the whole stack shares. Factors are lognormal with median 1, cut off at three
+    standard deviations. They are independent of each other, except those of friction if a correlation is
+    stated. A value of 0 keeps a constant as stated.
     """
 
     damping: Union[float, Quantity]
-    """Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated, one draw
-    for all seats with a damper (with 0.3, a stated restitution of 0.8 becomes a restitution between 0.69 and
-    0.88 in nineteen of twenty variants; the default is an assumption). Default: 0.3.
+    """Standard deviation of ln c, or of the logarithm of the damping ratio if a restitution is stated; one value
+    is drawn for all seats with a damper. The default is an assumption: with 0.3, a stated restitution of 0.8
+    becomes a restitution between 0.69 and 0.88 in nineteen of twenty variants. Default: 0.3.
     """
     drawn: bool
     """True to draw the constants; false to keep all of them as stated in all variants. Default: true."""
     friction: Union[float, Quantity]
-    """Standard deviation of ln μ, static and kinetic alike, where racks or barrels touch each other; one draw for
-    barrels on racks, one for racks on racks and one for barrels on barrels, each also for bodies that have
-    fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth steel and up to 0.80 on rough steel
-    (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al. 2020), 0.37 to 0.45 for
-    pallets on steel racks. A standard deviation of 0.35, which is an assumption, puts nine in ten variants
-    within a factor of 1.8. Default: 0.35.
+    """Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic
+    friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels;
+    these values also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer
+    on smooth steel and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut
+    (Villar-García et al. 2020), 0.37 to 0.45 for pallets on steel racks. A standard deviation of 0.35, which is
+    an assumption, puts nine in ten variants within a factor of 1.8. Default: 0.35.
     """
     friction_barrel_rack: Union[float, Quantity]
-    """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured; the value
-    is then the scatter of ln μ between racks and barrels. Default: `friction`.
+    """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. It is then
+    the scatter of ln μ from one pair of barrel and rack to another. Default: `friction`.
     """
     friction_correlation: Union[float, Quantity]
-    """Correlation of ln μ between any two pairs of materials (a wet cellar is wet everywhere, but steel, wood and
-    floors differ in roughness; nobody has measured it, and 0 is an assumption). Default: 0.
-    """
-    friction_ground: Union[float, Quantity]
-    """Standard deviation of ln μ on the ground; one draw for racks and one for barrels (floors are washed daily;
-    steel on concrete ranges from 0.4 in design to 0.65 in tests of Rabbat and Russell 1985; the default is an
-    assumption). Default: 0.2.
-    """
-    impact_stiffness: Union[float, Quantity]
-    """Standard deviation of ln k of impacts, one draw for all impacts (an assumption). Default: 0.1."""
-    rails: Quantity
-    """Largest deviation of `stack.rack.rail_half_spacing` to either side, uniformly distributed, one draw for all
-    racks, which are made alike. Not drawn by default, because 1 cm changes shares of collapses by less than
-    their sampling error. Default: 0 mm.
-    """
-    static_friction: Union[float, Quantity]
-    """Largest excess of static over kinetic friction of barrels on racks, as a fraction of the kinetic coefficient
-    and in addition to the stated excess; uniformly distributed from 0, one draw for all seats. Tests of
-    chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not drawn by default: in
-    planar models, an excess of 0.4 changes shares of collapses by less than their sampling error; in three
-    dimensions, 39 of 64 variants of the demo on four levels collapse instead of 53, a result of a single seed.
+    """Correlation of ln μ between any two pairs of materials. The default is an assumption, since nobody has
+    measured this correlation: a wet cellar is wet everywhere, but steel, wood and floors differ in roughness.
     Default: 0.
     """
+    friction_ground: Union[float, Quantity]
+    """Standard deviation of ln μ on the ground; one value is drawn for racks and one for barrels. The default is
+    an assumption: floors are washed daily, and μ of steel on concrete ranges from 0.4 in design to 0.65 in the
+    tests of Rabbat and Russell (1985). Default: 0.2.
+    """
+    impact_stiffness: Union[float, Quantity]
+    """Standard deviation of ln k of impacts; one value is drawn for all impacts. The default is an assumption.
+    Default: 0.1.
+    """
+    rails: Quantity
+    """Largest deviation of `stack.rack.rail_half_spacing` to either side. It is uniformly distributed and drawn
+    once for all racks, since racks are made alike. Not drawn by default, because 1 cm changes shares of
+    collapses by less than their sampling error. Default: 0 mm.
+    """
+    static_friction: Union[float, Quantity]
+    """Largest excess of the static over the kinetic friction coefficient of barrels on racks, as a fraction of the
+    kinetic coefficient. The excess is uniformly distributed from 0, drawn once for all seats, and added to the
+    stated excess. Tests of chestnut on chestnut gave an excess of 0.29 to 0.41 (Villar-García et al. 2020). Not
+    drawn by default: in planar models, an excess of 0.4 changes shares of collapses by less than their sampling
+    error; in three dimensions, 39 of 64 variants of the demo on four levels collapse instead of 53, a result of
+    a single seed. Default: 0.
+    """
     stick: Union[float, Quantity]
-    """Standard deviation of the logarithm of the ratio of tangential to normal stiffness, lognormal, one draw for
+    """Standard deviation of the logarithm of the ratio of tangential to normal stiffness; one value is drawn for
     all seats. Not drawn by default, because a factor of 2 changes shares of collapses by less than their
     sampling error. Default: 0.
     """
     stiffness: Union[float, Quantity]
-    """Standard deviation of ln k, one draw for all seats (nobody has measured these racks; with 0.6, nineteen in
-    twenty variants lie within a factor of 3.2, which reaches from the value measured by Candia, de la Llera and
-    Almazán 2008 to the value of a stave clamped between hoops). Default: 0.6.
+    """Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default
+    is an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants lie within a
+    factor of 3.2: from the value measured by Candia, de la Llera and Almazán (2008) to the value of a stave
+    clamped between hoops. Default: 0.6.
     """
 
 
@@ -1282,7 +1289,7 @@ class WalkingStopFields(TypedDict, total=False):
     cm.
     """
     stiffness: Quantity
-    """Stiffness of the lips at one barrel, force per displacement: an assumption for bent steel plate. Default: 1
+    """Stiffness of the lips at one barrel (force per displacement): an assumption for bent steel plate. Default: 1
     MN/m.
     """
     strength: Quantity

@@ -39,7 +39,8 @@ section! {
     pub static SECTION = "chock";
     /// Number of levels with chocks, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Angle of the top of a chock from the vertical through the center of the barrel: an assumption.
+    /// Angle between the vertical and the line from the center of the barrel to the top of the chock. The default is an
+    /// assumption.
     angle: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(0.1, 1.4)), Default::Value("\"55 deg\"");
     /// Clearance between a chock and its barrel: an assumption.

@@ -83,11 +83,11 @@ section! {
     levels: u32 = LEVELS, Default::Value("0");
     /// Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
-    /// Stiffness of one strap, force per elongation; a polyester strap tears at an elongation of about 5 to 7 % of its
+    /// Stiffness of one strap (force per elongation); a polyester strap tears at an elongation of about 5 to 7 % of its
     /// length.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
-    /// Damping of one strap, force per rate of elongation, while it is taut.
+    /// Damping of one strap while it is taut (force per rate of elongation).
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
     /// Slack of one strap on the stack at rest: the elongation at which the strap begins to pull.

@@ -83,11 +83,11 @@ section! {
     /// winery keeps from its walls (Press Democrat 2014).
     distance: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.01, 20.0)), Default::Value("\"45 cm\"");
-    /// Stiffness of one tie, force per elongation, an assumption: an 8 mm steel cable has a stiffness of about 2 MN
-    /// divided by the length of the cable, and anchors make a tie softer.
+    /// Stiffness of one tie (force per elongation). The default is an assumption: an 8 mm steel cable has a stiffness
+    /// of about 2 MN divided by the length of the cable, and anchors make a tie softer.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
-    /// Damping of one tie, force per rate of elongation, while it is taut.
+    /// Damping of one tie while it is taut (force per rate of elongation).
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
     /// Slack of one tie on the stack at rest: the elongation at which the tie begins to pull.

@@ -72,7 +72,7 @@ section! {
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"2 cm\"");
     /// Height of the lips: an assumption. A rack that has risen by more than this height is disengaged.
     lip: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1.0)), Default::Value("\"4 cm\"");
-    /// Stiffness of the lips at one barrel, force per displacement: an assumption for bent steel plate.
+    /// Stiffness of the lips at one barrel (force per displacement): an assumption for bent steel plate.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
     /// Damping of the lips at one barrel (force per speed), which acts in compression only. The default is an

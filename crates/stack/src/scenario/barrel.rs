@@ -86,9 +86,9 @@ known! {
     capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
     /// Diameter of the circle that represents the barrel in the plane across the barrels.
     section_diameter: f64 = SIZE, Default::Derived("the diameter of the barrel above the rails of the rack");
-    /// Force between a barrel and a rack at which the staves are crushed. The default is an assumption: the strength of
-    /// white oak across the grain, 4.3 MPa (Record 1914), times the area on which two rails 5 cm wide bear over 10 cm
-    /// each.
+    /// Force between a barrel and a rack at which the staves are crushed. The default is an assumption: 4.3 MPa, the
+    /// strength of white oak across the grain (Record 1914), over two contact areas of 10 cm by 5 cm, one under each
+    /// rail.
     stave_capacity: f64 =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Value("\"43 kN\"");
 }

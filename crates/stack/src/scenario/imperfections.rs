@@ -18,20 +18,22 @@ section! {
     /// Number of variants of the stack that are run in each plane, in addition to the stack as stated; 0 to run only
     /// the stack as stated.
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
-    /// Criterion that ends a variant if `run.until` is "rest": "verdict" ends it 2 s after the first loss of a seat, or
-    /// at rest on ground that stays below 0.02 g; "rest" ends it when all bodies have come to rest.
+    /// Criterion that ends a variant if `run.until` is "rest". With "verdict", a variant ends 2 s after its first loss
+    /// of a seat, or when it is at rest on ground that stays below 0.02 g. With "rest", a variant ends when all bodies
+    /// have come to rest.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
     /// True to draw the position and the mass of every rack and barrel; false to keep them as stated in all variants.
     drawn: bool = Kind::Flag, Default::Value("true");
-    /// Largest offset to either side of every rack on its supports and of every barrel in its cradle, uniformly
-    /// distributed, with one draw for each body (assumption: forklifts do not place racks and barrels more precisely).
+    /// Largest offset, to either side, of every rack on its supports and of every barrel in its cradle. The offset is
+    /// uniformly distributed and drawn for each body. The default is an assumption: forklifts do not place racks and
+    /// barrels more precisely.
     placement: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.02)), Default::Value("\"1 mm\"");
-    /// Standard deviation of the mass of every barrel and rack as a fraction of that mass, normally distributed and cut
-    /// off at three standard deviations, with one draw for each body (assumption: 3 L of missing wine, or of water in
-    /// the wood, in a full barrel).
+    /// Standard deviation of the mass of every barrel and rack, as a fraction of that mass. The mass is normally
+    /// distributed, cut off at three standard deviations, and drawn for each body. The default is an assumption; for a
+    /// full barrel, it is equivalent to 3 L of missing wine, or of water in the wood.
     mass: f64 = SHARE, Default::Value("0.01");
     /// True to reverse the motion for half of the variants, as if these stacks faced the opposite direction.
     sign: bool = Kind::Flag, Default::Value("false");

@@ -32,7 +32,7 @@ choices! {
     static CRADLES;
     /// Two supports at equal angles from the lowest point of the barrel.
     Supports = "supports" {
-        /// Angle of each support from the vertical through the center of the barrel.
+        /// Angle between the vertical and the line from the center of the barrel to each support.
         angle: f64 = CRADLE_ANGLE, CATALOG;
     }
     /// A circular trough.
@@ -132,7 +132,7 @@ known! {
     /// Half the length of a foot.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
     /// Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each of
-    /// two rails. Every element has the constants stated per node; constants stated per seat are divided among the
+    /// two rails. Constants stated per node apply to every element; constants stated per seat are divided among the
     /// elements.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
     /// Penetration of a seat beyond which the impact law of the two bodies also acts.

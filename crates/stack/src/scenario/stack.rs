@@ -186,12 +186,12 @@ const OWN: [Field; 9] = fields! {
     /// Number of barrels per level, counted along the barrels, if the model is in both planes or in three dimensions.
     columns_along = COLUMNS,
         Default::Derived(
-            "in both planes and in three dimensions, the number that one rack carries; must not be given otherwise",
+            "the number that one rack carries, in both planes and in three dimensions; must not be given otherwise",
         );
     /// Angle by which the stack is turned, counterclockwise viewed from above; at zero, `motion.component` shakes the
     /// stack across the barrels, and the other horizontal component shakes it along the barrels.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
-        Default::Derived("in three dimensions, 0 deg; must not be given otherwise");
+        Default::Derived("0 deg in three dimensions; must not be given otherwise");
     /// The barrel.
     barrel = Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL), Default::Derived("bordeaux-225");
     /// The rack.

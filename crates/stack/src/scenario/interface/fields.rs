@@ -66,11 +66,12 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack, with a linear law per seat the stiffness that the catalog gives for the seats of the rack, with a \
-         linear law per node 9.8 kN/cm, and with a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
+        "in a stack: with a linear law per seat, the stiffness that the catalog gives for the seats of the rack; with a \
+         linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
          racks and from a fallen rack to the ground; must be given otherwise",
     ),
-    "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
+    "Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in N/m^1.5 or \
+     N/m^2.5.",
 );
 
 const FRICTION_FIELD: Field = Field::new(
@@ -97,10 +98,10 @@ const LINEAR: &[Field] = &[
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
         Default::Derived(
-            "in a stack, with constants per seat derived from the restitution that the catalog gives for the seats of \
-             the rack, and with constants per node 22 N s/cm if the stiffness is not given either",
+            "in a stack: with constants per seat, derived from the restitution that the catalog gives for the seats of \
+             the rack; with constants per node, 22 N s/cm if the stiffness is not given either",
         ),
-        "Damping c: N s/m per seat or node or N s/m^2 per length.",
+        "Damping c, in N s/m per seat or node, or in N s/m^2 per length.",
     ),
     RESTITUTION,
     Field::new(
@@ -204,7 +205,8 @@ pub static FREE_INTERFACE: Section = Section {
             "between",
             Kind::Pair,
             Default::Required,
-            "The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order does not matter.",
+            "The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order does \
+             not matter.",
         ),
         Field::new(
             "within_groups",
