@@ -52,11 +52,11 @@ mod _native {
 
     #[pymodule_export]
     const PERIODS: [f64; 22] = barrelstack_selection::PERIODS;
-    /// Lets pages state their date.
+    /// Gives pages the current date, which each page states.
     #[pymodule_init]
     #[expect(clippy::unnecessary_wraps, reason = "PyO3 calls it with this type")]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
-        // An import does not fail because the date is unknown; pages state the reason.
+        // If the date is unknown, the import does not fail, and pages state the reason.
         let _ = barrelstack::report::stamp_pages("");
         Ok(())
     }

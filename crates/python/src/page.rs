@@ -92,7 +92,7 @@ pub(crate) fn html_in<D: Borrow<Document>>(
     Ok(py.detach(|| html(&document().borrow().in_language(language))))
 }
 
-/// Returns the PDF of a document on a paper and in a language, given by their names.
+/// Returns the PDF of a document on a paper size and in a language, both given by name.
 pub(crate) fn pdf_in<'py, D: Borrow<Document>>(
     py: Python<'py>,
     (paper, language): (&str, &str),

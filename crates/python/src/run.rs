@@ -92,8 +92,8 @@ pub(crate) fn rendered(
     Ok(written.into_iter().map(|one| (one.place, one.files)).collect())
 }
 
-/// Returns a page with nothing but the player of a scene, which is reduced to a time interval (s)
-/// and to a number of pictures per second.
+/// Returns a page that contains only the player of a scene. The scene is reduced to a time interval
+/// (s) and to a number of frames per second.
 pub(crate) fn animated(
     py: Python<'_>,
     (title, end_time): (&str, f64),
@@ -150,7 +150,7 @@ impl Run {
         view(slf.as_any(), &slf.get().run().recording.times)
     }
 
-    /// Returns name and unit of every history.
+    /// Returns the name and the unit of every history.
     fn channels(&self) -> Vec<(String, &'static str)> {
         let channels = self.run().recording.channels.iter();
         channels.map(|channel| (channel.name.clone(), channel.unit)).collect()
@@ -257,7 +257,7 @@ impl Run {
         pdf_in(py, (paper, language), || report::answer_document(&self.answer))
     }
 
-    /// Returns a page with nothing but the player.
+    /// Returns a page that contains only the player.
     fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
         let run = self.run();
         let of_run = (run.scenario.title.as_str(), run.end_time);
@@ -296,7 +296,7 @@ impl Run {
         })
     }
 
-    /// Writes the same files as the command.
+    /// Writes the same files as a run on the command line.
     fn write(
         &self,
         py: Python<'_>,

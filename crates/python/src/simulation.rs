@@ -26,17 +26,17 @@ use crate::view::{Numbers, Rows};
 /// Number of steps between two checks of the elapsed time.
 const PORTION: u64 = 64;
 
-/// Time (s) of a call below which it is not worth starting threads.
+/// Computing time (s) of a call below which threads are not worth starting.
 const SHORT: f64 = 1e-4;
 
-/// A simulation in a plane or in space.
+/// A planar or three-dimensional simulation.
 #[derive(Clone)]
 enum Running {
     Plane(Box<barrelstack::Simulation>),
     Space(Box<barrelstack_space::Simulation>),
 }
 
-/// Evaluates an expression with the simulation, in a plane or in space.
+/// Evaluates an expression with the simulation, whether planar or three-dimensional.
 macro_rules! each {
     ($running:expr, $one:ident => $work:expr) => {
         match $running {
@@ -46,11 +46,11 @@ macro_rules! each {
     };
 }
 
-/// Vectors of a space as lists of numbers.
+/// Conversion of the vectors of a plane or of three dimensions from and to lists of numbers.
 trait Listed: Space<Real = f64> {
-    /// Components of a vector, as in error messages.
+    /// Names of the components of a vector, for error messages.
     const AXES: &'static str;
-    /// Components of a moment, as in error messages.
+    /// Names of the components of a moment, for error messages.
     const TURNS: &'static str;
     fn vector(numbers: &[f64]) -> Option<Self::Vector>;
     fn spin(numbers: &[f64]) -> Option<Self::Spin>;
@@ -227,7 +227,7 @@ impl Running {
         done.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// Continues in the state of another simulation of the same stack.
+    /// Sets the state to that of another simulation of the same stack.
     fn reset(&mut self, to: &Self) -> PyResult<()> {
         let same = match (&*self, to) {
             (Self::Plane(own), Self::Plane(other)) => own.is_clone_of(other),
@@ -408,7 +408,8 @@ impl Simulation {
         Ok((pairs, PyArray1::from_vec(py, rows).reshape([count, width])?))
     }
 
-    /// Returns the forces (N) between bodies by name, on the body that is named first.
+    /// Returns the forces (N) between bodies by name; each force acts on the body that is named
+    /// first.
     fn forces<'py>(&self, py: Python<'py>) -> Vec<(String, Numbers<'py>)> {
         match &*lock(&self.running) {
             Running::Plane(one) => {
@@ -479,13 +480,13 @@ impl Simulation {
         Self { running, scenario: self.scenario.clone(), number: self.number }
     }
 
-    /// Continues in the state of a copy.
+    /// Sets the state to that of a copy.
     fn reset(&self, to: &Self) -> PyResult<()> {
         let to = lock(&to.running).clone();
         lock(&self.running).reset(&to)
     }
 
-    /// Returns the result so far in a plane; `None` in space.
+    /// Returns the result so far of a planar simulation; `None` in three dimensions.
     fn result(&self, py: Python<'_>) -> Option<Run> {
         let Running::Plane(one) = lock(&self.running).clone() else { return None };
         py.detach(|| {
@@ -497,7 +498,7 @@ impl Simulation {
         })
     }
 
-    /// Returns the result so far in space; `None` in a plane.
+    /// Returns the result so far of a three-dimensional simulation; `None` in a plane.
     fn result_in_space(&self, py: Python<'_>) -> Option<SpatialRun> {
         let Running::Space(one) = lock(&self.running).clone() else { return None };
         py.detach(|| {
@@ -516,7 +517,7 @@ pub(crate) struct Simulations {
     all: Vec<Mutex<Running>>,
     scenario: barrelstack::Scenario,
     numbers: Vec<u32>,
-    /// Time (s) of one step of one simulation in the last call.
+    /// Computing time (s) of one step of one simulation, measured in the last call.
     pace: Mutex<f64>,
 }
 
@@ -525,7 +526,8 @@ impl Simulations {
         PyArray1::from_vec(py, self.all.iter().map(|one| of(&lock(one))).collect())
     }
 
-    /// Returns numbers of all bodies of all simulations; `pick` appends those of one simulation.
+    /// Returns an array with numbers of all bodies of all simulations; `pick` appends the numbers
+    /// of one simulation.
     fn stacked<'py>(
         &self,
         py: Python<'py>,
@@ -673,7 +675,7 @@ impl Simulations {
         }
     }
 
-    /// Continues the marked simulations in the state of a copy.
+    /// Sets the state of the marked simulations to that of a copy.
     fn reset(&self, to: &Self, marked: Vec<bool>) -> PyResult<()> {
         let all = self.all.iter().zip(&to.all).zip(marked);
         for ((own, other), _) in all.filter(|(_, marked)| *marked) {

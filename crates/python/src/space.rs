@@ -1,4 +1,4 @@
-//! Runs in space: summary, trajectories of the bodies, and page.
+//! Three-dimensional runs: summary, trajectories of the bodies, and page.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::run::{animated, chosen, rendered};
 use crate::table::Table;
 use crate::view::{Numbers, view};
 
-/// Results of a scenario in space.
+/// Results of a three-dimensional scenario.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct SpatialRun {
     answer: Arc<Answer>,
@@ -35,7 +35,7 @@ impl SpatialRun {
         &self.answer.run.frames
     }
 
-    /// Returns numbers that are given per frame and body as one array.
+    /// Combines numbers that are given per frame and body into one array.
     fn stacked<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -111,7 +111,7 @@ impl SpatialRun {
         pdf_in(py, (paper, language), || document(&self.answer))
     }
 
-    /// Returns a page with nothing but the player.
+    /// Returns a page that contains only the player.
     fn animation(&self, py: Python<'_>, rate: f64, between: Option<[f64; 2]>) -> PyResult<String> {
         let run = &self.answer.run;
         let of_run = (run.scenario.title.as_str(), run.end_time);
@@ -144,7 +144,7 @@ impl SpatialRun {
         })
     }
 
-    /// Writes the same files as the command, including the scenario as stated.
+    /// Writes the same files as a run on the command line, including the scenario as stated.
     fn write(
         &self,
         py: Python<'_>,

@@ -370,7 +370,7 @@ impl Cases<'_> {
         Ok(Prepared { scenario: Arc::new(scenario), ground })
     }
 
-    /// Returns a hash of the topology; cases with different hashes cannot run together.
+    /// Returns a hash of the topology; cases whose hashes differ cannot run together.
     fn kind(scenario: &barrelstack::Scenario) -> u64 {
         let Some(stack) = scenario.stack() else { return 0 };
         fnv1a(format!("{:?} {} {}", stack.view, stack.levels, stack.columns).as_bytes())

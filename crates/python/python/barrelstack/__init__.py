@@ -4,7 +4,7 @@
 
     Scenario ── run ──▶ Run          a stack and its ground motion ─▶ outcome, histories, report
     Record   ──────────┘             strong ground motion: read, made from arrays, processed, scaled, measured
-    Scenario ── run_in_space ─▶ SpatialRun   the same in space, under all three components
+    Scenario ── run_in_space ─▶ SpatialRun   the same in three dimensions, under all motion components
     Scenario ── simulation ─▶ Simulation     step by step, with forces of a controller; simulations: many together
     ensemble ──────────▶ Table       many cases at once
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
@@ -141,7 +141,7 @@ def scenarios() -> dict[str, str]:
     Returns
     -------
     dict
-        Names, with their texts including all comments, as starting points.
+        The text of each scenario by its name, with all comments, to start from.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def schema(of: str = "scenario") -> dict[str, Any]:
     Parameters
     ----------
     of
-        ``"scenario"`` or ``"study"`` for their files, ``"summary"`` for :attr:`Run.summary`.
+        ``"scenario"`` or ``"study"`` for the schema of such files, ``"summary"`` for the schema of :attr:`Run.summary`.
 
     Returns
     -------
@@ -178,7 +178,7 @@ def studies() -> dict[str, str]:
     Returns
     -------
     dict
-        Names, with their texts including all comments.
+        The text of each study by its name, with all comments.
 
     Examples
     --------
@@ -194,7 +194,7 @@ def formats() -> dict[str, str]:
     Returns
     -------
     dict
-        Names, with their publishers.
+        The publisher of each format by the name of the format.
 
     Examples
     --------

@@ -76,7 +76,8 @@ class Calibration(Page):
 
     @property
     def correlation(self) -> list[list[float]]:
-        """Correlations between the estimates (1), in their order; empty if they were not fitted jointly."""
+        """Correlation matrix of the estimates (1), in the order of the estimates; empty if they were not fitted
+        jointly."""
         found: list[list[float]] = self.document["correlation"]
         return found
 
@@ -92,9 +93,9 @@ class Calibration(Page):
         Parameters
         ----------
         measured
-            Columns ``penetration`` and ``force``, in a form described above.
+            Columns ``penetration`` and ``force``, in one of the forms described for :class:`Calibration`.
         nodes
-            Number of contact nodes that share the force; k is that of one node.
+            Number of contact nodes that share the force; the fitted k is the stiffness of one node.
         interface
             The pair of bodies that was tested, for the lines to paste into a scenario.
 
@@ -124,11 +125,11 @@ class Calibration(Page):
         Parameters
         ----------
         measured
-            Columns ``drop height`` and ``rebound height``, or ``time`` of the impacts of one bounce sequence.
+            Columns ``drop height`` and ``rebound height``, or a column ``time`` with the times of successive impacts.
         mass, stiffness
             Mass of the falling body, and stiffness of one contact node, with units; together they give the damping.
         nodes
-            Number of contact nodes that meet at once.
+            Number of contact nodes that the body hits at the same time.
         interface
             The pair of bodies that was tested.
 
@@ -191,9 +192,10 @@ class Calibration(Page):
             A column ``time``, counted from the start of the motion, and columns named like histories, such as
             ``"B1.1_displacement_x (mm)"``.
         fit
-            Among ``"k"`` and ``"c"`` of barrel-rack, ``"mu-br"`` and ``"mu-rg"``.
+            Parameters to fit, among ``"k"`` and ``"c"`` (stiffness and damping of barrel-rack), ``"mu-br"`` and
+            ``"mu-rg"`` (friction of barrel-rack and rack-ground).
         until
-            Time with its unit after which rows are ignored; use a short window of mild shaking, without collapse.
+            Time, with its unit, after which rows are ignored; use a short window of mild shaking, without collapse.
         progress
             As for :meth:`Scenario.run`.
 
@@ -242,9 +244,9 @@ class Calibration(Page):
             ``until (s)``, ``scenario``. A path that ends in ``.toml`` is a file of statements: how many stacks or
             barrels fell in an earthquake, with source and uncertainty.
         others
-            Scenarios named by the tests.
+            Scenarios to which the tests refer, by name.
         statements
-            Names of the statements of a TOML file to use; by default, all that state a share.
+            Names of the statements to use from a TOML file; by default, all statements that give a share.
         fit
             As for :meth:`response`.
         within

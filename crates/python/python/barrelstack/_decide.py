@@ -114,9 +114,10 @@ class Heights(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every height, direction and level of shaking: cases, collapses, lower and upper bound (1) of the
-        probability of collapse, each with 95 % confidence, its 95 % range (1) over the uncertain constants of the seats,
-        and mean share of the barrels that fall (1)."""
+        """One row for every height, direction and level of shaking, with the numbers of cases and collapses. The other
+        columns are fractions (1): a lower and an upper bound of the probability of collapse, each with 95 % confidence;
+        the 95 % range of this probability over the uncertain constants of the seats; and the mean share of the barrels
+        that fall."""
         rows = [
             {**one, "levels": height["levels"], "direction": height["direction"], "low": low, "high": high}
             | {"range_low": least, "range_high": most}
@@ -142,7 +143,8 @@ def heights(
     space: bool = False,
     progress: Progress = None,
 ) -> Heights:
-    """Computes safe heights: stacks of two levels and more, in planes or in space, under the same motions.
+    """Computes safe heights: runs stacks of two and more levels under the same motions, in planes or in three
+    dimensions.
 
     Parameters
     ----------
@@ -159,8 +161,8 @@ def heights(
     highest
         Number of levels of the highest stack, from 2 to 6.
     space
-        Whether the stacks are shaken in space, in a horizontal direction that is drawn for every run, and not in the
-        planes across and along the barrels.
+        Whether the stacks are modeled in three dimensions and shaken in a horizontal direction that is drawn for every
+        run, instead of in the planes across and along the barrels.
     progress
         As for :meth:`Scenario.run`.
 
@@ -206,16 +208,17 @@ class Protections(Page):
 
     @property
     def best(self) -> str | None:
-        """Name of the protection that saves most barrels for its cost; None if no benefit is significant."""
+        """Name of the protection that saves the most barrels for its cost; None if no benefit is significant."""
         best: str | None = self.document["best"]
         return best
 
     @property
     def table(self) -> Table:
-        """One row for every protection tried, in the order of the page: cost for a stack (US$, lower and upper),
-        probability of collapse (1, or 1/year at a site), barrels fallen and saved, each with its 95 % interval; the 95 %
-        range of the probability over the uncertain constants of the seats, and the share (1) of the draws of these
-        constants in which fewer barrels fall than with the stack as it is, and than with the next row.
+        """One row for every protection, in the order of the page. The columns are the cost for a stack (US$, lower and
+        upper); the probability of collapse (1, or 1/year at a site), the barrels fallen and the barrels saved, each
+        with its 95 % interval; and the 95 % range of the probability over the uncertain constants of the seats. The
+        last two columns are shares (1) of the draws of these constants: those in which fewer barrels fall than without
+        a protection, and those in which fewer barrels fall than with the protection in the next row.
         """
         rows: list[dict[str, Any]] = []
         for one in self.document["protections"]:
@@ -241,7 +244,7 @@ class Protections(Page):
         Returns
         -------
         list of str
-            Overrides in the form ``path=value``, as for the command.
+            Overrides in the form ``path=value``, as on the command line.
 
         Raises
         ------
@@ -281,7 +284,7 @@ def protect(
         Hazard curve of the site: a CSV file with ``pgv (cm/s)`` and ``rate (1/year)``.
     pgv
         Peak ground velocities to which motions are scaled, texts or quantities such as ``"50 cm/s"``; by default 25, 50
-        and 75 cm/s. Excludes ``site``.
+        and 75 cm/s. Cannot be combined with ``site``.
     records
         Files of motions, used in place of the bundled and synthetic ones.
     motions
@@ -289,7 +292,8 @@ def protect(
     count
         Number of motions per round, if no motions are given.
     rounds
-        Number of rounds: the first tries all protections, each later round the better half of them.
+        Number of rounds: the first round computes all protections, each later round only the better half of the round
+        before.
     budget
         Upper limit of the cost of a protection for a stack (US$).
     seed
@@ -304,7 +308,8 @@ def protect(
     Raises
     ------
     StudyError
-        When the scenario is not a stack, the hazard uses another measure, or the folder belongs to another study.
+        When the scenario is not a stack, the hazard curve is not for the peak ground velocity, or the folder belongs to
+        another study.
     RunError
         When the stack does not stand.
     KeyboardInterrupt
@@ -369,9 +374,9 @@ class RockScore(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every state in every direction: the decisive velocity (m/s), its derivation, its 95 %
-        interval, its 95 % range over the uncertain constants, and the share (1) that collapsed at each level of
-        shaking."""
+        """One row for every state in every direction: the velocity at which one stack in ten collapses (m/s), how it
+        was found, its 95 % interval, its 95 % range over the uncertain constants, and the share (1) of stacks that
+        collapsed at each level of shaking."""
         rows: list[dict[str, Any]] = []
         for one in self.document["states"]:
             low, high = one["interval"] or (None, None)
@@ -435,14 +440,15 @@ class Reproduction(Page):
 
     @property
     def table(self) -> Table:
-        """One row for every number and every finding that the paper states: place, quantity, published value and ours
-        with units, the relative difference (1), the verdict and its reason."""
+        """One row for every number and every finding that the paper states: its place in the paper, the quantity, the
+        published and the computed value with units, their relative difference (1), and the verdict with its reason."""
         names = ("place", "quantity", "published", "ours", "difference", "band", "verdict", "why")
         return table_of(self.document, {name: name for name in names})
 
 
 def reproduce(record: Path | None = None, *, studies: bool = True, progress: Progress = None) -> Reproduction:
-    """Runs every case of the paper behind the model and compares the paper's numbers with ours.
+    """Runs every case of the paper on which the model is based, and compares the published numbers with the computed
+    ones.
 
     Parameters
     ----------
@@ -451,7 +457,7 @@ def reproduce(record: Path | None = None, *, studies: bool = True, progress: Pro
         without it, the six barrels are shaken by the South Napa record, and results that depend on the motion are
         not compared.
     studies
-        Whether to also run the studies around each case, which are most of the work.
+        Whether to also run the studies around each case, which take most of the time.
     progress
         As for :meth:`Scenario.run`.
 

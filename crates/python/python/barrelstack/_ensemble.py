@@ -36,7 +36,7 @@ def ensemble(
     records
         The records to which the table refers, by name.
     progress
-        True for a bar, or a function that is called with (done, of, what).
+        True for a progress bar, or a function that is called with (done, of, what).
 
     Returns
     -------

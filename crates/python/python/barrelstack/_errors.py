@@ -55,7 +55,7 @@ class Error(Exception):
     Parameters
     ----------
     message
-        The message of the library: position, expectation, finding, remedy.
+        The message of the library: the position, what was expected, what was found, and the remedy.
     path, line, column
         The position, if it is in a file; lines and columns count from 1.
     value
@@ -106,7 +106,7 @@ class ScenarioError(Error, ValueError):
 
 
 class RecordError(Error, ValueError):
-    """A strong-motion file cannot be read, or a request about one cannot be satisfied.
+    """A strong-motion file cannot be read, or does not permit what was requested.
 
     Examples
     --------
@@ -132,7 +132,7 @@ class RunError(Error):
 
 
 class StudyError(Error):
-    """A study cannot be run, collected or decided.
+    """A study cannot be run or collected, or its results do not permit a decision.
 
     Examples
     --------

@@ -40,9 +40,10 @@ def frame(page: str) -> str:
 
 
 class Animation:
-    """An animation of a run as the last line of a cell in a notebook, with controls and a view that can be turned.
+    """An animation of a run, with controls and a view that can be turned. A notebook shows it if it is the last line of
+    a cell.
 
-    Made by :meth:`Run.animate` and :meth:`SpatialRun.animate`. It needs no network and is kept in the notebook.
+    Made by :meth:`Run.animate` and :meth:`SpatialRun.animate`. It needs no network and is saved with the notebook.
 
     Examples
     --------
@@ -64,7 +65,7 @@ class Animation:
         return self._page
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the animation as one page, which every browser shows.
+        """Writes the animation as one page that every browser can show.
 
         Parameters
         ----------
@@ -139,9 +140,9 @@ class Pictured(Reported[NativeRun]):
         Parameters
         ----------
         rate
-            Pictures per second of the run (1/s).
+            Frames per second of simulated time (1/s).
         between
-            Time interval of the film (s); all of the run by default.
+            Time interval to show (s); by default the whole run.
 
         Returns
         -------
@@ -181,15 +182,16 @@ class Pictured(Reported[NativeRun]):
         overwrite: bool = False,
         language: str = "en",
     ) -> dict[str, int]:
-        """Writes figures, animations and series of the shown run, like ``barrelstack render``.
+        """Writes figures, animations and a ParaView series of the shown run, like ``barrelstack render``.
 
         Parameters
         ----------
         folder
             The output folder.
         *parts
-            Among ``"figures"`` (SVG and the formats, each with its numbers), ``"report"`` (PDF), ``"animation"`` (GIF
-            and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them by default.
+            Parts to write, among ``"figures"`` (SVG and the formats, each with its numbers), ``"report"`` (PDF),
+            ``"animation"`` (GIF and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them by
+            default.
         formats
             Formats of figures besides SVG: ``"png"``, ``"pdf"``; both by default.
         dpi
@@ -197,9 +199,9 @@ class Pictured(Reported[NativeRun]):
         paper
             ``"a4"`` or ``"letter"``.
         rate
-            Pictures per second of the run (1/s); animations show at most 50.
+            Frames per second of simulated time (1/s); animations show at most 50.
         between
-            Time interval of the film (s); all of the run by default.
+            Time interval to show (s); by default the whole run.
         size
             Longer side of animations (pixels), 64 to 4096.
         overwrite

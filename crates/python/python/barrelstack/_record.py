@@ -105,7 +105,7 @@ class Record:
         sensitivity
             Counts per m/s², for files in counts.
         name
-            Name of the bytes in error messages.
+            Name by which error messages refer to the bytes.
 
         Returns
         -------
@@ -169,14 +169,15 @@ class Record:
         Returns
         -------
         Record
-            Sampled at its own step, or at 1/400 of the period of a formula; the notes state its origin.
+            The motion, sampled at its own time step or, for a formula, at 1/400 of its period; the notes state its
+            origin.
 
         Raises
         ------
         ScenarioError
             At the first invalid field.
         TypeError
-            When not exactly one of these kinds is given.
+            When none of these kinds is given, or more than one.
         ValueError
             When the arguments describe several motions.
 
@@ -477,8 +478,9 @@ class Record:
         Parameters
         ----------
         chain
-            Base chain: ``"default"`` for the stage of the record, ``"raw"`` (mean, taper, high-pass at 0.1 Hz, ends
-            closed), ``"compact"`` (the same without pads), or ``"none"``. The other arguments replace its settings.
+            Base chain: ``"default"`` (the chain for the processing stage of the record), ``"raw"`` (mean, taper,
+            high-pass at 0.1 Hz, ends closed), ``"compact"`` (the same without pads), or ``"none"``. The other arguments
+            replace its settings.
         mean
             ``"keep"``, ``"pre-event"`` or ``"whole"``.
         detrend
@@ -572,7 +574,7 @@ class Record:
             The component to match; ``"rotd50"`` and ``"rotd100"`` match both horizontals together, by their response
             over all directions.
         damping
-            Damping ratio of a numerical target.
+            Damping ratio of a target that is given as periods and pseudo-accelerations.
         method
             For one component: ``"time"`` adds wavelets at the peak responses; ``"frequency"`` scales Fourier
             amplitudes.

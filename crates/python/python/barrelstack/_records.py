@@ -131,7 +131,7 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
 
 
 class Selection(NamedTuple):
-    """Records whose spectra have a target's mean and spread, made by :func:`select`.
+    """Records whose spectra together have the mean and the standard deviation of a target, made by :func:`select`.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def select(
     most_of_event: int | None = None,
     seed: int = 1,
 ) -> Selection:
-    """Selects records whose spectra jointly match the mean and the spread of a target.
+    """Selects records whose spectra together match the mean and the standard deviation of a target.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def select(
     level
         Sa at that period, in m/s² or as a text or quantity such as ``"0.6 g"``.
     epsilon
-        Sa at that period, as standard deviations of ln Sa above the median; in place of ``level``.
+        Sa at that period, as a number of standard deviations of ln Sa above the median; in place of ``level``.
     count
         Number of records to select.
     spectrum
@@ -215,7 +215,8 @@ def select(
     Warns
     -----
     BarrelstackWarning
-        For each record that is left out because it lacks the spectrum, such as RotD50 of one component.
+        For each record that is left out because it does not have the spectrum: RotD50, for example, needs two
+        horizontal components.
 
     Notes
     -----

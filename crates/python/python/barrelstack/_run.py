@@ -209,7 +209,8 @@ class Envelope(NamedTuple):
     points: NDArray[np.float64]
     #: Coordinate along the boundary: angle (rad) from x on a circle, x (m) elsewhere.
     coordinate: NDArray[np.float64]
-    #: Tributary length of boundary (m) of each value; times the stress at rest it is the contact force there.
+    #: Tributary length of boundary (m) of each value. Multiplied by the stress at rest, it gives the contact force
+    #: there.
     length: NDArray[np.float64]
     #: Stress at rest (N/m): a view without a copy.
     at_rest: NDArray[np.float64]
@@ -276,7 +277,8 @@ class Run(Pictured[_native.Run]):
     @property
     def ensemble(self) -> dict[str, Any] | None:
         """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, its ``range`` over the uncertain
-        constants of the seats, the effects of these constants (``decides``), modes; None without any."""
+        constants of the seats, the effects of these constants (``decides``), and the collapse modes; None if no
+        variants were run."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property

@@ -232,7 +232,7 @@ class Scenario:
         Raises
         ------
         ScenarioError
-            When no field has the path, or the value is invalid; ``value`` names both.
+            When no field has the path, or the value is invalid; the attribute ``value`` of the exception has both.
 
         Examples
         --------
@@ -275,7 +275,7 @@ class Scenario:
 
     @property
     def fingerprint(self) -> str:
-        """Sixteen hexadecimal digits that identify everything that affects the run, which excludes the title."""
+        """Sixteen hexadecimal digits that identify everything that affects the run; the title does not affect it."""
         return self._shaken.fingerprint
 
     @property
@@ -368,13 +368,13 @@ class Scenario:
         variants
             Number of variants in addition to the nominal stack; by default that of the scenario (64).
         progress
-            True for a bar, or a function that is called with (done, of, what) about twenty times per second.
+            True for a progress bar, or a function that is called with (done, of, what) about twenty times per second.
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search for a remedy, as the command does.
+            Whether to search for a change with which the stack stands, as the command does.
         verify
-            Whether to repeat the run with half the step and with a perturbation of a nanometer.
+            Whether to repeat the run, as a check, with half the time step and with barrels displaced by a nanometer.
 
         Returns
         -------
@@ -388,7 +388,7 @@ class Scenario:
         RecordError
             When the motion cannot be read.
         ValueError
-            When the scenario is in space; use :meth:`run_in_space`.
+            When the scenario is three-dimensional; use :meth:`run_in_space`.
         KeyboardInterrupt
             Within a second of Ctrl-C.
 
@@ -399,10 +399,10 @@ class Scenario:
 
         Notes
         -----
-        The numbers are those of ``barrelstack run``, bit for bit. The interpreter lock is released meanwhile.
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter lock is released during the run.
         """
         if self._native.is_spatial:
-            raise ValueError(f"{self.title!r} is a scenario in space: run it with run_in_space()")
+            raise ValueError(f"{self.title!r} is three-dimensional: run it with run_in_space()")
         if record is not None:
             record = record if isinstance(record, Record) else Record.read(record)
             return self.with_record(record).run(
@@ -423,7 +423,8 @@ class Scenario:
         remedy: bool = False,
         verify: bool = False,
     ) -> SpatialRun:
-        """Runs a scenario in space (``stack.view = "spatial"``) under all three components, with its variants.
+        """Runs a three-dimensional scenario (``stack.view = "spatial"``) with its variants, under all motion
+        components.
 
         Parameters
         ----------
@@ -432,13 +433,13 @@ class Scenario:
         variants
             Number of variants in addition to the nominal stack; by default that of the scenario (64).
         progress
-            True for a bar, or a function that is called with (done, of, what) about twenty times per second.
+            True for a progress bar, or a function that is called with (done, of, what) about twenty times per second.
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to search for a remedy, as the command does.
+            Whether to search for a change with which the stack stands, as the command does.
         verify
-            Whether to repeat the run with half the step and with a perturbation of a nanometer.
+            Whether to repeat the run, as a check, with half the time step and with barrels displaced by a nanometer.
 
         Returns
         -------
@@ -448,7 +449,7 @@ class Scenario:
         Raises
         ------
         RunError
-            When the stack cannot be built in space or does not stand.
+            When the stack cannot be built in three dimensions or does not stand.
         RecordError
             When the motion cannot be read.
         ValueError
@@ -463,7 +464,7 @@ class Scenario:
 
         Notes
         -----
-        The numbers are those of ``barrelstack run``, bit for bit. The interpreter lock is released meanwhile.
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter lock is released during the run.
         """
         if not self._native.is_spatial:
             raise ValueError(
@@ -480,7 +481,8 @@ class Scenario:
         return run
 
     def simulation(self, *, plane: str | None = None, variant: int = 0) -> Simulation:
-        """Returns a simulation that advances step by step and can be acted upon, in a plane or in space.
+        """Returns a simulation that advances step by step and accepts external forces, in a plane or in three
+        dimensions.
 
         Parameters
         ----------
@@ -506,8 +508,8 @@ class Scenario:
 
         Notes
         -----
-        Settling, step, ground motion, devices and end of the run are those of :meth:`run`, and so are all bits, until a
-        force is applied.
+        Settling, time step, ground motion, devices and end of the run are those of :meth:`run`. Until a force is
+        applied, results are bit-identical to those of :meth:`run`.
         """
         return Simulation(_native.Simulation.start(self._shaken, plane, variant))
 
@@ -524,7 +526,7 @@ class Scenario:
         Returns
         -------
         Simulations
-            Simulation ``k`` has the bits of ``run(variants=count, variant=k + 1)``.
+            Simulation ``k`` is bit-identical to ``run(variants=count, variant=k + 1)``.
 
         Raises
         ------

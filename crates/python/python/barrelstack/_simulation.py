@@ -1,4 +1,4 @@
-"""Simulations that advance step by step and can be acted upon."""
+"""Simulations that advance step by step and accept external forces."""
 
 from __future__ import annotations
 
@@ -33,11 +33,13 @@ class State(NamedTuple):
     time: Any
     #: Names of the bodies, the ground first.
     bodies: list[str]
-    #: Positions in the inertial frame: in a plane x (m), z (m) and angle (rad), shape (bodies, 3); in space x, y, z (m)
-    #: and quaternion w, x, y, z, shape (bodies, 7). Many simulations have another axis in front.
+    #: Positions in the inertial frame: in a plane x (m), z (m) and angle (rad), shape (bodies, 3); in 3D x, y, z (m)
+    #: and quaternion w, x, y, z, shape (bodies, 7). The arrays of several simulations have one more axis in front, for
+    #: the simulation.
     poses: NDArray[np.float64]
-    #: Velocities: in a plane along x and z (m/s) and angular (rad/s), shape (bodies, 3); in space along x, y, z (m/s) and
-    #: angular about x, y, z (rad/s), shape (bodies, 6). Many simulations have another axis in front.
+    #: Velocities: in a plane along x and z (m/s) and angular (rad/s), shape (bodies, 3); in 3D along x, y, z (m/s) and
+    #: angular about x, y, z (rad/s), shape (bodies, 6). The arrays of several simulations have one more axis in front,
+    #: for the simulation.
     twists: NDArray[np.float64]
 
     def pose(self, body: str) -> NDArray[np.float64]:
@@ -88,7 +90,7 @@ class Contacts(NamedTuple):
 
     #: Names of the two bodies of each contact.
     bodies: list[tuple[str, str]]
-    #: Points (m) in the inertial frame, shape (contacts, 2) in a plane and (contacts, 3) in space.
+    #: Points (m) in the inertial frame, shape (contacts, 2) in a plane and (contacts, 3) in three dimensions.
     points: NDArray[np.float64]
     #: Forces (N) on the first of the two bodies, in the same shape.
     forces: NDArray[np.float64]
@@ -114,7 +116,7 @@ class ElementForce(NamedTuple):
 
 
 class Energy(NamedTuple):
-    """Energies (J) at the current time, and works (J) from the start to this time.
+    """Energies (J) at the current time, and work (J) done from the start to this time.
 
     Examples
     --------
@@ -129,7 +131,7 @@ class Energy(NamedTuple):
     potential: float
     #: Energy stored in contacts and in force elements.
     elastic: float
-    #: Energy stored in the sticks of friction.
+    #: Energy stored in the tangential springs of friction.
     stick: float
     #: Energy lost in dampers and by yielding and breaking.
     damped: float
@@ -141,7 +143,7 @@ class Energy(NamedTuple):
     ground_work: float
     #: Work of the forces of :meth:`Simulation.apply_force`.
     applied_work: float
-    #: Stored and lost energy, less the initial energy and all work; zero for an exact integration.
+    #: Stored and lost energy minus the initial energy and all work; zero for an exact integration.
     residual: float
     #: Energy that has passed through the system.
     throughput: float
@@ -153,10 +155,10 @@ def _numbers(values: ArrayLike | None) -> list[float]:
 
 
 class Simulation:
-    """A run that advances step by step, can be acted upon, and can be copied at any time.
+    """A run that advances step by step, accepts external forces, and can be copied at any time.
 
-    Made by :meth:`Scenario.simulation`. Without forces, its results have the same bits as :meth:`Scenario.run` or
-    :meth:`Scenario.run_in_space`.
+    Made by :meth:`Scenario.simulation`. Without external forces, its results are bit-identical to those of
+    :meth:`Scenario.run` or :meth:`Scenario.run_in_space`.
 
     Examples
     --------
@@ -212,12 +214,13 @@ class Simulation:
         return self._native.collapse
 
     def step(self, count: int = 1) -> int:
-        """Advances by a number of steps; less if the run ends before.
+        """Advances by a number of steps, or by fewer if the run ends first.
 
         Parameters
         ----------
         count
-            Number of steps. The length of a step is that of the run; impacts divide a step into several.
+            Number of steps. A step has the length of the time step of the run; during impacts, it is divided into
+            shorter steps, and each of these counts.
 
         Returns
         -------
@@ -227,7 +230,7 @@ class Simulation:
         Raises
         ------
         KeyboardInterrupt
-            Within a second of Ctrl-C; the steps until then remain.
+            Within a second of Ctrl-C; the steps taken until then are kept.
         """
         return self._native.step(count)
 
@@ -237,7 +240,7 @@ class Simulation:
         Parameters
         ----------
         time
-            Simulated time (s); the last step may go beyond it by less than its length.
+            Simulated time (s); the simulation may pass this time by less than one step.
 
         Returns
         -------
@@ -267,9 +270,11 @@ class Simulation:
 
     @property
     def forces(self) -> dict[str, NDArray[np.float64]]:
-        """Contact forces (N) between bodies, on the one that is named first, by names such as ``"R1 on ground"``.
+        """Contact forces (N) between bodies, by names such as ``"R1 on ground"``. Each force acts on the body that is
+        named first.
 
-        In a plane along x and z, in space along x, y and z. Only bodies that touch are listed.
+        Its components are along x and z in a plane, and along x, y and z in three dimensions. Only bodies that touch
+        are listed.
         """
         return dict(self._native.forces())
 
@@ -286,18 +291,19 @@ class Simulation:
     def apply_force(
         self, body: str, force: ArrayLike, at: ArrayLike | None = None, moment: ArrayLike | None = None
     ) -> None:
-        """Sets the force on a body, in place of an earlier one; it is held until it is changed.
+        """Sets the external force on a body, in place of an earlier one. The force acts until it is changed.
 
         Parameters
         ----------
         body
             Name of a free body.
         force
-            Force (N) along x and z in a plane, along x, y and z in space; a force of zero removes the earlier one.
+            Force (N) along x and z in a plane, along x, y and z in three dimensions; a force of zero removes the
+            earlier one.
         at
             Point (m) at which the force acts, in the frame of the body; by default its center of mass.
         moment
-            Additional moment (N·m): one number in a plane, positive from x to z; three numbers in space.
+            Additional moment (N·m): one number in a plane, positive from x to z; three numbers in three dimensions.
 
         Raises
         ------
@@ -308,13 +314,13 @@ class Simulation:
 
         Notes
         -----
-        The work of the force is part of :attr:`energy`. A force that depends on velocities is held over the next steps,
-        so a strong damper needs a call for each step.
+        The work of the force is part of :attr:`energy`. The force is constant until the next call. A force that depends
+        strongly on velocity, such as that of a damper, should therefore be set again at every step.
         """
         self._native.apply(body, _numbers(force), _numbers(at), _numbers(moment))
 
     def reset(self, state: Simulation | None = None) -> None:
-        """Continues in the complete state of a copy, bit for bit.
+        """Sets the complete state to that of a copy, from which the run continues with bit-identical results.
 
         Parameters
         ----------
@@ -333,7 +339,7 @@ class Simulation:
         self._native.reset(self._start if state is None else state._native)
 
     def copy(self) -> Simulation:
-        """Returns a copy with the complete state: it continues with the same bits.
+        """Returns a copy with the complete state, which continues with bit-identical results.
 
         Returns
         -------
@@ -345,7 +351,7 @@ class Simulation:
         return made
 
     def result(self) -> Run | SpatialRun:
-        """Returns the result so far, with all recordings; before the end it counts as interrupted.
+        """Returns the result so far, with all recordings. Before the end of the run, the result counts as interrupted.
 
         Returns
         -------
@@ -373,7 +379,7 @@ class Simulation:
         Returns
         -------
         Run or SpatialRun
-            The result of a planar scenario or of one in space.
+            The result, depending on whether the scenario is planar or three-dimensional.
 
         Raises
         ------
@@ -401,7 +407,7 @@ class Simulation:
 class Simulations:
     """Variants of a scenario that advance together, on all cores.
 
-    Made by :meth:`Scenario.simulations`. Each has the same bits as when it advances alone.
+    Made by :meth:`Scenario.simulations`. Each gives bit-identical results whether it advances with others or alone.
 
     Examples
     --------
@@ -436,7 +442,8 @@ class Simulations:
 
     @property
     def time(self) -> NDArray[np.float64]:
-        """Simulated time (s) of each simulation, shape (simulations,); impacts take shorter steps."""
+        """Simulated time (s) of each simulation, shape (simulations,). Times differ, because steps are shorter during
+        impacts."""
         return self._native.times()
 
     @property
@@ -456,7 +463,7 @@ class Simulations:
         return State(native.times(), self.bodies, native.poses(), native.twists())
 
     def step(self, count: int = 1) -> NDArray[np.int64]:
-        """Advances every simulation by a number of steps; less where a run ends before.
+        """Advances every simulation by a number of steps, or by fewer if its run ends first.
 
         Parameters
         ----------
@@ -485,7 +492,8 @@ class Simulations:
         body
             Name of a free body.
         force
-            Forces (N), shape (simulations, 2) in a plane and (simulations, 3) in space; or one force for all.
+            Forces (N), shape (simulations, 2) in a plane and (simulations, 3) in three dimensions; or one force for
+            all.
         at
             Point (m) at which the forces act, in the frame of the body; by default its center of mass.
         moment
@@ -501,7 +509,7 @@ class Simulations:
         self._native.apply(body, forces, _numbers(at), turns)
 
     def reset(self, state: Simulations | None = None, where: Sequence[bool] | NDArray[np.bool_] | None = None) -> None:
-        """Continues in the complete state of a copy, bit for bit.
+        """Sets the complete state to that of a copy, from which the run continues with bit-identical results.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Results of a scenario in space."""
+"""Results of a three-dimensional scenario."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["OutcomeInSpace", "Poses", "SpatialRun"]
 
 
 class OutcomeInSpace(NamedTuple):
-    """Outcome of a run in space.
+    """Outcome of a three-dimensional run.
 
     Examples
     --------
@@ -48,7 +48,7 @@ class OutcomeInSpace(NamedTuple):
 
 
 class Poses(NamedTuple):
-    """Poses of all bodies in space, one set per frame.
+    """Poses of all bodies in three dimensions, one set per frame.
 
     Examples
     --------
@@ -68,7 +68,7 @@ class Poses(NamedTuple):
 
 
 class SpatialRun(Pictured[_native.SpatialRun]):
-    """Results of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
+    """Results of a three-dimensional scenario: ``x`` across the barrels, ``y`` along them, ``z`` up.
 
     Made by :meth:`Scenario.run_in_space`.
 
@@ -103,12 +103,14 @@ class SpatialRun(Pictured[_native.SpatialRun]):
     @property
     def ensemble(self) -> dict[str, Any] | None:
         """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, its ``range`` over the uncertain
-        constants of the seats, the effects of these constants (``decides``), modes; None without any."""
+        constants of the seats, the effects of these constants (``decides``), and the collapse modes; None if no
+        variants were run."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property
     def directions(self) -> dict[str, int] | None:
-        """Directions in which variants fall: first bodies and debris; None if no variants were run."""
+        """Directions in which the first body of each variant left its seat, and in which barrels fell; None if no
+        variants were run."""
         return self.summary["directions"]  # type: ignore[no-any-return]
 
     @property
@@ -170,7 +172,7 @@ class SpatialRun(Pictured[_native.SpatialRun]):
 
 
 class _KeptRun(Kept):
-    """Pickled run in space."""
+    """Pickled three-dimensional run."""
 
     def __init__(self, native: _native.SpatialRun) -> None:
         answers = ("summary", "bodies", "frame_times", "poses", "twists", "html")

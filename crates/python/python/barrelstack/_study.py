@@ -60,7 +60,7 @@ class Curve(NamedTuple):
     """
 
     limit_state: str
-    #: Median (SI unit of the measure); None if the data support no curve.
+    #: Median (SI unit of the measure); None if the data do not determine a curve.
     median: float | None
     #: Standard deviation of the logarithm.
     dispersion: float | None
@@ -122,7 +122,8 @@ class Fragility(Page):
 
     @property
     def curves(self) -> dict[str, Curve]:
-        """A curve for every limit state, by name: ``"collapse"`` first, then ``"fallen-1"``, one fallen barrel, and more."""
+        """A curve for every limit state, by name: first ``"collapse"``, then ``"fallen-1"`` (at least one fallen
+        barrel) and so on."""
         found: dict[str, Curve] = {}
         for one in self.document["fragility"]:
             raw = [[row["intensity"], row["cases"], row["failures"], *row["interval"]] for row in one["raw"]]
@@ -291,12 +292,12 @@ class Study:
 
     @property
     def fingerprint(self) -> str:
-        """Identifies the study; includes the contents of its records."""
+        """Hash that identifies the study, including the contents of its records."""
         return self._native.fingerprint
 
     @property
     def cases(self) -> int:
-        """Number of cases; of an adaptive design, the maximum."""
+        """Number of cases; for an adaptive design, the maximum number."""
         return self._native.cases
 
     @property
@@ -376,7 +377,7 @@ class Study:
         return self.collect(folder)
 
     def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool:
-        """Runs one chunk and writes its shard, unless the shard exists; it has the same bytes on every machine.
+        """Runs one chunk and writes its shard, unless the shard exists. A shard has the same bytes on every machine.
 
         Parameters
         ----------
@@ -590,7 +591,7 @@ class Study:
         Returns
         -------
         list of str
-            Missing parts, with reasons.
+            Parts that could not be exported, with reasons.
         """
         files, notes = _native.export(os.fspath(folder), asset)
         os.makedirs(out, exist_ok=True)
