@@ -50,7 +50,7 @@ described! {
         pub steps: u64,
         /// Largest distance by which a body sank into its contacts.
         pub deepest_sinking: f64 as "m",
-        /// Remaining unbalanced force, as a fraction of gravity.
+        /// Largest residual acceleration of any body, as a fraction of gravity.
         pub unbalanced: f64 as "1",
         /// Friction locked in while the stack settled, as a fraction of the normal forces.
         pub locked_friction: f64 as "1",

@@ -48,8 +48,8 @@ impl Demand {
     }
 }
 
-/// Declares the demands. Each line has a doc comment, the key and the unit in files, the label, the displayed factor,
-/// unit and decimals, and the source.
+/// Declares the demands. Each line has a doc comment, the key and the unit in files, the label, the factor, the unit
+/// and the decimals for display, and the source.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+

@@ -11,7 +11,7 @@ use crate::rest::Restless;
 use crate::run::{RunFailure, check_length, time_step};
 use crate::scenario::{Scenario, Scene};
 
-/// Largest unbalanced force of a stack at rest, as a fraction of gravity.
+/// Residual acceleration, as a fraction of gravity, below which a stack counts as being at rest.
 pub const UNBALANCED: f64 = 1e-10;
 
 /// Minimum number of stacks or cases of one topology that run in lanes.

@@ -74,7 +74,7 @@ class BarrelFields(TypedDict, total=False):
     """A barrel of the catalog, with any changes."""
 
     base: Literal["bordeaux-225", "burgundy-228", "hogshead-300", "puncheon-500"]
-    """Barrel of the catalog on which the barrel is based. Default: bordeaux-225."""
+    """Catalog barrel on which this barrel is based. Default: bordeaux-225."""
     bilge_diameter: Quantity
     """Outer diameter at the bilge, the widest part. Default: the value of the catalog."""
     capacity: Quantity
@@ -84,8 +84,8 @@ class BarrelFields(TypedDict, total=False):
     fill: Literal["full-fluid", "full-frozen", "part", "empty"]
     """Contents, and whether they rotate with the barrel. Default: full-fluid."""
     filled: Union[float, Quantity]
-    """Fraction of the capacity that is filled, for barrels whose `fill` is "part", here or in an override.
-    Default: 0.9.
+    """Filled fraction of the capacity, for barrels whose `fill` is set to "part" here or in an override. Default:
+    0.9.
     """
     head_diameter: Quantity
     """Outer diameter at the heads. Default: the value of the catalog."""
@@ -416,8 +416,8 @@ class ImperfectionsFields(TypedDict, total=False):
     """
 
     drawn: bool
-    """True to draw the position and the mass of every rack and barrel; false to keep them as stated in all
-    variants. Default: true.
+    """True to draw the position and the mass of every rack and barrel at random; false to keep them as stated in
+    all variants. Default: true.
     """
     mass: Union[float, Quantity]
     """Standard deviation of the mass of every barrel and rack, as a fraction of that mass. The mass is normally
@@ -1196,7 +1196,7 @@ class UnknownsFields(TypedDict, total=False):
     becomes a restitution between 0.69 and 0.88 in nineteen of twenty variants. Default: 0.3.
     """
     drawn: bool
-    """True to draw the constants; false to keep all of them as stated in all variants. Default: true."""
+    """True to draw the constants at random; false to keep them as stated in all variants. Default: true."""
     friction: Union[float, Quantity]
     """Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic
     friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels;

@@ -119,7 +119,7 @@ fn element(
     element
 }
 
-/// Group and outer boundaries of a body.
+/// Group of a body, and the boundaries that other bodies can touch.
 struct Outer<'a> {
     group: Option<&'a str>,
     boundaries: Vec<Boundary<'a>>,

@@ -83,7 +83,7 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     })
 }
 
-/// Returns the spacing (m) of racks, divided by the number of barrels that a rack carries end to end.
+/// Returns the spacing (m) of racks along the barrels, divided by the number of barrels that a rack carries end to end.
 ///
 /// The spacing follows from the length of the barrels, or from the length of the frame if the frame is longer.
 fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {

@@ -23,7 +23,7 @@ pub fn cup(rack: &Rack) -> f64 {
 ///
 /// `spacing` is the distance (m) of the posts from the middle of the rack below.
 pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
-    // A foot stands on a post of its own width, so it is off the post once displaced by that width.
+    // A foot and its post have the same width, so the foot is off the post once it is displaced by that width.
     rack.rail_width.min(spacing)
 }
 

@@ -126,7 +126,7 @@ impl TunedMass {
         if self.level == 0 { levels } else { self.level }
     }
 
-    /// Returns the spring, damper and stops of a mass along an axis of the first body of a link.
+    /// Returns the spring, damper and stops of a mass, along an axis of the link's first body.
     ///
     /// `share` is the fraction of the mass that the model contains.
     pub fn swing<S: Space<Real = f64>>(
@@ -150,7 +150,7 @@ impl TunedMass {
         }
     }
 
-    /// Returns the stiff support of a mass along an axis of the first body of a link.
+    /// Returns the stiff support of a mass, along an axis of the link's first body.
     ///
     /// `share` is the fraction of the mass that the model contains.
     pub fn hold<S: Space<Real = f64>>(

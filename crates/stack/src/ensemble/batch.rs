@@ -72,7 +72,7 @@ struct Batch<'a, 'b, R: Real> {
     next: usize,
     /// Index, in the group, of the run in every lane.
     runs: Vec<usize>,
-    /// Fates of the bodies of every lane; `None` before the first run is loaded.
+    /// Fates of the bodies in every lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
     /// Observer of the contact stresses in every lane.
     stresses: StressWatch<R>,

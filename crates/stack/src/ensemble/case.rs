@@ -71,7 +71,7 @@ pub struct CaseResult {
     pub end_time: Option<f64>,
     /// Number of accepted steps.
     pub steps: Option<u64>,
-    /// Residual of the energy balance divided by the energy throughput.
+    /// Residual of the energy balance divided by the energy that passed through the system.
     pub energy_residual_ratio: Option<f64>,
     /// Warnings for the reader of the result.
     pub warnings: Vec<String>,

@@ -8,13 +8,13 @@ use super::CUT;
 use crate::outcome::Outcome;
 use crate::watch::Ending;
 
-/// Ratio of the energy residual to the energy throughput above which a run is invalid.
+/// Ratio of the energy residual to the energy that passed through the system above which a run is invalid.
 ///
 /// This limit is a hundred times the ratio that leads to a warning, and two thousand times the ratio with an adequate
 /// time step.
 const BOOKS_BROKEN: f64 = 0.1;
 
-/// Ratio of the energy residual to the energy throughput above which a run has a warning.
+/// Ratio of the energy residual to the energy that passed through the system above which a run has a warning.
 const BOOKS_OPEN: f64 = 1e-3;
 
 /// Totals of a run that reached its end.
@@ -84,8 +84,8 @@ impl Ended {
 /// Returns the message that a run is invalid because its energy balance does not close.
 fn broken_balance(energy: &EnergySummary) -> String {
     format!(
-        "the energy balance is off by {:.2e} times the energy that went through, so the computed motion is \
-         meaningless: leave out run.step, or try a tenth of it",
+        "the energy balance is off by {:.2e} times the energy that passed through the system, so the computed motion \
+         is meaningless: leave out run.step, or try a tenth of it",
         energy.residual_ratio()
     )
 }
@@ -94,7 +94,7 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     let ratio = energy.residual_ratio();
     (ratio > BOOKS_OPEN).then(|| {
         format!(
-            "the energy balance is off by {:.2} % of the energy that went through: try half the step \
+            "the energy balance is off by {:.2} % of the energy that passed through the system: try half the time step \
              (run.step)",
             100.0 * ratio
         )

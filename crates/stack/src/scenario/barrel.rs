@@ -61,12 +61,12 @@ known! {
     }
     /// The fields of a barrel.
     const FIELDS, after {
-        /// Barrel of the catalog on which the barrel is based.
+        /// Catalog barrel on which this barrel is based.
         base = Kind::Choice(catalog::barrel_names), Default::Value("\"bordeaux-225\"");
     };
     /// Contents, and whether they rotate with the barrel.
     fill: Fill = Kind::Choice(names::<Fill>), Default::Value("\"full-fluid\"");
-    /// Fraction of the capacity that is filled, for barrels whose `fill` is "part", here or in an override.
+    /// Filled fraction of the capacity, for barrels whose `fill` is set to "part" here or in an override.
     filled: f64 = Kind::Number(FILLED), Default::Value("0.9");
     /// Mass of wood and contents.
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),

@@ -24,7 +24,8 @@ section! {
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the random numbers from which the imperfections and the unknown constants of the variants are drawn.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
-    /// True to draw the position and the mass of every rack and barrel; false to keep them as stated in all variants.
+    /// True to draw the position and the mass of every rack and barrel at random; false to keep them as stated in all
+    /// variants.
     drawn: bool = Kind::Flag, Default::Value("true");
     /// Largest offset, to either side, of every rack on its supports and of every barrel in its cradle. The offset is
     /// uniformly distributed and drawn for each body. The default is an assumption: forklifts do not place racks and

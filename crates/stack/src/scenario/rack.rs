@@ -47,7 +47,8 @@ choices! {
 named! {
     /// Division of a seat into contact elements.
     ///
-    /// With constants per node, the division affects the physics. Constants per seat are divided among the elements.
+    /// With constants per node, the division affects the results. Constants per seat are divided among the elements, so
+    /// that the sum does not depend on the division.
     pub enum SeatContact {
         /// Nodes along flat undersides, and one node at each support of a cradle, as in the paper.
         Nodes = "nodes",
@@ -102,7 +103,7 @@ known! {
     }
     /// The fields of all racks.
     const FIELDS, after {
-        /// Rack of the catalog on which the rack is based.
+        /// Catalog rack on which this rack is based.
         base = Kind::Choice(catalog::rack_names), Default::Value("\"two-barrel\"");
     };
     /// Mass of one rack.

@@ -17,7 +17,7 @@ section! {
     /// deviations. They are independent of each other, except those of friction if a correlation is stated. A value of
     /// 0 keeps a constant as stated.
     pub static UNKNOWNS = "unknowns";
-    /// True to draw the constants; false to keep all of them as stated in all variants.
+    /// True to draw the constants at random; false to keep them as stated in all variants.
     drawn: bool = Kind::Flag, Default::Value("true");
     /// Standard deviation of ln μ where racks or barrels touch each other, the same for static and kinetic friction.
     /// One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels; these values
