@@ -4,7 +4,7 @@ import numpy as np
 
 from barrelstack import Record, Scenario
 
-# Any samples will do; these are those of the bundled record.
+# Any samples will do; these are the samples of the bundled record.
 own = Record.bundled()["E"]
 samples = np.array(own.acceleration) / 9.80665
 record = Record.from_arrays(samples, own.time_step, unit="g", raw=True).process("compact").scale(pgv="80 cm/s")

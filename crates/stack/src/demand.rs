@@ -170,7 +170,7 @@ impl Sources<'_> {
         (0..self.assembly.parts.len()).filter_map(|body| of(self, body)).reduce(larger)
     }
 
-    /// Returns the fate of a body if it has the given kind and level; `None` for any other body.
+    /// Returns the outcome for a body if it has the given kind and level; `None` for any other body.
     fn fate(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<Fate> {
         let part = &self.assembly.parts[body];
         let wanted = part.kind == kind && level.is_none_or(|level| part.level == Some(level));

@@ -1,8 +1,8 @@
 //! Ensembles: many cases that run together and keep only their results.
 //!
-//! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has ended takes the next
-//! case. The result of every case is bit-identical to the result of running the case alone, whatever cases run beside
-//! it and however many lanes there are.
+//! Cases of the same topology run side by side in the lanes of a vector register; a lane whose case has ended takes the
+//! next case. The result of every case is bit-identical to the result of running the case alone, whatever cases run
+//! beside it and however many lanes there are.
 
 mod batch;
 mod case;

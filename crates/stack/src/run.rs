@@ -45,9 +45,9 @@ pub struct Run {
     pub ground: Ground,
     /// The outcome.
     pub outcome: Outcome,
-    /// Fates of all bodies.
+    /// Losses of seats, falls and largest motions of all bodies.
     pub fates: Fates,
-    /// Fates of all force elements, in the order of the model.
+    /// Largest forces and failures of all force elements, in the order of the model.
     pub elements: Vec<ElementFate>,
     /// Normal contact stress along the boundary of every barrel and rack.
     pub stresses: Stresses,

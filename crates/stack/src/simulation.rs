@@ -274,7 +274,7 @@ impl Simulation {
         self.stepper.energy.summary(0)
     }
 
-    /// Returns the fates of all bodies so far.
+    /// Returns the losses of seats, falls and largest motions of all bodies so far.
     pub fn fates(&self) -> &Fates {
         &self.watch.fates
     }

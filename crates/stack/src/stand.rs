@@ -14,7 +14,7 @@ use crate::scenario::{Scenario, Scene};
 /// Residual acceleration, as a fraction of gravity, below which a stack counts as being at rest.
 pub const UNBALANCED: f64 = 1e-10;
 
-/// Minimum number of stacks or cases of one topology that run in lanes.
+/// Minimum number of stacks or cases of the same topology that are run in vector lanes.
 ///
 /// Running in lanes costs as much as about three single runs, even if few lanes are used.
 pub(crate) const FEWEST: usize = 3;
@@ -93,7 +93,7 @@ pub fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure>
 
 /// Settles built stacks and installs their devices; `None` if stopped.
 ///
-/// Stacks of one topology settle side by side, and the result of each is bit-identical to settling it alone.
+/// Stacks of the same topology settle side by side, and the result of each is bit-identical to settling it alone.
 pub(crate) fn stand_all(
     width: Width,
     stacks: &mut [Stack<'_>],
@@ -167,7 +167,7 @@ fn rest(
     Some(())
 }
 
-/// Task that settles stacks of one topology in lanes.
+/// Task that settles stacks of the same topology in vector lanes.
 struct Settling<'a> {
     stacks: Vec<settle::Stack<'a>>,
     stop: &'a dyn Fn() -> bool,

@@ -63,11 +63,11 @@ const RESTITUTION_SHARE: f64 = 0.005;
 /// closing speed of 40 m/s at steps of 1 ms.
 const FORESEEN_REBOUND: f64 = 0.05;
 
-/// Radius (m) above which a round piece counts as nearly straight: first for contacts with constants per seat, then for
-/// other contacts.
+/// Radius (m) above which an arc of a boundary counts as nearly straight. The first value is for contacts with
+/// constants per seat, the second for other contacts.
 ///
-/// The lever arms of pieces with a smaller radius, such as the staves of the paper's cases, are overestimated by a
-/// factor of up to four.
+/// The lever arms of arcs with a smaller radius, such as the staves of the paper's cases, are overestimated by a factor
+/// of up to four.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
 /// Time step of a model, and its division during impacts.
@@ -347,7 +347,7 @@ fn facing(
             let two: f64 = nodes.iter().take(2).map(|n| weight(n.tributary_length)).sum();
             (share(nodes) * total).max(two)
         }
-        // At most two round pieces of a convex boundary are in contact at the same time.
+        // At most two corners or arcs of a convex boundary are in contact at the same time.
         Nodes::Rounds(rounds) => {
             rounds.iter().take(2).map(|round| weight(round.tributary_length)).sum()
         }
@@ -381,8 +381,8 @@ fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     }
 }
 
-/// Returns an upper bound of the lever arm (m) of the normal force on a round piece, whose normals pass through its
-/// center of curvature.
+/// Returns an upper bound of the lever arm (m) of the normal force on a round piece (a corner or an arc), whose normals
+/// pass through its center of curvature.
 ///
 /// The center of curvature of nearly straight staves is hundreds of meters away, but contacts lie between the ends of
 /// the staves. For such pieces, the bound is therefore the lever arm of the normal at one of the two ends, whichever

@@ -1,4 +1,4 @@
-//! Run observers: frames, histories, stress envelopes, and fates of bodies.
+//! Run observers: frames, histories, stress envelopes, and losses of seats and falls.
 
 mod elements;
 mod fate;
@@ -82,11 +82,11 @@ impl End {
     }
 }
 
-/// Duration (s), at full scale, that a run continues after the first loss of a seat if the run ends by the verdict.
+/// Duration (s), at full scale, for which a run that ends by the verdict continues after the first loss of a seat.
 pub const VERDICT: f64 = 2.0;
 
-/// Returns the duration (s) that a run continues after a collapse, at the time scale of the scenario; infinity for no
-/// limit.
+/// Returns the duration (s) for which a run continues after a collapse, at the time scale of the scenario; infinity for
+/// no limit.
 pub fn after_collapse(scenario: &Scenario) -> f64 {
     let run = &scenario.run;
     let by_verdict = (run.until == Until::Verdict).then_some(VERDICT);

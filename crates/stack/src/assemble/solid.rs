@@ -59,7 +59,7 @@ pub(super) struct Touch {
     pub(super) seat: Seat,
     /// `true` if the solid never touches a barrel.
     pub(super) out_of_plane: bool,
-    /// Index of the node set for exact tests: the round pieces, or the rolling node of a circle.
+    /// Index of the node set for exact tests: the corners and arcs, or the rolling node of a circle.
     pub(super) exact: usize,
     /// The underside, if it carries nodes.
     pub(super) below: Option<NodedFace>,
@@ -72,7 +72,7 @@ pub(super) struct Touch {
 pub(super) struct NodedFace {
     /// Index of the set of nodes along the face.
     pub(super) nodes: usize,
-    /// Index of the set of round pieces that are not ends of the face.
+    /// Index of the set of corners and arcs that are not ends of the face.
     pub(super) others: usize,
     /// Index of the face in its body.
     pub(super) face: usize,
@@ -84,7 +84,7 @@ pub(super) struct NodedFace {
 /// belongs to the face.
 const ROUND: f64 = -2.0;
 
-/// Distance (m) from a face within which a round piece counts as an end of the face.
+/// Distance (m) from a face within which a corner or an arc counts as an end of the face.
 const AT_END: f64 = 1e-9;
 
 impl Solid {

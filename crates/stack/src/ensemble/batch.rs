@@ -16,7 +16,7 @@ use crate::watch::{self, Ending, Fates, Joints, StressWatch};
 /// Number of steps between two polls of the stop request.
 const PATIENCE: u32 = 1024;
 
-/// Runs a group of cases with one topology and method in lanes; if stopped, returns the results so far.
+/// Runs a group of cases with the same topology and method in vector lanes; if stopped, returns the results so far.
 pub(super) fn run(
     width: Width,
     method: Method,
@@ -72,7 +72,7 @@ struct Batch<'a, 'b, R: Real> {
     next: usize,
     /// Index, in the group, of the run in every lane.
     runs: Vec<usize>,
-    /// Fates of the bodies in every lane; `None` before the first run is loaded.
+    /// Losses of seats and falls in every lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
     /// Observer of the contact stresses in every lane.
     stresses: StressWatch<R>,

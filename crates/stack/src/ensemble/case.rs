@@ -98,7 +98,7 @@ impl CaseResult {
         matches!(self.outcome, Ok(Outcome::Interrupted))
     }
 
-    /// Creates the result of a case that ran until a time (s), from its verdict and the fates of its bodies.
+    /// Creates the result of a case that ran until a time (s), from its verdict and the outcomes for its bodies.
     pub(super) fn of(
         assembly: &Assembly,
         ground: &Ground,

@@ -69,8 +69,8 @@ impl Grounds {
 /// Runs `count` cases on all cores and returns their table, one row per case; `None` if stopped.
 ///
 /// `make` creates a case from its number, and the rows are in the order of the numbers. The observer is called for
-/// every case and may stop the run. A case that cannot be created has a row with the reason as its error. Cases of one
-/// topology run together if `kind` returns the same value for them; results do not depend on `kind`.
+/// every case and may stop the run. A case that cannot be created has a row with the reason as its error. Cases of the
+/// same topology run together if `kind` returns the same value for them; results do not depend on `kind`.
 ///
 /// ```
 /// use std::ops::ControlFlow;

@@ -41,7 +41,7 @@ pub struct Language {
     pub names: fn() -> Vec<&'static str>,
 }
 
-/// The language of scenarios.
+/// The file language of scenarios.
 pub(super) const SCENARIO: Language =
     Language { root: &root::ROOT, builtin: builtin::get, names: || builtin::names().collect() };
 

@@ -1,4 +1,4 @@
-//! Fate of every body: loss of seat, fall, slip and tilt.
+//! Outcome for every body: loss of seat, fall, slip and tilt.
 
 use barrelstack_dynamics::lanes::PerLane;
 use barrelstack_dynamics::real::{Mask, Real};
@@ -107,7 +107,8 @@ impl Fate {
     }
 }
 
-/// Observer of the fates of all bodies in one run, or in one run per lane. It must observe every accepted step.
+/// Observer of losses of seats, falls and largest motions of all bodies, in one run or in one run per lane. It must
+/// observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<R: Real = f64> {
     /// Drop (m) beyond which a body has fallen.
@@ -141,7 +142,7 @@ lanewise!(struct Followed<R> {
 });
 lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 
-/// A body with its limits and its fate so far.
+/// A body, its limits, and its outcome so far.
 #[derive(Clone, Debug)]
 struct Followed<R: Real> {
     support: BodySupport,
@@ -175,7 +176,7 @@ struct Followed<R: Real> {
 }
 
 impl Fates {
-    /// Creates the fates of a stack at rest.
+    /// Creates the observer of a stack that is at rest.
     pub fn new(assembly: &Assembly, state: &State<Planar>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Assembly::GROUND].position;
         let follow = |(i, part): (usize, &Part)| {
@@ -235,7 +236,7 @@ impl Fates {
         self.bodies[body].rest
     }
 
-    /// Returns the fate of a body.
+    /// Returns the outcome for one body.
     pub fn fate(&self, body: BodyId) -> Fate {
         let followed = &self.bodies[body];
         Fate {

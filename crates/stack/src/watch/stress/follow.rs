@@ -292,7 +292,7 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Starts to observe a run in a lane; all runs that are observed together have one topology.
+    /// Starts to observe a run in a lane; all runs that are observed together have the same topology.
     pub(crate) fn begin(&mut self, lane: usize, mut single: StressWatch) {
         if self.pairs.is_empty() {
             self.pairs = Lanewise::in_all(&single.pairs);
