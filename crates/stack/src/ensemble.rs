@@ -34,8 +34,8 @@ pub use work::{Share, Stage, Work};
 
 /// Version of the results of an ensemble.
 ///
-/// It is raised with every change of the program that may change a bit of any result, so that results of two versions
-/// are never combined.
+/// The version is raised with every change of the program that may alter a bit of any result, so that results of
+/// different versions are never combined.
 pub const VERSION: u32 = 13;
 
 /// Number of cases that a thread takes at once: enough to fill its lanes, few enough to leave work for all threads.

@@ -126,9 +126,10 @@ impl Barrel {
     /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
     /// capacity. The mass of the contents is `mass` minus `empty_mass`. A frozen filling rotates with the wood. An
     /// ideal fluid does not rotate about the axis, except for a layer at the wall that is half as thick as the Stokes
-    /// layer at 1 Hz. About a transverse axis, the effective moment of inertia of an ideal fluid is taken as `(I_t -
-    /// I_a)² / I_t`, which holds for the fluid in a spheroid with the same transverse and axial moments `I_t` and `I_a`
-    /// of the frozen filling (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
+    /// layer at 1 Hz. About a transverse axis, the effective moment of inertia of an ideal fluid is taken as
+    /// `(I_t - I_a)² / I_t`. This holds for the fluid in a spheroid with the same moments; `I_t` and `I_a` are the
+    /// transverse and the axial moment of the frozen filling (Lamb, Hydrodynamics, on the ellipsoidal shell filled with
+    /// liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
