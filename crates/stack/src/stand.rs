@@ -124,7 +124,8 @@ pub(crate) fn stand_all(
     Some(())
 }
 
-/// Settles the wanted stacks and replaces those that fail by errors; `None` if stopped.
+/// Settles the stacks that `wanted` selects, and replaces each stack that fails by its error. Returns `None` if
+/// stopped.
 fn rest(
     width: Width,
     stacks: &mut [Stack<'_>],

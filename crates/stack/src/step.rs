@@ -38,9 +38,9 @@ pub const WHOLE_STEP: f64 = 0.05;
 /// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], including tangential
 /// springs.
 ///
-/// Bodies at rest require stability only. For resting contacts, steps are not divided up to twice the penetration
-/// [`WHOLE_STEP`]. At twice this penetration, the step is 0.83 of the critical step, since the stiffness grows with the
-/// square root of the penetration.
+/// Bodies at rest require stability only. For resting contacts, steps are not divided at penetrations up to twice
+/// [`WHOLE_STEP`]. At this limit, the step is 0.83 of the critical step, since the stiffness grows with the square root
+/// of the penetration.
 pub const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Load on the lightest body through impact contacts, divided by the weight of the heaviest body.

@@ -617,8 +617,8 @@ class NodesFields(TypedDict, total=False):
     list: list["NodeFields"]
     """Nodes at chosen points."""
     rule: Literal["corners", "rolling", "exact"]
-    """Nodes at the corners; one node at the deepest point of a circle; or exact contact, in which convex outlines
-    touch each other at their deepest points, if both bodies have this rule.
+    """Nodes at the corners, one node at the deepest point of a circle, or exact contact. In exact contact, which
+    both bodies must have as their rule, convex outlines touch each other at their deepest points.
     """
     spacing: Quantity
     """Largest distance between nodes along the boundary."""
@@ -675,8 +675,8 @@ class OverrideFields(TypedDict, total=False):
 
 
 class PadFields(TypedDict, total=False):
-    """Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still
-    applies to racks that lie on barrels.
+    """Elastomer pads between all barrels and their cradles. Their contact law replaces `interface.barrel-rack` in
+    the cradles, but not where racks lie on barrels.
     """
 
     damping: Quantity
@@ -1202,8 +1202,8 @@ class UnknownsFields(TypedDict, total=False):
     friction. One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels;
     these values also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer
     on smooth steel and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut
-    (Villar-García et al. 2020), 0.37 to 0.45 for pallets on steel racks. A standard deviation of 0.35, which is
-    an assumption, puts nine in ten variants within a factor of 1.8. Default: 0.35.
+    (Villar-García et al. 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with
+    0.35, nine in ten variants have a μ within a factor of 1.8 of the stated value. Default: 0.35.
     """
     friction_barrel_rack: Union[float, Quantity]
     """Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. It is then
@@ -1243,9 +1243,9 @@ class UnknownsFields(TypedDict, total=False):
     """
     stiffness: Union[float, Quantity]
     """Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default
-    is an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants lie within a
-    factor of 3.2: from the value measured by Candia, de la Llera and Almazán (2008) to the value of a stave
-    clamped between hoops. Default: 0.6.
+    is an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants have a k
+    within a factor of 3.2 of the stated value. This range reaches from the value measured by Candia, de la
+    Llera and Almazán (2008) to the value of a stave clamped between hoops. Default: 0.6.
     """
 
 

@@ -7,8 +7,7 @@ use super::Similitude;
 use super::bundle::Bundle;
 use crate::scenario;
 
-/// Penetration (m) at which the tangent stiffness of a nonlinear normal law determines the stiffness of the tangential
-/// spring.
+/// Penetration (m) at which a nonlinear normal law is linearized to obtain the stiffness of the tangential spring.
 const STICK_REFERENCE: f64 = 2e-4;
 
 /// Damping ratio of the tangential spring of a rebound law, at a contact that carries the mass [`STICK_MASS`].

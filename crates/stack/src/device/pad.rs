@@ -47,8 +47,8 @@ section! {
     /// Pads between barrels and their cradles.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Pads;
-    /// Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still applies
-    /// to racks that lie on barrels.
+    /// Elastomer pads between all barrels and their cradles. Their contact law replaces `interface.barrel-rack` in the
+    /// cradles, but not where racks lie on barrels.
     pub static SECTION = "pad";
     /// Stiffness of the pad at one support of a cradle; if not given, there are no pads.
     stiffness: Option<f64> =

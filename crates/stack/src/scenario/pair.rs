@@ -8,10 +8,11 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// Impact stiffness (N/m^1.5) of pairs with barrels, and of seats at the end of their stroke.
+/// Impact stiffness (N/m^1.5) of pairs that include a barrel, and of seats at the end of their stroke.
 ///
 /// With this stiffness, a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) is stopped within 15
-/// mm. This is an assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
+/// mm. This is an assumption, since no measurement is known. In cellars, barrels bounced clearly, burst and lost their
+/// bungs.
 const HEAVY: f64 = 1.2e9;
 
 /// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.

@@ -180,7 +180,7 @@ static BASES: [Variant; catalog::RACKS.len()] = {
     bases
 };
 
-/// Returns the seat constants of the catalog rack on which the rack of a table is based.
+/// Returns the seat constants of the catalog rack that a table names as the base of its rack.
 pub(super) fn seats(reader: &Reader<'_>) -> Result<catalog::Seats, ScenarioError> {
     let known = catalog::rack(reader.chosen()?).ok_or_else(|| reader.missing("base"))?;
     Ok(known.seats)

@@ -192,8 +192,8 @@ impl Host {
         merge::node_at(&self.table, &path.split('.').collect::<Vec<_>>())
     }
 
-    /// Returns an error at the place of the first of the given paths at which a value was written; if there is none,
-    /// the place is the file.
+    /// Returns an error with its place: that of the value at the first given path at which a value was written, or the
+    /// whole file if there is no such path.
     pub fn error(&self, paths: &[&str], message: String) -> ScenarioError {
         let written = paths.iter().find_map(|path| self.node(path)).map(|node| node.origin);
         self.sources.error(written.unwrap_or(Origin::Whole(0)), Problem::Inconsistent { message })

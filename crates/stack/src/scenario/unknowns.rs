@@ -23,8 +23,8 @@ section! {
     /// One value is drawn for barrels on racks, one for racks on racks, and one for barrels on barrels; these values
     /// also apply to bodies that have fallen. Shear tests give μ = 0.10 to 0.30 for laminated veneer on smooth steel
     /// and up to 0.80 on rough steel (Dorn et al. 2021), 0.28 to 0.55 for chestnut on chestnut (Villar-García et al.
-    /// 2020), 0.37 to 0.45 for pallets on steel racks. A standard deviation of 0.35, which is an assumption, puts nine
-    /// in ten variants within a factor of 1.8.
+    /// 2020), 0.37 to 0.45 for pallets on steel racks. The default is an assumption; with 0.35, nine in ten variants
+    /// have a μ within a factor of 1.8 of the stated value.
     friction: f64 = DISPERSION, Default::Value("0.35");
     /// Standard deviation of ln μ of barrels on racks only, to be stated if this friction was measured. It is then the
     /// scatter of ln μ from one pair of barrel and rack to another.
@@ -37,9 +37,9 @@ section! {
     /// this correlation: a wet cellar is wet everywhere, but steel, wood and floors differ in roughness.
     friction_correlation: f64 = Kind::Number(Range::between(0.0, 0.95)), Default::Value("0");
     /// Standard deviation of ln k, where k is the stiffness of seats; one value is drawn for all seats. The default is
-    /// an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants lie within a factor
-    /// of 3.2: from the value measured by Candia, de la Llera and Almazán (2008) to the value of a stave clamped
-    /// between hoops.
+    /// an assumption, since nobody has measured these racks. With 0.6, nineteen in twenty variants have a k within a
+    /// factor of 3.2 of the stated value. This range reaches from the value measured by Candia, de la Llera and Almazán
+    /// (2008) to the value of a stave clamped between hoops.
     stiffness: f64 = DISPERSION, Default::Value("0.6");
     /// Standard deviation of ln k of impacts; one value is drawn for all impacts. The default is an assumption.
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");

@@ -30,7 +30,7 @@ const CALM: f64 = 0.02;
 /// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
 
-/// Ratio of the height of the center of a barrel to its radius up to which the barrel counts as lying on the floor.
+/// Largest height of the center of a barrel that counts as lying on the floor, divided by the radius of the barrel.
 pub const ON_FLOOR: f64 = 1.05;
 
 /// Reason for the end of a run.

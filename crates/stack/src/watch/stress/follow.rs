@@ -25,9 +25,9 @@ pub(super) struct Bounds<R: Real = f64> {
     pub(super) from: Vec2<R>,
     /// First point or direction past the range.
     pub(super) to: Vec2<R>,
-    /// `true` if the place is above the axis of a barrel; on a rack, `true` if the place is known.
+    /// On a barrel, `true` if the range is above the axis; on a rack, `true` if the range is known.
     pub(super) above: R::Mask,
-    /// The largest force (N) at the place.
+    /// Largest force (N) since the contact point entered the range.
     most: R,
 }
 
