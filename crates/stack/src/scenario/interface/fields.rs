@@ -66,12 +66,12 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack: with a linear law per seat, the stiffness that the catalog gives for the seats of the rack; with a \
-         linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
+        "in a stack: with a linear law per seat, the stiffness that the catalog gives for the seats of the rack; with \
+         a linear law per node, 9.8 kN/cm; with a rebound law per node, 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between \
          racks and from a fallen rack to the ground; must be given otherwise",
     ),
-    "Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in N/m^1.5 or \
-     N/m^2.5.",
+    "Stiffness k: for a linear law, in N/m per seat or node, or in N/m^2 per length; with the exponent 1.5, in N/m^1.5 \
+     or N/m^2.5.",
 );
 
 const FRICTION_FIELD: Field = Field::new(
@@ -205,8 +205,8 @@ pub static FREE_INTERFACE: Section = Section {
             "between",
             Kind::Pair,
             Default::Required,
-            "The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order does \
-             not matter.",
+            "The two kinds: the first has the contact nodes, the second the surface; in three dimensions, the order \
+             does not matter.",
         ),
         Field::new(
             "within_groups",
