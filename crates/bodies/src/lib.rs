@@ -1,4 +1,5 @@
-//! Bodies in space: the `[[body]]` tables of a free scene in space, and the model bodies built from them.
+//! Three-dimensional bodies: the `[[body]]` tables of a free scene in three dimensions, and the model bodies built from
+//! them.
 //!
 //! ```text
 //! [[body]] ─ body ─▶ SpatialBody { solid, … } ─ SpatialBody::build ─▶ Body<Spatial>, a body of a model

@@ -47,16 +47,16 @@ pub(crate) struct Foreign {
     pub(crate) bodies: Vec<(usize, usize)>,
     /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
-    /// Laws between contact kinds.
+    /// Rules for contacts between contact kinds.
     pub(crate) crossing: Arc<Crossing>,
     /// Number of pair indices that are reserved for every two bodies.
     pub(crate) most: usize,
 }
 
 impl Foreign {
-    /// Returns the data from which the pairs of two bodies follow, given with the lower ID first: contactor, target,
-    /// interface, and the numbers of node sets and surfaces that may touch. Returns `None` if the bodies belong to one
-    /// party or never touch.
+    /// Returns the data from which the pairs of two bodies follow: contactor, target, interface, and the numbers of
+    /// node sets and surfaces that may touch. The body with the lower ID is given first. Returns `None` if the bodies
+    /// belong to one party or never touch.
     #[inline(always)]
     fn of(&self, [a, b]: [BodyId; 2]) -> Option<(BodyId, BodyId, InterfaceId, [usize; 2])> {
         let ((first, one), (second, other)) = (self.bodies[a], self.bodies[b]);
@@ -180,7 +180,7 @@ impl Pairs {
         self.of_couple(between(pair)).find(found)
     }
 
-    /// Returns the number from which on pairs join bodies of two parties.
+    /// Returns the lowest number of the pairs between bodies of two parties.
     pub(crate) fn first_foreign(&self) -> usize {
         match self {
             Self::Listed { pairs, .. } | Self::Joined { pairs, .. } => pairs.len(),
@@ -188,7 +188,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the numbers of the pairs of two bodies, given with the lower ID first.
+    /// Returns the numbers of the pairs of two bodies; the lower ID is given first.
     pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
         let listed = |couples: &[Couple]| {
             couples

@@ -66,7 +66,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Returns the maximum over all periods of the relative error of the median.
+    /// Returns the relative error of the median at the period at which this error is largest.
     pub fn median_error(&self, target: &SelectionTarget) -> f64 {
         let errors = self.mean.iter().zip(target.mean());
         errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
@@ -99,8 +99,8 @@ const SMALLEST: f64 = 0.01;
 /// Selects records whose spectra together have the mean and the spread of the target (Jayaram, Lin and Baker
 /// 2011, Earthquake Spectra 27:797-815).
 ///
-/// If the target is conditional, every record is scaled to the target at the period of the condition.
-/// Otherwise every record is scaled to the mean over the periods of ln Sa of its simulated spectrum. The same
+/// If the target is conditional, every record is scaled to the target at the period of the condition. Otherwise every
+/// record is scaled such that its mean of ln Sa over all periods equals that of its simulated spectrum. The same
 /// target, candidates and settings always give the same set; of equally good candidates, the first is chosen.
 ///
 /// # Errors
@@ -186,8 +186,8 @@ struct Row {
     candidate: usize,
     /// ln Sa at each period.
     spectrum: Vec<f64>,
-    /// Level that is scaled to the target: ln Sa at the period of the condition, or the mean of ln Sa over
-    /// the periods.
+    /// Level that scaling adjusts to the target: ln Sa at the period of the condition, or the mean of ln Sa over all
+    /// periods.
     level: f64,
     group: usize,
 }
@@ -266,8 +266,8 @@ struct Set<'a> {
     /// Members of the set: for each, the index of a row of the pool, and the level to which the row is
     /// scaled.
     members: Vec<(usize, f64)>,
-    /// Sum over the members of ln Sa minus the mean of the target, at each period. The mean is subtracted to
-    /// preserve digits.
+    /// For each period, the sum over all members of the difference between ln Sa and the mean of the target. The mean
+    /// is subtracted to preserve digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.
