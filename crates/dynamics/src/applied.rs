@@ -38,7 +38,7 @@ pub enum ApplyError {
     },
     /// A number is not finite.
     #[error(
-        "the force, its point or its moment on body \"{name}\" is not finite: every component must be a number"
+        "the force on body \"{name}\", its point or its moment is not finite: every component must be a finite number"
     )]
     NotFinite {
         /// The body.

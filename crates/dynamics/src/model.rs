@@ -123,7 +123,7 @@ pub enum ModelError {
     /// A free body has no moment of inertia.
     #[error(
         "body \"{name}\" has a moment of inertia of {inertia} kg·m²: a free body needs a positive, \
-         finite one"
+         finite moment of inertia"
     )]
     Inertia {
         /// The body.
@@ -146,7 +146,7 @@ pub enum ModelError {
         problem: &'static str,
     },
     /// A pair refers to a missing item.
-    #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
+    #[error("contact pair {pair} refers to {what} {index}, but only {count} exist")]
     Dangling {
         /// Index of the pair, counted from 0.
         pair: usize,

@@ -141,11 +141,11 @@ pub fn select(
 fn too_few(pool: &Pool, given: usize, found: usize, choosing: &Choosing) -> MotionError {
     let [least, largest] = choosing.scale;
     let groups = choosing.most_of_group.map_or_else(String::new, |most| {
-        format!(" and at most {most} of one event, of which there are {}", pool.groups)
+        format!(", and at most {most} of each of the {} events may be selected", pool.groups)
     });
     let what = format!(
-        "of {given} records {found} reach the target with factors from {least} to {largest}\
-         {groups}, and {} are requested",
+        "{found} of {given} records reach the target with factors from {least} to {largest}\
+         {groups}, but {} are requested",
         choosing.count
     );
     MotionError::mismatch(what, "widen the limits, request fewer, or give more records")

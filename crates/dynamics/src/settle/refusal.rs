@@ -91,7 +91,7 @@ pub enum Lack {
     Place,
     /// The forces do not balance, but the body stays in place.
     #[error(
-        "after {steps} steps its forces are still out of balance by {unbalanced:.0e} of gravity"
+        "after {steps} steps, its residual acceleration is still {unbalanced:.0e} of gravity"
     )]
     Time {
         /// Number of steps.
