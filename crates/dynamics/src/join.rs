@@ -222,8 +222,8 @@ pub struct Running {
     pub stepper: Stepper<Spatial>,
 }
 
-/// Continues several runs, which must be at the same time, as one run of a new model. Motion, forces, stick history and
-/// the state of elements are copied from the sources. At times above zero, no force is evaluated again, so the next
+/// Continues several runs, which must be at the same time, as one run of a new model. Motion, forces, contact history
+/// and the state of elements are copied from the sources. At times above zero, no force is evaluated again, so the next
 /// step of every body is the same as in its source.
 ///
 /// Bodies of the new model that no source contains must be prescribed. No force from outside the model may act in a

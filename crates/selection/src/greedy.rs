@@ -317,8 +317,8 @@ impl<'a> Set<'a> {
     /// Returns the error that exchanges minimize: the weighted sum of the squared errors of mean and standard
     /// deviation.
     ///
-    /// To minimize the largest error, the function returns the sum of the eighth powers of these errors, in
-    /// which the error of the standard deviation is relative to that of the target.
+    /// If the largest error is to be minimized, returns the sum of the eighth powers of the errors instead, with the
+    /// error of the standard deviation relative to the standard deviation of the target.
     fn error(&self) -> f64 {
         (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
     }

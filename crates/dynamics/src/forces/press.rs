@@ -210,8 +210,8 @@ struct Press<'a, S: Space, L> {
     stop: Option<Stop<S::Real>>,
     /// Contact filter of the pair; `None` if all contacts count.
     counted: Option<AtFace<S>>,
-    /// Returns the laws of the pair. It is called once per contact, so that the compiler can specialize the loop for
-    /// laws that are known at compile time.
+    /// Function that returns the contact laws of the pair. It is called once per contact, so that the compiler can
+    /// specialize the loop for laws that are known at compile time.
     laws: L,
     /// Time step (s) over which the effective forces are taken.
     step: S::Real,
