@@ -34,8 +34,8 @@ pub struct Node<S: Space> {
     pub position: S::Vector,
     /// Length of boundary (m) that the node represents (its tributary length).
     pub tributary_length: S::Real,
-    /// Outward unit normal of the boundary at the node, in the body frame; at a corner, the mean of both sides. `None`
-    /// if contact is possible from every direction.
+    /// Outward unit normal of the boundary at the node, in the body frame; at a corner, the mean of the normals of both
+    /// sides. `None` if contact is possible from every direction.
     pub outward: Option<S::Vector>,
 }
 

@@ -28,8 +28,8 @@ pub(crate) enum Pairs {
         /// Number of pair indices that are reserved for every two bodies.
         most: usize,
     },
-    /// The pairs within each party are stored; those between parties follow from the contact kinds of their bodies, since
-    /// their number would be quadratic in the number of bodies.
+    /// The pairs within each party are stored. The pairs between parties are derived from the contact kinds of the
+    /// bodies, since their number is quadratic in the number of bodies.
     Joined {
         /// The pairs within parties; those between parties have higher numbers.
         pairs: Vec<ContactPair>,
@@ -45,7 +45,8 @@ pub(crate) enum Pairs {
 pub(crate) struct Foreign {
     /// Party and contact kind of every body.
     pub(crate) bodies: Vec<(usize, usize)>,
-    /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the law.
+    /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the
+    /// contact law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
     /// Rules for contacts between contact kinds.
     pub(crate) crossing: Arc<Crossing>,

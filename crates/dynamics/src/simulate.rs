@@ -259,7 +259,7 @@ impl<S: Space<Real = f64>> Stepper<S> {
         }
     }
 
-    /// Takes one step, or a shorter one that ends at a time (s) if the step would end later.
+    /// Takes one step. If the step would end after the time `until` (s), it is shortened to end at that time.
     ///
     /// # Errors
     /// As [`Stepper::step`].

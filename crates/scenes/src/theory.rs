@@ -120,8 +120,8 @@ pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     slip + speed * speed / (2.0 * n * GRAVITY)
 }
 
-/// Returns the amplitude (m), relative to the ground, of a block with yield acceleration `n g` that slides without
-/// pause on ground with the acceleration `a g sin ωt` (Den Hartog 1931).
+/// Returns the amplitude (m) of the motion relative to the ground, for a block with yield acceleration `n g` that
+/// slides without pause on ground with the acceleration `a g sin ωt` (Den Hartog 1931).
 pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     let share = PI * n / (2.0 * a);
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()

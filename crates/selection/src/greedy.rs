@@ -10,8 +10,8 @@ use crate::target::SelectionTarget;
 const TRIALS: usize = 5;
 /// Weight of the error of the standard deviation, relative to the weight of the error of the mean.
 const SPREAD_WEIGHT: f64 = 2.0;
-/// Weight of the error of the standard deviation for a target without spread, which no set of records can
-/// match exactly.
+/// Weight of the error of the standard deviation if the target has no spread; no set of records can match such a target
+/// exactly.
 const NO_SPREAD_WEIGHT: f64 = 0.1;
 /// Maximum number of rounds of exchanges. Rounds end earlier if no exchange reduces the error.
 const ROUNDS: usize = 20;

@@ -55,8 +55,8 @@ pub(crate) struct Looked {
     /// Number of steps of one variant multiplied by the number of moving bodies, summed over all
     /// planes; used to estimate the computation time.
     work: f64,
-    /// End (s) of the opening, which shows the stack in motion while the whole run is computed;
-    /// `None` if there is no ground motion.
+    /// End (s) of the opening, a first part of the run that is shown while the whole run is
+    /// computed; `None` if there is no ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }

@@ -146,8 +146,8 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     }
 
     /// Visits, in order, those of `count` points (m) that penetrate in at least one lane; passes the index, the
-    /// position and the gap of each. `facing` returns the directions in which the boundary of the points faces at a
-    /// point, if known.
+    /// position and the gap of each. `facing` returns the directions that the boundary faces at one of the points, if
+    /// known.
     #[inline(always)]
     fn penetrated_by(
         &self,

@@ -33,7 +33,7 @@ const MOST_ALONG: u32 = 180;
 /// this position; the number of evaluations; and `true` if the gap is the minimum.
 type Along = (f64, Gap<Spatial>, u32, bool);
 
-/// Tolerance of the slope of a gap along a segment, at the minimum of the gap; a fraction of the terms that add up to
+/// Tolerance within which the slope of a gap along a segment counts as zero, as a fraction of the terms that add up to
 /// the slope.
 const FLAT: f64 = 1e-14;
 /// Maximum number of steps of Halley's method along a segment before the slower search takes over.
@@ -243,8 +243,8 @@ impl Set<'_> {
         Support { point, along, across, around, outward }
     }
 
-    /// Returns the support in the direction of the axis of a head, at the point of the rim that is nearest to a point
-    /// (m).
+    /// Returns the support in the axial direction of a head. All points of the head are equally far in this direction;
+    /// the point of the rim that is nearest to `toward` (m) is used.
     fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
         let (barrel, toward) = (self.barrel, self.rotation.unapply(toward - self.center));
         let radial = Vec3::new(0.0, toward.y, toward.z).unit_or(Vec3::new(0.0, 0.0, 1.0));

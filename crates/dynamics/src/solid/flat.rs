@@ -204,7 +204,7 @@ struct Line {
     length: f64,
 }
 
-/// Component along the axis of a barrel below which a contact normal is taken to be that of the stave.
+/// Axial component of a contact normal below which the contact is taken to be on the stave of a barrel.
 pub(super) const MOST_ON_STAVE: f64 = 0.5;
 
 /// Returns the contact line of a tube on a head or a face of a solid, in the frame of that solid.

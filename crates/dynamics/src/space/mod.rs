@@ -164,7 +164,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Returns the rate of a rotation vector whose current value is `turned`, for a body with a spin.
     ///
     /// In three dimensions rotations are not additive, so the integral of a spin over time is not a rotation vector.
-    /// The integral of this rate is one.
+    /// The integral of the rate returned here is a rotation vector.
     fn turn_rate(turned: Self::Spin, spin: Self::Spin) -> Self::Spin;
     /// Returns the smallest principal moment of inertia (kg·m²) in one lane.
     fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
