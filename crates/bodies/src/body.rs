@@ -1,4 +1,4 @@
-//! A body in space as stated in a file: solid, mass properties, pose and initial motion.
+//! A three-dimensional body as stated in a file: solid, mass properties, pose and initial motion.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
@@ -12,7 +12,7 @@ section! {
     /// shaking ground.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
-    /// Viscous drag on the motion of a body in space, the same in all directions.
+    /// Viscous drag on the motion of a three-dimensional body, the same in all directions.
     pub static VISCOUS = "viscous-in-space";
     /// Drag force divided by the velocity of the center of mass.
     linear: f64 =
@@ -23,10 +23,10 @@ section! {
 }
 
 section! {
-    /// One body of a free scene in space.
+    /// One body of a three-dimensional free scene, which is a scene of arbitrary bodies.
     #[derive(Debug, Clone, PartialEq)]
     pub struct SpatialBody;
-    /// A rigid body of a free scene in space, with x to the right, y away from the viewer and z up.
+    /// A rigid body of a three-dimensional scene, with x to the right, y away from the viewer and z up.
     pub static BODY = "body-in-space", at most one of &["mass", "density"];
     /// Unique name.
     name: String = Kind::Text, Default::Required;

@@ -1,4 +1,5 @@
-//! Bodies in space: the `[[body]]` tables of a free scene in space, and the model bodies built from them.
+//! Three-dimensional bodies: the `[[body]]` tables of a free scene in three dimensions, and the model bodies built from
+//! them.
 //!
 //! ```text
 //! [[body]] ─ body ─▶ SpatialBody { solid, … } ─ SpatialBody::build ─▶ Body<Spatial>, a body of a model
@@ -15,7 +16,7 @@ mod solid;
 pub use body::{BODY, SpatialBody, VISCOUS, Viscous};
 pub use solid::{PART, PartSolid, SOLID, Solid};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doc test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! Shapes of bodies in space as stated in files: ball, capsule, block, barrel, half-space, and compounds.
+//! Shapes of three-dimensional bodies, as stated in files: ball, capsule, block, barrel, half-space, and compounds.
 
 use barrelstack_dynamics::solid::Barrel;
 use barrelstack_input::choices::Chosen;
@@ -69,7 +69,7 @@ const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 
 table! {
-    /// Shape of a body in space, relative to its reference point.
+    /// Shape of a three-dimensional body, relative to its reference point.
     pub static SOLID = "solid";
     /// Shape of the solid.
     type = Kind::Choice(Solid::names), Default::Required;

@@ -213,8 +213,8 @@ impl Column {
     }
 }
 
-/// Writes columns of equal length as CSV: a heading line with units, then one line per row; missing
-/// values are empty.
+/// Returns columns of equal length as CSV: a header row with units, then one line for each row of
+/// values; missing values are empty.
 ///
 /// Numbers are written with the fewest digits that read back to the same bits.
 pub fn to_csv(columns: &[Column]) -> String {
@@ -227,7 +227,7 @@ pub fn csv_heading(columns: &[Column]) -> String {
     columns.iter().map(heading).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// Writes columns as CSV without the heading line.
+/// Returns columns as CSV without the header row.
 pub fn csv_rows(columns: &[Column]) -> String {
     let mut text = String::new();
     for row in 0..columns.first().map_or(0, |column| column.values.len()) {

@@ -14,7 +14,7 @@ mod words;
 pub use number::{measured, shortest, significant};
 pub use words::{capital, csv_field, listed, one_line, with_unit};
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doc test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -38,7 +38,7 @@ pub enum ApplyError {
     },
     /// A number is not finite.
     #[error(
-        "the force, its point or its moment on body \"{name}\" is not finite: every component must be a number"
+        "the force on body \"{name}\", its point or its moment is not finite: every component must be a finite number"
     )]
     NotFinite {
         /// The body.
@@ -61,8 +61,8 @@ impl<S: Space> Applied<S> {
 }
 
 impl<S: Space<Real = f64>> Applied<S> {
-    /// Sets the force on its body in the list `all`, which contains at most one force for each body, in place of an
-    /// earlier one. If force and moment are zero, the entry of the body is removed.
+    /// Stores this force in the list `all`, which contains at most one force for each body; an earlier force on the
+    /// same body is replaced. If force and moment are zero, the entry of the body is removed.
     ///
     /// Returns the index of the body's force in the old list and in the new list.
     pub(crate) fn replace(

@@ -32,10 +32,10 @@ pub struct Placed<S: Space> {
 pub struct Node<S: Space> {
     /// Position (m) in the body frame, relative to the center of mass.
     pub position: S::Vector,
-    /// Length of boundary (m) that is tributary to the node.
+    /// Length of boundary (m) that the node represents (its tributary length).
     pub tributary_length: S::Real,
-    /// Outward unit normal of the boundary at the node, in the body frame; at a corner, the mean of both sides. `None`
-    /// if contact is possible from every direction.
+    /// Outward unit normal of the boundary at the node, in the body frame; at a corner, the mean of the normals of both
+    /// sides. `None` if contact is possible from every direction.
     pub outward: Option<S::Vector>,
 }
 
@@ -65,7 +65,7 @@ pub struct Round<S: Space> {
     /// Penetration (m) beyond which there is no contact. The center of an arc may lie far outside its body, so a
     /// surface behind the body may seem to penetrate the arc deeply.
     pub greatest_depth: S::Real,
-    /// Tributary length (m) of the contact of the piece.
+    /// Length of boundary (m) that a contact of the piece represents.
     pub tributary_length: S::Real,
 }
 
@@ -101,7 +101,7 @@ pub enum Nodes<S: Space> {
         center: S::Vector,
         /// Radius of the circle (m).
         radius: S::Real,
-        /// Length of boundary (m) that is tributary to the node.
+        /// Length of boundary (m) that the node represents (its tributary length).
         tributary_length: S::Real,
     },
     /// A convex solid of a three-dimensional model; its contacts are at its deepest points.
@@ -131,7 +131,7 @@ pub struct Body<S: Space> {
     pub mass: S::Real,
     /// Moment of inertia about the center of mass (kg·m²).
     pub inertia: S::Inertia,
-    /// Viscous damping matrix (eq. 2.8), which acts on the velocity in the inertial frame.
+    /// Viscous damping matrix (Candia et al. 2008, eq. 2.8), which multiplies the velocity in the inertial frame.
     pub damping: Option<S::Damping>,
     /// Initial pose.
     pub pose: Pose<S>,

@@ -1,4 +1,4 @@
-//! List of the contact elements that could touch soon, with their stick history.
+//! List of the contact elements that could touch soon, with their contact history.
 //!
 //! A contact element is a node of a contactor and the surface of a target. The list contains only the elements within
 //! reach; it is rebuilt before any body can have moved far enough for a missing element to touch. The list affects only
@@ -15,9 +15,9 @@ use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Pose, Rotation3, Space, Spatial, Twist, Vec3};
 use crate::state::State;
 
-/// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on which elements
-/// are in the list, so the gap of every element that is missing from the list must exceed the displacements within the
-/// lookahead plus this slack.
+/// Slack (m) for changes of velocity within the lookahead time. An element may be missing from the list only if its gap
+/// exceeds the displacements predicted for the lookahead time by more than this slack. So the prediction of substeps
+/// does not depend on which elements are in the list.
 const LOOKAHEAD_SLACK: f64 = 1e-3;
 
 /// Minimum allowance (m): every body may move at least this far before the list is rebuilt.
@@ -58,15 +58,15 @@ pub struct ContactElements<S: Space> {
     pub(crate) nodes: Vec<u32>,
     /// Position (m) of every element's node in the body frame of its contactor.
     pub(crate) positions: Vec<S::Vector>,
-    /// Factor by which the constants of every element's laws are multiplied: 1 for constants per node, the tributary
-    /// length (m) for constants per length.
+    /// Factor by which the constants of every element's contact laws are multiplied: 1 for constants per node, the
+    /// tributary length (m) for constants per length.
     pub(crate) weights: Vec<S::Real>,
-    /// Stick history of every element.
+    /// Contact history of every element.
     pub(crate) sticks: Vec<Stick<S>>,
     /// For every group, the smallest gap (m) of its elements when the list was built.
     apart: Vec<S::Real>,
-    /// For every body, an upper bound of its displacement (m) between the build of the list and the end of the current
-    /// step; infinite outside of a step.
+    /// For every body, an upper bound of its displacement (m) from the time when the list was built to the end of the
+    /// current step; infinite between steps.
     travels: Vec<S::Real>,
     /// Poses of the bodies when the list was built.
     built_for: Vec<Pose<S>>,
@@ -119,7 +119,7 @@ impl<S: Space> ContactElements<S> {
         self.travels.fill(S::Real::splat(f64::INFINITY));
     }
 
-    /// Returns the stick history of an element, given its index as in
+    /// Returns the contact history of an element, given its index as in
     /// [`Contact::element`](crate::forces::Contact::element).
     pub fn stick(&self, element: usize) -> Stick<S> {
         self.sticks[element]
@@ -192,7 +192,7 @@ impl<S: Space> ContactElements<S> {
         stale.any()
     }
 
-    /// Lists the elements within reach and copies their stick history from the old list.
+    /// Lists the elements within reach and copies their contact history from the old list.
     ///
     /// Returns the origins: for every element of the new list, its index in the old list.
     pub(crate) fn rebuild(
@@ -312,8 +312,8 @@ impl<S: Space> ContactElements<S> {
         near.then_some(distance)
     }
 
-    /// Returns `true` if, in all lanes, a surface stays deeper than [`Round::greatest_depth`] in a round piece until
-    /// the list is rebuilt, so that there is no contact.
+    /// Returns `true` if no lane can have a contact before the list is rebuilt, because in every lane the surface
+    /// remains deeper in the round piece than [`Round::greatest_depth`].
     ///
     /// The center of an arc may lie far outside its body; as the body turns, the center then moves farther than the
     /// body.
@@ -453,7 +453,7 @@ impl Moved {
 
 impl ContactElements<Spatial> {
     /// Returns the groups whose pairs exist in a new model as well. `number_of` maps the number of a pair to its number
-    /// in the new model, and `turn` rotates sticks and slip rates into the frame of the new model.
+    /// in the new model, and `turn` rotates stick displacements and slip rates into the frame of the new model.
     pub(crate) fn moved(
         &self,
         slip_rates: &[Vec3],
@@ -480,7 +480,7 @@ impl ContactElements<Spatial> {
     }
 
     /// Lists the elements of a model at a state. Elements of the moved groups, which must be sorted by their pairs,
-    /// keep their stick history. Returns the list and the slip rates of its elements.
+    /// keep their contact history. Returns the list and the slip rates of its elements.
     pub(crate) fn of_moved(
         model: &Model<Spatial>,
         moved: &[Moved],
@@ -505,8 +505,8 @@ impl ContactElements<Spatial> {
 }
 
 impl<S: Space> ContactElements<S> {
-    /// Copies the stick history and the slip rates of a single state into one lane; elements that the single state does
-    /// not list start with an empty history.
+    /// Copies the contact history and the slip rates from the state of a single run into one lane; elements that the
+    /// single run does not list start with an empty history.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
@@ -528,8 +528,8 @@ impl<S: Space> ContactElements<S> {
         }
     }
 
-    /// Returns the stick history of the elements that touch in one lane. The returned list must be rebuilt before it is
-    /// used with a single state.
+    /// Returns the contact history of the elements that touch in one lane. The returned list must be rebuilt before it
+    /// is used in a single run.
     pub(crate) fn of_lane(
         &self,
         lane: usize,

@@ -18,11 +18,11 @@ pub struct EnergySummary {
     pub potential: f64,
     /// Energy stored in normal springs and in force elements.
     pub elastic: f64,
-    /// Energy stored in sticks, the tangential springs of friction.
+    /// Energy stored in the tangential springs of sticking contacts.
     pub stick: f64,
     /// Energy lost in the dampers of contacts and elements, by yielding of elements, and by the breaking of elements.
     pub damped: f64,
-    /// Energy lost to friction, that is, to sliding and to the damping of sticks.
+    /// Energy lost to friction: by sliding, and in the tangential dampers of sticking contacts.
     pub friction: f64,
     /// Energy lost to viscous damping of bodies.
     pub viscous: f64,
@@ -188,8 +188,8 @@ impl<S: Space> EnergyLedger<S> {
         let Stored { kinetic, potential, elastic, stick } = self.stored;
         let now = kinetic + potential + elastic;
         let lost = self.works.damped + self.works.friction + self.works.viscous;
-        // The work of friction is the sum of the work on sticks and the work of sliding, so it includes the energy
-        // stored in sticks.
+        // The work of friction is the sum of the work on the tangential springs and the work of sliding, so it includes
+        // the energy stored in these springs.
         let residual = now + lost - self.works.ground - self.works.applied - self.initial;
         let throughput = self.flow + (self.initial - self.deepest);
         EnergySummary {

@@ -1,4 +1,4 @@
-//! Joins runs in space whose bodies may touch each other, so that they continue as one run.
+//! Joins three-dimensional runs into one run, in which bodies of different runs may touch each other.
 //!
 //! Each run is a party with a model of its own. A joined model has the bodies, laws and elements of all parties, and
 //! contact pairs between bodies of different parties. The pairs within a party are summed in the same order as in its
@@ -70,8 +70,8 @@ impl Frame {
     }
 }
 
-/// Contact kind of a body: the numbers of its node sets and surfaces that may touch bodies of other parties. These node
-/// sets and surfaces come first in the lists of the body.
+/// Contact kind of a body: how many of its node sets and how many of its surfaces may touch bodies of other parties.
+/// They come first in the body's lists of node sets and surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContactKind {
     /// Number of node sets.
@@ -222,8 +222,8 @@ pub struct Running {
     pub stepper: Stepper<Spatial>,
 }
 
-/// Continues several runs, which must be at the same time, as one run of a new model. Motion, forces, stick history and
-/// the state of elements are copied from the sources. At times above zero, no force is evaluated again, so the next
+/// Continues several runs, which must be at the same time, as one run of a new model. Motion, forces, contact history
+/// and the state of elements are copied from the sources. At times above zero, no force is evaluated again, so the next
 /// step of every body is the same as in its source.
 ///
 /// Bodies of the new model that no source contains must be prescribed. No force from outside the model may act in a

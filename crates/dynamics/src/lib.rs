@@ -1,4 +1,4 @@
-//! Dynamics of rigid bodies with penalty contact, in a plane and in space.
+//! Dynamics of rigid bodies with penalty contact, in two and three dimensions.
 //!
 //! The crate contains the physics only: it does no input or output, reads no clock, starts no threads and writes no
 //! log.
@@ -6,25 +6,26 @@
 //! # A step
 //!
 //! 1. The ground, and everything fixed to it, moves with the ground motion.
-//! 2. For each pair of nearby boundaries, and each node of the contactor, compute the distance from the target's
-//!    surface and the normal.
+//! 2. For each pair of nearby boundaries and each node of the contactor, the distance from the target's surface and the
+//!    normal are computed.
 //! 3. The normal law turns penetration and its rate into a compressive force.
-//! 4. The friction law turns slip rate and stick into a tangential force.
+//! 4. The friction law turns slip rate and stick displacement into a tangential force.
 //! 5. The force acts on both bodies at one point: the middle of the overlap, or the companion point of a fixed node.
-//! 6. The sum of contact, force elements, gravity and viscous damping gives the accelerations ([`evaluate`]).
-//! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and sticks.
-//! 8. Once the step is accepted, every stick is limited to the friction capacity.
+//! 6. The sum of the forces of contacts, force elements, gravity and viscous damping gives the accelerations
+//!    ([`evaluate`]).
+//! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and stick displacements.
+//! 8. Once the step is accepted, every stick displacement is limited to the friction capacity.
 //! 9. The energy ledger and the observers receive the accepted state.
 //!
 //! # Signs
 //!
-//! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians. In space `y` points
-//!   away from the viewer and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
+//! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians. In three dimensions,
+//!   `y` points away from the viewer and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
 //! - A gap's distance is negative when penetrating; penetration is never negative.
 //! - Penetration rate is positive while approaching.
 //! - Normals point out of the target.
 //! - Slip is the motion of the contactor relative to the target; on a level floor it is positive to the right.
-//! - A friction force is given along the slip; the opposite force acts on the contactor.
+//! - A friction force is given in the direction of the slip; the opposite force acts on the contactor.
 
 // Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
 // (`clippy.toml`).
@@ -71,7 +72,7 @@ pub use solid::Solid;
 pub use space::{Linear, Planar, Pose, Quaternion, Rotation3, Space, Spatial, Twist, Vec2, Vec3};
 pub use state::State;
 
-/// The example of the README, which is compiled and run with the tests of the documentation.
+/// The example of the README, which is compiled and run as a doc test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

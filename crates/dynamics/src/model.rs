@@ -54,7 +54,8 @@ pub const FORESEEN: f64 = 0.01;
 
 /// Subdivision of time steps during impacts.
 ///
-/// Impact laws are the stiffest laws of a model, but only at large penetration, so steps are divided only then.
+/// Impact laws are the stiffest contact laws of a model, but they are stiff only at large penetration, so steps are
+/// divided only then.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substepping<R> {
     /// Number of substeps into which a time step is divided while an impact requires it; an integer, at least one.
@@ -82,7 +83,7 @@ pub struct Fast<R> {
     pub hard: R,
 }
 
-/// Function that returns the contact pairs of two bodies, given with the lower ID first.
+/// Function that returns the contact pairs of two bodies; the body with the lower ID is given first.
 pub type Meet<'a, S> = dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair> + 'a;
 
 /// Bodies, interfaces, contact pairs and force elements; constant during a run and shared between threads.
@@ -122,7 +123,7 @@ pub enum ModelError {
     /// A free body has no moment of inertia.
     #[error(
         "body \"{name}\" has a moment of inertia of {inertia} kg·m²: a free body needs a positive, \
-         finite one"
+         finite moment of inertia"
     )]
     Inertia {
         /// The body.
@@ -145,7 +146,7 @@ pub enum ModelError {
         problem: &'static str,
     },
     /// A pair refers to a missing item.
-    #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
+    #[error("contact pair {pair} refers to {what} {index}, but only {count} exist")]
     Dangling {
         /// Index of the pair, counted from 0.
         pair: usize,
@@ -159,13 +160,13 @@ pub enum ModelError {
 }
 
 impl<S: Space> Model<S> {
-    /// Checks bodies, interfaces and pairs, and sorts the pairs.
+    /// Creates a model: checks bodies, interfaces and pairs, and sorts the pairs.
     ///
     /// `gravity` is the acceleration of free fall (m/s²).
     ///
     /// # Errors
-    /// If names repeat, a free body has no mass, no inertia or an unbounded surface, or a pair refers to a missing
-    /// item.
+    /// If two bodies have the same name, if a free body has no mass, no inertia or an unbounded surface, or if a pair
+    /// refers to a missing item.
     pub fn new(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -177,8 +178,8 @@ impl<S: Space> Model<S> {
 
     /// Creates a model as [`Model::new`] does, with contact pairs that depend only on the kinds of the bodies.
     ///
-    /// `kinds` has the kind of every body, numbered from 0. `meet` returns the pairs of two bodies, given with the
-    /// lower ID first, and must return equivalent pairs for any other two bodies of the same kinds.
+    /// `kinds` has the kind of every body, numbered from 0. `meet` returns the pairs of two bodies, of which the body
+    /// with the lower ID is given first; for any other two bodies of the same kinds, it must return equivalent pairs.
     ///
     /// No list of all pairs is stored, since its length would be quadratic in the number of bodies.
     ///
@@ -274,7 +275,7 @@ impl<S: Space> Model<S> {
     /// Enables substeps during impacts. In a new model, substeps are disabled.
     ///
     /// # Panics
-    /// If the number of penetrations differs from the number of interfaces.
+    /// If the length of `whole_step_depth` differs from the number of interfaces.
     pub fn set_substepping(&mut self, substepping: Substepping<S::Real>) {
         assert_eq!(
             substepping.whole_step_depth.len(),
@@ -328,8 +329,8 @@ impl<S: Space> Model<S> {
         self.pairs.get(number)
     }
 
-    /// Returns the number from which on contact pairs join bodies of different parties of a
-    /// [joined](crate::join::joined) model.
+    /// Returns the lowest number of the contact pairs between different parties of a [joined](crate::join::joined)
+    /// model.
     pub fn first_foreign_pair(&self) -> usize {
         self.pairs.first_foreign()
     }

@@ -79,8 +79,8 @@ impl<S: Space> PairFrame<S> {
         }
     }
 
-    /// Returns the distance (m) of the other body's center of mass in front of the face that filters a pair; `None` for
-    /// [`Counts::Everywhere`].
+    /// Returns how far (m) the other body's center of mass lies in front of the face that filters the contacts of a
+    /// pair; `None` for [`Counts::Everywhere`].
     #[inline(always)]
     pub(crate) fn before(&self, model: &Model<S>, pair: &ContactPair) -> Option<S::Real> {
         let apart = self.target - self.contactor;

@@ -28,8 +28,8 @@ pub(crate) enum Pairs {
         /// Number of pair indices that are reserved for every two bodies.
         most: usize,
     },
-    /// The pairs within each party are stored; those between parties follow from the contact kinds of their bodies, since
-    /// their number would be quadratic in the number of bodies.
+    /// The pairs within each party are stored. The pairs between parties are derived from the contact kinds of the
+    /// bodies, since their number is quadratic in the number of bodies.
     Joined {
         /// The pairs within parties; those between parties have higher numbers.
         pairs: Vec<ContactPair>,
@@ -45,18 +45,19 @@ pub(crate) enum Pairs {
 pub(crate) struct Foreign {
     /// Party and contact kind of every body.
     pub(crate) bodies: Vec<(usize, usize)>,
-    /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the law.
+    /// For every party, its rank, and the index of its first interface. The party of the lower rank supplies the
+    /// contact law.
     pub(crate) parties: Vec<(usize, InterfaceId)>,
-    /// Laws between contact kinds.
+    /// Rules for contacts between contact kinds.
     pub(crate) crossing: Arc<Crossing>,
     /// Number of pair indices that are reserved for every two bodies.
     pub(crate) most: usize,
 }
 
 impl Foreign {
-    /// Returns the data from which the pairs of two bodies follow, given with the lower ID first: contactor, target,
-    /// interface, and the numbers of node sets and surfaces that may touch. Returns `None` if the bodies belong to one
-    /// party or never touch.
+    /// Returns the data from which the pairs of two bodies follow: contactor, target, interface, and the numbers of
+    /// node sets and surfaces that may touch. The body with the lower ID is given first. Returns `None` if the bodies
+    /// belong to one party or never touch.
     #[inline(always)]
     fn of(&self, [a, b]: [BodyId; 2]) -> Option<(BodyId, BodyId, InterfaceId, [usize; 2])> {
         let ((first, one), (second, other)) = (self.bodies[a], self.bodies[b]);
@@ -180,7 +181,7 @@ impl Pairs {
         self.of_couple(between(pair)).find(found)
     }
 
-    /// Returns the number from which on pairs join bodies of two parties.
+    /// Returns the lowest number of the pairs between bodies of two parties.
     pub(crate) fn first_foreign(&self) -> usize {
         match self {
             Self::Listed { pairs, .. } | Self::Joined { pairs, .. } => pairs.len(),
@@ -188,7 +189,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the numbers of the pairs of two bodies, given with the lower ID first.
+    /// Returns the numbers of the pairs of two bodies; the lower ID is given first.
     pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
         let listed = |couples: &[Couple]| {
             couples

@@ -147,7 +147,7 @@ pub fn simulate<S: Space<Real = f64>>(
 /// A run that advances one accepted step at a time; [`simulate`] steps until the end.
 ///
 /// Together with the state and the working memory, a copy of the stepper is the complete state of a run: a run that
-/// continues from these copies has the same bits.
+/// continues from these copies gives bit-identical results.
 ///
 /// ```
 /// use barrelstack_dynamics::{
@@ -259,7 +259,7 @@ impl<S: Space<Real = f64>> Stepper<S> {
         }
     }
 
-    /// Takes one step, or a shorter one that ends at a time (s) if the step would end later.
+    /// Takes one step. If the step would end after the time `until` (s), it is shortened to end at that time.
     ///
     /// # Errors
     /// As [`Stepper::step`].
@@ -283,7 +283,8 @@ impl<S: Space<Real = f64>> Stepper<S> {
         result
     }
 
-    /// Returns the duration (s) below which the time that remains is due to rounding and is not a step.
+    /// Returns the duration (s) below which the remaining time of a run is a rounding error, so that no further step is
+    /// taken.
     #[inline]
     fn sliver(&self) -> f64 {
         1e-9 * self.simulation.time_step
@@ -323,14 +324,14 @@ impl<S: Space<Real = f64>> Stepper<S> {
         Ok(())
     }
 
-    /// Sets the force from outside on a body, in place of an earlier one. The force is held during the next steps;
-    /// setting force and moment to zero removes it.
+    /// Sets the force from outside the model on a body; it replaces an earlier force on this body. The force is held
+    /// during the next steps; setting force and moment to zero removes it.
     ///
     /// Only the difference from the earlier force is added to the forces of the current state, so an unchanged force
     /// leaves every bit unchanged.
     ///
     /// # Errors
-    /// If there is no such body, it follows the ground, or a number is not finite.
+    /// If there is no such body, if the body follows the ground, or if a number is not finite.
     pub fn apply(
         &mut self,
         model: &Model<S>,

@@ -16,7 +16,7 @@ pub struct State<S: Space> {
     pub poses: Vec<Pose<S>>,
     /// Twist of every body.
     pub twists: Vec<Twist<S>>,
-    /// The contact elements within reach, with their stick history.
+    /// The contact elements within reach, with their contact history.
     pub contact_elements: ContactElements<S>,
     /// Plastic elongation and failure of every force element.
     pub memory: Vec<Memory<S>>,

@@ -212,7 +212,7 @@ fn what_is_no_model_is_refused_with_its_name() {
     let found = model(vec![floor(), ball("a")], vec![pair(1, 7)]);
     let expected = ModelError::Dangling { pair: 0, what: "body", index: 7, count: 2 };
     assert_eq!(found, expected);
-    assert_eq!(found.to_string(), "contact pair 0 names body 7, but there are only 2");
+    assert_eq!(found.to_string(), "contact pair 0 refers to body 7, but only 2 exist");
     let found = model(vec![floor(), ball("a")], vec![pair(0, 1)]);
     assert!(matches!(found, ModelError::Dangling { what: "node set", index: 0, count: 0, .. }));
 }

@@ -94,7 +94,7 @@ fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body
     }
 }
 
-/// Returns a body in space by its kind: ball, tube, barrel, or block.
+/// Returns a three-dimensional body by its kind: ball, tube, barrel, or block.
 fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Spatial> {
     let inertia = Vec3::new(0.03, 0.045, 0.045) * mass;
     let hull = match kind {
@@ -114,7 +114,7 @@ fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Sp
     body
 }
 
-/// Names of the kinds of bodies: planar bodies first, then bodies in space.
+/// Names of the kinds of bodies: planar bodies first, then three-dimensional bodies.
 const KINDS: [[&str; 4]; 2] =
     [["circle", "box", "round box", "barrel profile"], ["ball", "tube", "barrel", "block"]];
 
@@ -135,8 +135,8 @@ pub fn planar_pairs() -> Vec<Order<Planar>> {
     (0..32).map(pair).collect()
 }
 
-/// Returns off-center collisions of two spinning bodies in space, for every pair of kinds: once with masses of 100
-/// and 60 kg, once with 100 kg each.
+/// Returns off-center collisions of two spinning three-dimensional bodies, for every pair of kinds: once with masses of
+/// 100 and 60 kg, once with 100 kg each.
 pub fn spatial_pairs() -> Vec<Order<Spatial>> {
     let pair = |i: usize| {
         let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
@@ -170,7 +170,7 @@ pub fn planar_heap(seed: usize) -> Order<Planar> {
     Order { name: format!("four on a floor, {seed}"), bodies, laws: laws(), gravity: DOWN }
 }
 
-/// Returns two bodies in space that tumble onto a floor and onto each other.
+/// Returns two three-dimensional bodies that tumble onto a floor and onto each other.
 pub fn spatial_heap(seed: usize) -> Order<Spatial> {
     let mut random = Random(seed as u64);
     let mut bodies = vec![spatial::floor()];

@@ -1,4 +1,4 @@
-//! Bodies of test scenes in space: floors, balls, capsules, blocks, barrels and contact points.
+//! Bodies of three-dimensional test scenes: floors, balls, capsules, blocks, barrels and contact points.
 
 use barrelstack_dynamics::solid::{Ball, Hull, Rounded};
 use barrelstack_dynamics::{

@@ -19,8 +19,8 @@ pub fn housner_restitution(alpha: f64) -> f64 {
     1.0 - 1.5 * sin(alpha) * sin(alpha)
 }
 
-/// Returns the time, multiplied by p, in which a rocking rectangle returns to upright from rest at the rotation `share
-/// · α`.
+/// Returns the time in which a rocking rectangle returns to upright from rest at the rotation `share · α`, multiplied
+/// by the frequency parameter p.
 ///
 /// The result is exact for any α. Conservation of energy gives θ'²/2p² = cos(α − θ₀) − cos(α − θ). The substitution θ =
 /// θ₀ (1 − s²) removes the square root from the integrand, which is then integrated by the midpoint rule.
@@ -38,8 +38,8 @@ pub fn quarter_period(alpha: f64, share: f64) -> f64 {
         .sum()
 }
 
-/// Returns the quarter period, multiplied by p, of a slender block that starts at rest from φ = θ₀/α: arcosh[1/(1 − φ)]
-/// (Housner 1963).
+/// Returns the quarter period of a slender block that starts at rest from φ = θ₀/α, multiplied by the frequency
+/// parameter p: arcosh[1/(1 − φ)] (Housner 1963).
 pub fn slender_quarter_period(share: f64) -> f64 {
     acosh(1.0 / (1.0 - share))
 }
@@ -120,8 +120,8 @@ pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     slip + speed * speed / (2.0 * n * GRAVITY)
 }
 
-/// Returns the amplitude (m), relative to the ground, of a block with yield acceleration `n g` that slides without
-/// pause on ground with the acceleration `a g sin ωt` (Den Hartog 1931).
+/// Returns the amplitude (m) of the motion relative to the ground, for a block with yield acceleration `n g` that
+/// slides without pause on ground with the acceleration `a g sin ωt` (Den Hartog 1931).
 pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     let share = PI * n / (2.0 * a);
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()

@@ -10,8 +10,8 @@ use crate::target::SelectionTarget;
 const TRIALS: usize = 5;
 /// Weight of the error of the standard deviation, relative to the weight of the error of the mean.
 const SPREAD_WEIGHT: f64 = 2.0;
-/// Weight of the error of the standard deviation for a target without spread, which no set of records can
-/// match exactly.
+/// Weight of the error of the standard deviation if the target has no spread; no set of records can match such a target
+/// exactly.
 const NO_SPREAD_WEIGHT: f64 = 0.1;
 /// Maximum number of rounds of exchanges. Rounds end earlier if no exchange reduces the error.
 const ROUNDS: usize = 20;
@@ -66,7 +66,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Returns the maximum over all periods of the relative error of the median.
+    /// Returns the relative error of the median at the period at which this error is largest.
     pub fn median_error(&self, target: &SelectionTarget) -> f64 {
         let errors = self.mean.iter().zip(target.mean());
         errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
@@ -99,8 +99,8 @@ const SMALLEST: f64 = 0.01;
 /// Selects records whose spectra together have the mean and the spread of the target (Jayaram, Lin and Baker
 /// 2011, Earthquake Spectra 27:797-815).
 ///
-/// If the target is conditional, every record is scaled to the target at the period of the condition.
-/// Otherwise every record is scaled to the mean over the periods of ln Sa of its simulated spectrum. The same
+/// If the target is conditional, every record is scaled to the target at the period of the condition. Otherwise every
+/// record is scaled such that its mean of ln Sa over all periods equals that of its simulated spectrum. The same
 /// target, candidates and settings always give the same set; of equally good candidates, the first is chosen.
 ///
 /// # Errors
@@ -141,11 +141,11 @@ pub fn select(
 fn too_few(pool: &Pool, given: usize, found: usize, choosing: &Choosing) -> MotionError {
     let [least, largest] = choosing.scale;
     let groups = choosing.most_of_group.map_or_else(String::new, |most| {
-        format!(" and at most {most} of one event, of which there are {}", pool.groups)
+        format!(", and at most {most} of each of the {} events may be selected", pool.groups)
     });
     let what = format!(
-        "of {given} records {found} reach the target with factors from {least} to {largest}\
-         {groups}, and {} are requested",
+        "{found} of {given} records reach the target with factors from {least} to {largest}\
+         {groups}, but {} are requested",
         choosing.count
     );
     MotionError::mismatch(what, "widen the limits, request fewer, or give more records")
@@ -186,8 +186,8 @@ struct Row {
     candidate: usize,
     /// ln Sa at each period.
     spectrum: Vec<f64>,
-    /// Level that is scaled to the target: ln Sa at the period of the condition, or the mean of ln Sa over
-    /// the periods.
+    /// Level that scaling adjusts to the target: ln Sa at the period of the condition, or the mean of ln Sa over all
+    /// periods.
     level: f64,
     group: usize,
 }
@@ -266,8 +266,8 @@ struct Set<'a> {
     /// Members of the set: for each, the index of a row of the pool, and the level to which the row is
     /// scaled.
     members: Vec<(usize, f64)>,
-    /// Sum over the members of ln Sa minus the mean of the target, at each period. The mean is subtracted to
-    /// preserve digits.
+    /// For each period, the sum over all members of the difference between ln Sa and the mean of the target. The mean
+    /// is subtracted to preserve digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.
@@ -317,8 +317,8 @@ impl<'a> Set<'a> {
     /// Returns the error that exchanges minimize: the weighted sum of the squared errors of mean and standard
     /// deviation.
     ///
-    /// To minimize the largest error, the function returns the sum of the eighth powers of these errors, in
-    /// which the error of the standard deviation is relative to that of the target.
+    /// If the largest error is to be minimized, returns the sum of the eighth powers of the errors instead, with the
+    /// error of the standard deviation relative to the standard deviation of the target.
     fn error(&self) -> f64 {
         (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
     }

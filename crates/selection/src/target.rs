@@ -107,7 +107,7 @@ impl SelectionTarget {
         Ok(Self { periods: periods.to_vec(), mean, deviation, covariance, condition })
     }
 
-    /// Creates a target without spread whose values are those of a spectrum.
+    /// Creates a target without spread from the values of a spectrum.
     ///
     /// # Errors
     /// As for [`SelectionTarget::new`].
@@ -152,8 +152,9 @@ impl SelectionTarget {
 
     /// Returns the lower triangular Cholesky factor `L` of the covariance matrix `L Lᵀ`.
     ///
-    /// The columns of the period of the condition, and of any period that is determined by those before it,
-    /// are zero. Published correlations are rounded, so small negative pivots occur.
+    /// Some columns are zero: the column of the period of the condition, and the column of any period at which ln Sa is
+    /// determined by its values at the periods before. Published correlations are rounded, so small negative pivots
+    /// occur.
     fn cholesky(&self) -> Vec<f64> {
         let n = self.periods.len();
         let mut root = vec![0.0; n * n];

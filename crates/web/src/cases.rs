@@ -1,5 +1,5 @@
-//! Results of variants as engines exchange them, reduced to the data that a verdict needs, and
-//! bit-exact.
+//! Results of variants in the form in which engines exchange them: bit-exact, and reduced to the
+//! data that a verdict needs.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::{CollapseMode, Outcome};

@@ -64,30 +64,29 @@ use verdict::Verdict;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequestKind {
-    /// The bundled scenarios, except those in space, as a JSON list of pairs of name and text.
+    /// The bundled scenarios, except the three-dimensional ones, as a JSON list of pairs of name and text.
     #[default]
     Scenarios,
     /// The barrels and racks of the catalog, as JSON.
     Catalog,
     /// The assembled stack and all settings of the scenario before a run, as JSON.
     Look,
-    /// The devices on the stack, and the applicable settings of other devices with their changes to
-    /// the scenario, as JSON.
+    /// The devices on the stack, and the applicable settings of other devices, each with its changes to the scenario,
+    /// as JSON.
     Devices,
     /// The given record files, grouped into motions, and the files that contain no motion, as JSON;
     /// then the bytes of motions that are combined from several files. The request needs no
     /// scenario.
     Records,
-    /// The motion of a variant, as JSON; the first of the numbers selects the variant, and 0 is the
-    /// stack as stated.
+    /// The motion of a variant, as JSON. The first entry of `numbers` selects the variant; 0 is the stack as stated.
     Show,
-    /// The results of the numbered variants in each plane, as JSON; then the trails of their
-    /// barrels as bytes, for a report.
+    /// The results of the variants `numbers` in each plane, as JSON; then the paths of their barrels (the trails) as
+    /// bytes, for a report.
     Variants,
     /// The verdict on given results, as JSON. The request contains the numbers of the variants, of
     /// which the first is 0, and their results in each plane.
     Verdict,
-    /// The summary of a run and its variants, as JSON, which is the same in all languages.
+    /// The summary of a run and its variants, as JSON; it is the same in all languages.
     Summary,
     /// The report of a run and its variants, as a page.
     Report,
@@ -185,7 +184,7 @@ pub fn answered(
 /// Start of the list of the keys or names that are valid in a place.
 const VALID: &str = "valid here: ";
 
-/// Translates a message line by line; places, lines of the scenario after a `|`, and valid keys stay.
+/// Translates a message line by line; places, lines of the scenario after a `|`, and valid keys are not translated.
 fn refused(message: &str, language: Language) -> String {
     let line = |line: &str| {
         let start = line.find(|c: char| c.is_alphabetic() || c == '`').unwrap_or(line.len());

@@ -52,11 +52,11 @@ pub(crate) struct Looked {
     checked: Vec<Checked>,
     /// Names of the devices on the stack.
     devices: Vec<String>,
-    /// Number of steps of one variant in all planes multiplied by the number of moving bodies; used
-    /// to estimate the computation time.
+    /// Number of steps of one variant multiplied by the number of moving bodies, summed over all
+    /// planes; used to estimate the computation time.
     work: f64,
-    /// End (s) of the opening, which shows the stack in motion while the whole run is computed;
-    /// `None` if there is no ground motion.
+    /// End (s) of the opening, a first part of the run that is shown while the whole run is
+    /// computed; `None` if there is no ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }
@@ -85,7 +85,8 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
     }
 }
 
-/// Fraction of the peak acceleration above which ground motion counts as strong, as in a player.
+/// Fraction of the peak acceleration above which ground motion counts as strong; the same as in the
+/// player of a report.
 const STRONG: f64 = 0.1;
 /// Duration (s) of the opening from the start of the strong ground motion.
 const IN_PROGRESS: f64 = 3.0;

@@ -63,7 +63,7 @@ fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, Str
     let whole = cases.iter().all(|plane| plane.len() == numbers.len());
     if cases.len() != planes.len() || !whole || numbers.first() != Some(&0) {
         return Err(format!(
-            "a verdict needs, in each of {} planes, a result for each of its numbers, the first of which is 0",
+            "a verdict needs the results of the variants `numbers` in each of {} planes; the first number must be 0",
             planes.len()
         ));
     }

@@ -1,4 +1,4 @@
-//! Friction force as a function of normal force, slip rate and stick history.
+//! Friction force as a function of normal force, slip rate and contact history.
 
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Space};
@@ -10,18 +10,18 @@ use crate::space::{Linear, Space};
 pub enum FrictionLaw<R = f64> {
     /// No friction.
     Frictionless,
-    /// Coulomb friction with an elastic stick: a tangential spring that deforms before the contact slides.
+    /// Coulomb friction with elastic sticking: a tangential spring deforms before the contact slides.
     ///
     /// ```text
     /// spring  = k_t s            held within ± μ fₙ
     /// f_t     = spring + c_t v_t held within ± μ fₙ
     /// ```
     ///
-    /// `s` is the stick displacement. It is integrated with the slip rate like any other coordinate of the state, and
-    /// is limited to the capacity of the spring only when a step is accepted ([`Stick::commit`]), so a body at rest on
-    /// a slope does not creep. The law `f_t = μ fₙ` of Candia et al. (2008) is the sliding part of this law. μ is the
-    /// static coefficient until the force exceeds the static limit, and then the kinetic coefficient until the slip
-    /// reverses.
+    /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state, with the slip
+    /// rate as its rate of change, and is limited to the capacity of the spring only when a step is accepted
+    /// ([`Stick::commit`]). So a body at rest on a slope does not creep. The law `f_t = μ fₙ` of Candia et al. (2008)
+    /// is the sliding part of this law. μ is the static coefficient until the force exceeds the static limit, and then
+    /// the kinetic coefficient until the slip reverses.
     Coulomb {
         /// Static coefficient `μ_s`, not smaller than the kinetic coefficient.
         static_coefficient: R,
@@ -45,7 +45,7 @@ pub enum FrictionLaw<R = f64> {
     },
 }
 
-/// Stick history of a node: the state of the tangential spring of its friction law, kept from step to step.
+/// Contact history of a node: the state of the tangential spring of its friction law, kept from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stick<S: Space> {
     /// Elastic tangential displacement of the contactor relative to the target (m), in the inertial frame.
@@ -62,7 +62,7 @@ pub struct Stick<S: Space> {
 pub struct Friction<S: Space> {
     /// Force (N) in the direction of the slip; the opposite force acts on the contactor.
     pub force: S::Tangent,
-    /// Energy stored in the stick (J).
+    /// Energy (J) stored in the tangential spring.
     pub energy: S::Real,
 }
 
@@ -106,7 +106,8 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
-    /// Returns the tangential stiffness (N/m) of a sticking contact; zero for laws that do not stick.
+    /// Returns the tangential stiffness (N/m) of a sticking contact; zero for friction laws without a tangential
+    /// spring.
     #[inline(always)]
     pub fn stick_stiffness(&self) -> R {
         match *self {
@@ -115,8 +116,8 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
-    /// Returns the creep speed (m/s) of a body under a steady tangential force that is `share` of the friction limit
-    /// (0 ≤ share < 1); zero for laws that stick.
+    /// Returns the creep speed (m/s) of a body under a steady tangential force that is `share` of the friction limit (0
+    /// ≤ share < 1); zero for all laws except [`FrictionLaw::Regularized`].
     pub fn creep_speed(&self, share: f64) -> R {
         match *self {
             Self::Frictionless | Self::Coulomb { .. } => R::zero(),
@@ -128,7 +129,7 @@ impl<R: Real> FrictionLaw<R> {
 }
 
 impl<S: Space> Stick<S> {
-    /// Transports the stick into the current tangent plane of its contact.
+    /// Returns the history with its displacement transported into the current tangent plane of the contact.
     #[inline(always)]
     #[must_use]
     pub fn carried(self, to: S::TangentPlane) -> Self {
@@ -136,7 +137,7 @@ impl<S: Space> Stick<S> {
         Self { displacement, tangent_plane: to, ..self }
     }
 
-    /// Returns the stick history after an accepted step: the displacement, limited to the friction capacity, and
+    /// Returns the contact history after an accepted step: the displacement, limited to the friction capacity, and
     /// whether the node slips. `self` contains the displacement at the end of the step; `weight` is as in
     /// [`FrictionLaw::force`].
     #[inline(always)]
@@ -172,7 +173,7 @@ impl<S: Space> Stick<S> {
         if !overstretched.any() {
             return Self { slipping, ..self };
         }
-        // Avoids a division by zero: a stick of weight zero has no contact, and is reset in any case.
+        // Avoids a division by zero: an element of weight zero has no contact, and its history is reset in any case.
         let safe = S::Real::select(overstretched, stiffness, S::Real::splat(1.0));
         let cut = S::shorten(spring, held) * (S::Real::splat(1.0) / safe);
         let displacement = S::choose(overstretched, cut, self.displacement);

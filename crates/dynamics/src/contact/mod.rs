@@ -32,8 +32,8 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Returns the factor by which the constants of the laws are multiplied: the tributary length (m) for constants per
-    /// length, and 1 for constants per node or per seat.
+    /// Returns the factor by which the constants of the contact laws are multiplied: the tributary length (m) for
+    /// constants per length, and 1 for constants per node or per seat.
     #[inline(always)]
     pub fn weight<R: Real>(self, tributary_length: R) -> R {
         match self {
@@ -76,7 +76,7 @@ pub struct Interface<S: Space> {
     pub rolling: Option<Rolling<S::Real>>,
     /// Friction law: friction force from slip.
     pub friction: FrictionLaw<S::Real>,
-    /// Basis of the constants.
+    /// Basis of the stiffness and damping constants of the contact laws.
     pub basis: Basis,
 }
 

@@ -21,8 +21,8 @@ pub enum NormalLaw<R = f64> {
         /// `c` (N·s/m).
         damping: R,
     },
-    /// Linear spring and damper, both on approach and on separation; the force is zero where it would otherwise be
-    /// tensile: `fₙ = max(0, k δ + c δ̇)`.
+    /// Linear spring in parallel with a damper that acts on approach and on separation; the force is zero where it
+    /// would otherwise be tensile: `fₙ = max(0, k δ + c δ̇)`.
     KelvinVoigt {
         /// `k` (N/m).
         stiffness: R,
@@ -47,9 +47,9 @@ pub enum NormalLaw<R = f64> {
     ///
     /// On approach the force is that of the spring. On separation the force is e² times that of the spring, so the
     /// fraction e² of the energy is returned. These are the loading and unloading branches of Walton and Braun (1986),
-    /// with a smooth transition at penetration rates of about `v` that needs no history. At lower speeds the force is
-    /// that of a spring and a damper, so bodies come to rest. The spring stiffens as between round bodies (Hertz), so
-    /// the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
+    /// connected by a smooth transition at penetration rates of about `v`, so the law needs no history. At lower speeds
+    /// the force is that of a spring and a damper, so bodies come to rest. The spring stiffens as between round bodies
+    /// (Hertz), so the contact of a light body at rest is soft, and a heavy body is stopped within millimeters.
     Rebound {
         /// `k` (N/m^1.5).
         stiffness: R,
@@ -65,7 +65,8 @@ pub enum NormalLaw<R = f64> {
     },
 }
 
-/// End of the stroke of a soft law. Beyond a penetration (m), a second law acts in addition, on the excess penetration.
+/// Stop at the end of the stroke of a soft contact law. Beyond a given penetration (m), a second contact law acts in
+/// addition; its penetration is the excess over the given penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop<R = f64> {
     /// Penetration (m) beyond which the stop acts.
@@ -75,8 +76,8 @@ pub struct Stop<R = f64> {
 }
 
 impl<R: Real> Stop<R> {
-    /// Adds the force of the stop to the force of the soft law, in lanes whose penetration reaches the stop; `step` (s)
-    /// is as in [`NormalForce::within_step`].
+    /// Adds the force of the stop to the force of the soft contact law, in lanes whose penetration reaches the stop;
+    /// `step` (s) is as in [`NormalForce::within_step`].
     #[inline(always)]
     pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R, step: R) -> NormalForce<R> {
         let beyond = depth - self.depth;
@@ -93,7 +94,7 @@ impl<R: Real> Stop<R> {
     }
 }
 
-/// Exponent of an elastic force as a function of penetration.
+/// Exponent `n` of an elastic force that is proportional to `δⁿ`, where δ is the penetration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Exponent {
     /// Force proportional to the penetration, `n = 1`.

@@ -15,8 +15,8 @@ pub fn damping(stiffness: f64, damping_ratio: f64, mass: f64) -> f64 {
     2.0 * damping_ratio * (stiffness * mass).sqrt()
 }
 
-/// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`, with
-/// `arcosh ζ` and `√(ζ² − 1)` instead for ζ > 1.
+/// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`. For ζ >
+/// 1, `arcosh ζ` replaces `arccos ζ`, and `√(ζ² − 1)` replaces `√(1 − ζ²)`.
 pub fn speed_gap(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let exponent = if (zeta - 1.0).abs() < 1e-7 {

@@ -69,9 +69,8 @@ impl<S: Space> Guide<S> {
         }
     }
 
-    /// Adapts a fitted guide to a first body that turns about the axis. The rest position then fixes only the position
-    /// along the axis, and the guide releases the point when its distance from the axis exceeds the current distance by
-    /// more than `reach`.
+    /// Adapts a fitted guide to a first body that turns about the axis of the guide. Only the component of `place`
+    /// along the axis is kept, and `reach` is increased by the distance of the point from the axis.
     #[must_use]
     pub fn about_axis(self) -> Self {
         let along = self.axis * self.axis.dot(self.place);
@@ -79,7 +78,7 @@ impl<S: Space> Guide<S> {
         Self { place: along, reach: self.reach + away.dot(away).sqrt(), ..self }
     }
 
-    /// Returns a constant of the guide, stiffness or damping, plus that of the stops if the guide has stops.
+    /// Returns `free`, the stiffness or damping of the guide, plus `stop`, that of its stops, if the guide has stops.
     fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
         free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
     }

@@ -93,7 +93,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
 
-            /// Sets the unloaded length to the distance between the points at a state, plus an excess (m).
+            /// Sets the unloaded length to the distance between the points at a state, plus the excess `give` (m).
             pub fn fit(&mut self, state: &State<S>, give: S::Real) {
                 match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }

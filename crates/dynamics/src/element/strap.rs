@@ -8,10 +8,10 @@ use crate::state::State;
 
 /// A strap between a point of one body and a point of another.
 ///
-/// Its tension is `T = max(0, k e + c ė)` while its elongation `e` (m), the distance between the two points less
-/// `length`, is positive, and zero while it is slack. If the spring force would exceed the yield force, the strap
-/// elongates plastically until the spring force equals the yield force; only the elastic elongation causes tension. The
-/// strap has no mass, and touches nothing between its ends.
+/// Its elongation `e` (m) is the distance between the two points minus `length`. While `e` is positive, its tension is
+/// `T = max(0, k e + c ė)`; otherwise the strap is slack and has no tension. If the spring force would exceed the yield
+/// force, the strap elongates plastically until the spring force equals the yield force; only the elastic elongation
+/// causes tension. The strap has no mass, and touches nothing between its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strap<S: Space> {
     /// The joined points.

@@ -25,8 +25,9 @@ pub struct Contact<S: Space> {
     pub node: u32,
     /// The lanes in which the element touches; always `true` in a single run.
     pub touching: <S::Real as Real>::Mask,
-    /// Point (m) at which the force acts on both bodies, in the frame of the target's surface: the companion point of a
-    /// fixed node, or the middle of the overlap.
+    /// Point (m) at which the force acts on both bodies, in the frame of the target's surface. For a fixed node, this
+    /// is the companion point, the point of the surface from which the penetration is measured; otherwise, it is the
+    /// middle of the overlap.
     pub point: S::Vector,
     /// Unit normal that points out of the target, in the same frame.
     pub normal: S::Vector,
@@ -47,7 +48,7 @@ pub struct Contact<S: Space> {
 pub struct ContactTotals<R> {
     /// Energy stored in normal springs (J).
     pub elastic: R,
-    /// Energy stored in sticks (J).
+    /// Energy (J) stored in the tangential springs of sticking contacts.
     pub stick: R,
 }
 
@@ -58,7 +59,7 @@ pub struct ContactTotals<R> {
 pub struct Losses<S: Space> {
     /// Dampers of contacts and elements.
     pub damped: Wrench<S>,
-    /// Friction, including the damping of sticks.
+    /// Friction, including the tangential damping of sticking contacts.
     pub friction: Wrench<S>,
 }
 
@@ -115,8 +116,8 @@ pub struct Scratch<S: Space> {
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Rate of change (m/s) of every stick displacement: the slip rate, plus the effect of the rotation of the bodies
-    /// on the stick; zero without contact.
+    /// Rate of change (m/s) of every stick displacement: the slip rate, plus the rate at which the rotation of the
+    /// bodies turns the displacement; zero without contact.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
@@ -135,8 +136,8 @@ pub struct Scratch<S: Space> {
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates at the start of the step.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// All touching elements, in order, with their normal forces and the data that their sticks need when the step is
-    /// accepted.
+    /// All touching elements, in order, with their normal forces and the data from which their contact history is
+    /// updated when the step is accepted.
     pub pressed: Vec<Pressed<S>>,
     /// Groups of contact elements that are tested in the current evaluation.
     awake: Vec<usize>,
@@ -154,7 +155,7 @@ pub struct Pressed<S: Space> {
     pub touching: <S::Real as Real>::Mask,
     /// Point (m) at which the force acts, in the frame of the target's surface.
     pub point: S::Vector,
-    /// Tangent plane, which is stored in the stick together with the displacement.
+    /// Tangent plane of the contact, which is stored in the contact history together with the stick displacement.
     tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero in lanes without contact.
     pub normal_force: S::Real,
@@ -211,7 +212,8 @@ impl<S: Space> Scratch<S> {
         self.pressed.len()
     }
 
-    /// Returns the forces of the pairs that touch in one lane, each with its touching elements: those of a single run.
+    /// Returns the force of every pair that touches in one lane, with the touching elements of the pair. The pairs are
+    /// the same as in a single run of the case in this lane.
     pub fn touching_pairs(
         &self,
         lane: usize,
@@ -300,7 +302,7 @@ fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut V
     }
 }
 
-/// Returns the lanes in which a group of elements cannot touch in the current step, and its impacts need no prediction.
+/// Returns the lanes in which a group of elements cannot touch in the current step and needs no prediction of impacts.
 #[inline(always)]
 fn asleep<S: Space>(
     model: &Model<S>,
@@ -353,8 +355,8 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.evaluations += 1;
 }
 
-/// Computes the acceleration of every free body from contact forces, element forces, gravity and viscous damping (eq.
-/// 2.8).
+/// Computes the acceleration of every free body from contact forces, element forces, gravity and viscous damping
+/// (Candia et al. 2008, eq. 2.8).
 #[inline(always)]
 fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     for (i, body) in model.inert.iter().enumerate() {
@@ -379,8 +381,8 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
     }
 }
 
-/// Accepts the state that `scratch` was evaluated at: limits every stick to the friction capacity, resets elements
-/// without contact, and breaks force elements that fail.
+/// Accepts the state that `scratch` was evaluated at: limits every stick displacement to the friction capacity, resets
+/// elements without contact, and breaks force elements that fail.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     commit_corrected(
         model,
@@ -456,8 +458,8 @@ fn commit_all<S: Space>(
     sticks[next..].fill(Stick::default());
 }
 
-/// Commits the sticks of the touching elements of a pair, and resets the sticks of the elements between them, which do
-/// not touch. `next` is the first element that is neither committed nor reset yet.
+/// Commits the contact history of the touching elements of a pair, and resets the contact history of the elements
+/// between them, which do not touch. `next` is the first element that is neither committed nor reset yet.
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,

@@ -23,8 +23,9 @@ use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// For bundles of lanes in the plane, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per
-/// contact. For scalars such a loop would not be faster, and in space it would take long to compile.
+/// For bundles of lanes in two dimensions, the speed-gap law with Coulomb friction has a loop of its own, without
+/// dispatch per contact. For scalars such a loop would not be faster, and in three dimensions it would take long to
+/// compile.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -86,14 +87,14 @@ pub(super) fn touch<S: Space>(
     }
 }
 
-/// The laws of a pair.
+/// The contact laws of a pair.
 #[derive(Clone, Copy)]
 struct Laws<R> {
     normal: NormalLaw<R>,
     friction: FrictionLaw<R>,
 }
 
-/// Adds the contacts of one pair, evaluated with the given laws.
+/// Adds the contacts of one pair, evaluated with the given contact laws.
 #[inline(always)]
 fn touch_by<S: Space>(
     pair: &ContactPair,
@@ -209,8 +210,8 @@ struct Press<'a, S: Space, L> {
     stop: Option<Stop<S::Real>>,
     /// Contact filter of the pair; `None` if all contacts count.
     counted: Option<AtFace<S>>,
-    /// Returns the laws of the pair. It is called once per contact, so that the compiler can specialize the loop for
-    /// laws that are known at compile time.
+    /// Function that returns the contact laws of the pair. It is called once per contact, so that the compiler can
+    /// specialize the loop for laws that are known at compile time.
     laws: L,
     /// Time step (s) over which the effective forces are taken.
     step: S::Real,
@@ -411,9 +412,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Returns the friction force (N) and the tangent plane of an element, given its normal force (N) and weight. Also
-    /// stores the energy and the rate of its stick.
+    /// stores the energy and the rate of its tangential spring.
     ///
-    /// Sticks are stored in the inertial frame, so both bodies are treated alike.
+    /// Stick displacements are stored in the inertial frame, so both bodies are treated alike.
     #[inline(always)]
     fn friction(
         &mut self,

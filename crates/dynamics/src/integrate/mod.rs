@@ -1,7 +1,7 @@
 //! Time integration: from one accepted state to the next.
 //!
 //! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
-//! there. Stick displacements are advanced by their rates like every other coordinate; the stick history is committed
+//! there. Stick displacements are advanced by their rates like every other coordinate; the contact history is committed
 //! only when a state is accepted.
 
 mod runge_kutta;
@@ -136,8 +136,8 @@ impl<S: Space> Integrator<S> {
 
 /// Updates the element list; if it changed, renumbers the elements in `scratch`.
 ///
-/// The forces in `scratch` are kept. If the forces were evaluated again, with corrected velocities and committed
-/// sticks, they would change, and so the list would affect the results and not only the speed.
+/// The forces in `scratch` are kept. If they were evaluated again, with corrected velocities and the committed contact
+/// history, they would change. Then the list would affect the results and not only the speed.
 fn refresh<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

@@ -13,7 +13,7 @@ use crate::state::State;
 pub(super) struct Tableau {
     /// Times of the stages as fractions of the step; the first is zero.
     times: &'static [f64],
-    /// Row by row, from the second stage on: weights of the earlier stages in this stage.
+    /// For each stage from the second on, the weights of all earlier stages.
     rows: &'static [&'static [f64]],
     /// Weights of the stages in the step.
     weights: &'static [f64],

@@ -10,9 +10,9 @@ use crate::state::State;
 /// Takes a step of symplectic Euler: `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, both with the new
 /// velocity.
 ///
-/// The new slip rates are known only after the evaluation, so sticks are predicted with the old rates and then
-/// corrected. If the sticks were advanced by the old rates alone, their energy would grow in every step, by a fraction
-/// of ω² dt² for a tangential angular frequency ω.
+/// The new slip rates are known only after the evaluation, so stick displacements are predicted with the old rates and
+/// then corrected. If they were advanced by the old rates alone, the energy of the tangential springs would grow in
+/// every step, by a fraction of ω² dt² for a tangential angular frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -38,8 +38,8 @@ pub(super) fn semi_implicit_euler<S: Space>(
 /// forces at the new position.
 ///
 /// Forces that depend on the velocity use a velocity predicted with the old acceleration, which is corrected
-/// afterwards. Sticks are likewise predicted with the old slip rate and then corrected. Springs that engage or release
-/// within the step act for a part of the step only
+/// afterwards. Stick displacements are likewise predicted with the old slip rate and then corrected. Springs that
+/// engage or release within the step act for a part of the step only
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)). Prediction errors are of second order and
 /// do not accumulate, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
@@ -64,7 +64,8 @@ pub(super) fn velocity_verlet<S: Space>(
     accept(model, state, scratch, S::Real::splat(0.5) * step);
 }
 
-/// Computes positions at the end of the step, and velocities and sticks from the old forces.
+/// Computes the positions at the end of the step, and predicts the velocities and stick displacements from the old
+/// forces.
 #[inline(always)]
 fn predict<S: Space>(
     model: &Model<S>,

@@ -12,7 +12,7 @@ use crate::state::State;
 
 use super::Lanewise;
 
-/// The lanes of a space.
+/// A set of lanes, as a mask for the numbers of a space.
 type MaskOf<S> = <<S as Space>::Real as Real>::Mask;
 
 /// A case that is ready to run: model, initial state, ground motion, time step and end time.
@@ -42,7 +42,7 @@ pub struct End {
     pub energy: EnergySummary,
 }
 
-/// Case source and result sink for a lockstep batch.
+/// Supplies the cases of a batch, and receives their states and results.
 pub trait Batch<'a, S: Space> {
     /// Ground motion of a case.
     type Drive: Drive<S::Single>;

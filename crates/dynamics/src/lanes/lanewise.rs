@@ -142,8 +142,8 @@ impl<T: Clone> Lanewise for PerLane<T> {
 
 /// Implements [`Lanewise`] from the names of the fields of a type:
 ///
-/// - `struct Name<R> { a, b }` for structs over a scalar and `struct Name<S> { a, b }` for structs over a space; all
-///   fields are lanewise, except those after `masks`, which are truth values;
+/// - `struct Name<R> { a, b }` for structs that are generic over a scalar, and `struct Name<S> { a, b }` for structs
+///   that are generic over a space; all fields are lanewise, except those after `masks`, which are truth values;
 /// - `enum Name<R> { One { a, b }, Two(a), Three }` for enums; the variant is part of the topology;
 /// - `same Name, Other;` for types that are equal in all lanes.
 #[macro_export]

@@ -27,8 +27,8 @@ pub(crate) use topology::kind;
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
-/// Kind of vector unit used for the computation: without a vector unit, scalars are computed; with a vector unit,
-/// bundles of numbers.
+/// Kind of vector unit used for the computation. Without a vector unit, all operations act on scalars; with a vector
+/// unit, they act on bundles of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
     /// No vector unit: scalars.
@@ -81,7 +81,8 @@ impl Width {
 
     /// Runs a task with the bundles of AVX2; `None` if this machine does not support AVX2.
     ///
-    /// Unlike [`Width::run`], this compiles the task for one vector unit only, for tasks that take long to compile.
+    /// Unlike [`Width::run`], this compiles the task for one vector unit only, which saves time for tasks that take
+    /// long to compile.
     pub fn run_avx2<T: Task>(task: T) -> Option<T::Output> {
         units::run_avx2(task)
     }

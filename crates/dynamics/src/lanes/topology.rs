@@ -20,8 +20,8 @@ pub(crate) fn kind<T>(value: &T) -> Kind {
     hasher.finish()
 }
 
-/// Properties that must be equal for models that run in one bundle: kinds and numbers of bodies, boundaries, laws and
-/// pairs.
+/// Properties that must be equal for models that run in one bundle: kinds and numbers of bodies, boundaries, contact
+/// laws and contact pairs.
 ///
 /// Masses, positions, sizes and constants may differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

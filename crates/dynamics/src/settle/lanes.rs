@@ -24,8 +24,8 @@ pub struct Stack<'a> {
     pub scratch: &'a mut Scratch<Planar>,
 }
 
-/// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes; returns the
-/// result of [`settle`] for each, in their order; `None` for stacks that were not settled before `stop` returned
+/// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes. Returns the
+/// result of [`settle`] for each stack, in order, or `None` for stacks that were not settled before `stop` returned
 /// `true`.
 ///
 /// A lane gets the next stack as soon as its current stack is at rest. The lanes share only the list of contact
@@ -133,7 +133,7 @@ impl<R: Real> Lanes<R> {
     }
 
     /// Rebuilds the list of contact elements of all lanes; in lanes where a new stack begins, the elements take over
-    /// the stick history of that stack.
+    /// the contact history of that stack.
     fn list(&mut self, begin: &[usize], stacks: &[Stack<'_>]) {
         let State { contact_elements, poses, twists, .. } = &mut self.state;
         let origins = contact_elements.rebuild(&self.model, poses, twists);

@@ -1,7 +1,7 @@
 //! Static equilibrium under gravity, computed before the ground moves.
 //!
-//! Equilibrium depends on positions and sticks alone. So it is solved in a fictitious time, with masses chosen for fast
-//! convergence and with vanishing velocities, at which no damper acts.
+//! Equilibrium depends on positions and stick displacements alone. So it is solved in a fictitious time, with masses
+//! chosen for fast convergence and with vanishing velocities, at which no damper acts.
 
 mod lanes;
 mod refusal;
@@ -35,7 +35,7 @@ pub struct Settled {
 /// reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Locked {
-    /// Number of contacts whose stick holds.
+    /// Number of sticking contacts, whose friction is below the limit.
     pub holding: usize,
     /// Number of contacts at the friction limit.
     pub slipping: usize,

@@ -24,8 +24,8 @@ const WITH_IT: f64 = 0.25;
 /// Ratio of penetration to displacement above which a body is classed as sinking.
 const SINKS: f64 = 0.5;
 
-/// Ratio of the displacement of the boundary that is due to rotation to the displacement of the center of mass, above
-/// which a body is classed as tipping: the ratio is 1 if the body rolls, or tips over its corner.
+/// Ratio above which a body is classed as tipping: the displacement of its boundary due to rotation, divided by the
+/// displacement of its center of mass. The ratio is 1 if the body rolls, or tips over its corner.
 const TURNS: f64 = 0.7;
 
 /// A body that does not come to rest under gravity.
@@ -91,7 +91,7 @@ pub enum Lack {
     Place,
     /// The forces do not balance, but the body stays in place.
     #[error(
-        "after {steps} steps its forces are still out of balance by {unbalanced:.0e} of gravity"
+        "after {steps} steps, its residual acceleration is still {unbalanced:.0e} of gravity"
     )]
     Time {
         /// Number of steps.
@@ -118,8 +118,9 @@ impl<S: Space> Departure<S> {
         Self { start, upward, first: None }
     }
 
-    /// Returns the displacement (m) of every body from its initial position: sideways, upward, or downward by more than
-    /// any body below. A body that sinks on soft contacts together with the bodies below is not counted as displaced.
+    /// Returns the displacement (m) of every body from its initial position: the largest of its displacement sideways,
+    /// its rise, and its sinking in excess of the bodies below. So a body that sinks on soft contacts together with the
+    /// bodies below is not counted as displaced.
     fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];

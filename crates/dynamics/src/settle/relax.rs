@@ -219,7 +219,7 @@ impl<S: Space> Relaxation<S> {
         self.arrive(model, state, scratch);
     }
 
-    /// Takes the first part of a step: moves bodies and sticks.
+    /// Takes the first part of a step: moves the bodies and advances the stick displacements.
     pub(super) fn set_out(&mut self, model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -234,7 +234,7 @@ impl<S: Space> Relaxation<S> {
         );
     }
 
-    /// Takes the second part of a step: computes the forces of the new state, and commits the sticks.
+    /// Takes the second part of a step: computes the forces of the new state, and commits the contact history.
     pub(super) fn arrive(
         &mut self,
         model: &Model<S>,
@@ -273,7 +273,7 @@ impl<S: Space> Relaxation<S> {
         self.touched = origins.iter().map(touched).collect();
     }
 
-    /// Restores the stick history and the state of the force elements in lanes at rest.
+    /// Restores the contact history and the state of the force elements in lanes at rest.
     #[inline(always)]
     fn keep(&self, state: &mut State<S>, sticks: &[Stick<S>], memory: &[Memory<S>]) {
         let rests = self.resting;
@@ -329,7 +329,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Adds to every stick the tangential displacement of its contact.
+    /// Adds the tangential displacement of every contact to its stick displacement.
     #[inline(always)]
     fn slide(&self, sticks: &mut [Stick<S>]) {
         for touch in &self.touches {
@@ -351,8 +351,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Adds to the sticks of new contacts the tangential displacement during the part of the step in which they
-    /// touched.
+    /// For every contact that began in this step, adds the tangential displacement since it began to its stick
+    /// displacement.
     #[inline(always)]
     fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);

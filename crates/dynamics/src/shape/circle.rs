@@ -1,4 +1,4 @@
-//! A circle about the origin: a barrel in transverse section (eq. 2.3) or a disc.
+//! A circle about the origin: a barrel in transverse section (Candia et al. 2008, eq. 2.3) or a disc.
 
 use std::f64::consts::{PI, TAU};
 

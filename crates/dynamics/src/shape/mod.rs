@@ -26,7 +26,8 @@ pub use whole::{
     Axes, Bearing, MOST_POINTS, NoWhole, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
 };
 
-/// Distance of a point from a surface, and the normal of the surface at the companion point.
+/// Signed distance of a point from a surface, and the normal of the surface at the companion point, which is the point
+/// of the surface from which the distance is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<S: Space> {
     /// Distance (m) from the surface to the point along `normal`; **negative when penetrating**.
@@ -59,7 +60,7 @@ impl<S: Space> Nearest<S> {
     }
 }
 
-/// Range of directions in which the boundary of a body faces at a point.
+/// Range of the directions that the boundary of a body faces at a point, such as a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
     /// Unit vectors with the meaning of [`Round::limits`], in the frame of the other body's surface.
@@ -72,8 +73,9 @@ pub struct Facing<S: Space> {
 }
 
 impl<S: Space> Facing<S> {
-    /// Creates the directions for a point with an outward unit normal, which is the mean of both sides at a corner. The
-    /// point bears on pieces that face the normal to within 70°, which includes both sides of a right-angled corner.
+    /// Creates the range for a point with an outward unit normal; at a corner, this is the mean of the normals of both
+    /// sides. The range extends to 70° from the normal, so it includes the normals of both sides of a right-angled
+    /// corner.
     #[inline(always)]
     pub(crate) fn outward(normal: S::Vector) -> Self {
         Self { limits: [-normal; 2], most: -0.35, slack: FLUSH }
@@ -144,8 +146,8 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     }
 
     /// Visits, in order, those of `count` points (m) that penetrate in at least one lane; passes the index, the
-    /// position and the gap of each. `facing` returns the directions in which the boundary of the points faces at a
-    /// point, if known.
+    /// position and the gap of each. `facing` returns the directions that the boundary faces at one of the points, if
+    /// known.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -174,7 +176,7 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 pub struct BoundaryNode {
     /// Position (m) in the frame of the shape.
     pub position: Vec2,
-    /// Length (m) of boundary that is tributary to the node.
+    /// Length of boundary (m) that the node represents.
     pub tributary_length: f64,
 }
 

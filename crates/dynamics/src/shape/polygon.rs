@@ -57,7 +57,7 @@ pub enum PolygonError {
     /// A corner turns inward, or three successive corners are in line.
     #[error(
         "corner {corner} at ({x:.6} m, {z:.6} m) does not turn left: give the corners of a convex \
-         polygon counterclockwise, none of them in line with its neighbors"
+         polygon counterclockwise, without three successive corners in line"
     )]
     NotConvex {
         /// The corner, counted from 1.

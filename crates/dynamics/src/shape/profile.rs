@@ -171,7 +171,7 @@ impl BarrelProfile {
             + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
     }
 
-    /// Returns the four edges and the two staves.
+    /// Returns the four edges and the two staves as round pieces.
     pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         let rise = self.stave_radius - self.bilge_radius;
         // Sine and cosine of the angle of the stave's normal at its end.

@@ -6,11 +6,12 @@ use crate::space::{Planar, Rotation2, Space, Vec2, Wrench};
 
 /// A convex solid that touches at its deepest point or, where it lies flat on a surface, along a whole line or face.
 pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Visits the contact patches with a surface, in the order of their sticks and in the frame of the surface. Patches
-    /// without contact may be included; their distance is positive.
+    /// Visits the contact patches with a surface, in ascending order of [`Patch::first`] and in the frame of the
+    /// surface. Patches without contact may be included; their distance is positive.
     ///
     /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to the
-    /// frame of the surface. In lanes other than `near`, the patches may be without contact whatever the distance is.
+    /// frame of the surface. In lanes outside of `near`, patches may be returned without contact, whatever the distance
+    /// is.
     fn meet(
         &self,
         surface: &S::Surface,
@@ -36,7 +37,7 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
     /// Returns a number that is equal for solids of one kind.
     fn kind(&self) -> u64;
 
-    /// Returns the maximum number of sticks that the solid needs for one surface.
+    /// Returns the maximum number of tangential springs that the solid needs for one surface.
     fn most_sticks(&self) -> usize;
 
     /// Returns the center (m, in the body frame, relative to the center of mass) and the radius (m) of an enclosing
@@ -67,7 +68,7 @@ impl<S: Space> Touch<S> {
 /// Contact of two bodies: at a point, along a line that they share, or over a face that they share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch<S: Space> {
-    /// Index of the first stick of the patch; less than [`Whole::most_sticks`].
+    /// Index of the first tangential spring of the patch; less than [`Whole::most_sticks`].
     pub first: usize,
     /// Deepest point of the patch.
     pub deepest: Touch<S>,
@@ -80,12 +81,12 @@ pub struct Patch<S: Space> {
 pub struct Points<S: Space> {
     /// The points.
     pub points: [Bearing<S>; MOST_POINTS],
-    /// Unit vectors along the touching faces of both bodies, along which the sticks are placed.
+    /// Unit vectors along the touching faces of both bodies, along which the tangential springs are placed.
     pub axes: [S::Vector; 4],
 }
 
-/// Maximum number of bearing points: the corners of the polygon that two rectangles share, computed from either body,
-/// and the deepest point.
+/// Maximum number of bearing points: the up to 8 corners of the polygon that two rectangles share, computed once from
+/// each body, and the deepest point.
 pub const MOST_POINTS: usize = 17;
 
 /// A point of [`Points`].
@@ -99,7 +100,8 @@ pub struct Bearing<S: Space> {
     pub turning: S::Spin,
 }
 
-/// Extent of a patch, whose pressure depends on the depth δ of its deepest point and the depth δ₀ of its middle.
+/// Extent of a patch. The pressure on the patch depends on the depth δ of its deepest point and the depth δ₀ of its
+/// middle.
 ///
 /// A line acts like two springs: one at its deepest point, and one at the mirror image of that point on the other side
 /// of the middle, at the depth `2 δ₀ − δ`. A face has two more springs in the middle. The energy
@@ -124,7 +126,8 @@ pub struct Spread<S: Space> {
     pub shares: Shares<S::Real>,
     /// Extent (m) of the patch from its middle.
     pub radius: S::Real,
-    /// Unit vectors along the patch, which turn with one of the bodies and along which the sticks are placed.
+    /// Unit vectors along the patch, which turn with one of the bodies and along which the tangential springs are
+    /// placed.
     pub axes: Axes<S>,
     /// Derivatives with respect to the motion of the bodies.
     pub slopes: Slopes<S>,

@@ -26,10 +26,10 @@ pub struct Barrel<R = f64> {
 /// Invalid dimensions of a barrel.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "a barrel {length} m long, with heads of {head_radius} m and a bilge of {bilge_radius} m in radius and a \
-     chime rounded by {rounding} m: lengths must be positive, the bilge wider than the heads, the staves \
-     curved along the barrel with at least the radius of the bilge, and the rounding smaller than half the length and \
-     than the radius of the heads"
+    "a barrel {length} m long cannot have a head radius of {head_radius} m, a bilge radius of {bilge_radius} m and a \
+     chime radius of {rounding} m: all lengths must be positive, the bilge must be wider than the heads, the radius of \
+     the longitudinal arc of the staves must be at least the bilge radius, and the chime radius must be smaller than \
+     half the length and than the head radius"
 )]
 pub struct BarrelError {
     length: f64,

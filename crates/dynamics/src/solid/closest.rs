@@ -1,7 +1,7 @@
 //! Closest points of two convex bodies.
 //!
-//! Lanes have the bits of a single run. The usual case, a tube on the stave of a barrel, is computed in all lanes
-//! together; for all others, lanes are processed one after the other.
+//! The result in each lane is bit-identical to that of a single run. The usual case, a tube on the stave of a barrel,
+//! is computed in all lanes together; for all others, lanes are processed one after the other.
 
 use super::barrel::Barrel;
 use super::rounded::Hull;
@@ -24,22 +24,22 @@ pub struct Closest {
     pub converged: bool,
 }
 
-/// Maximum number of evaluations of the search along an axis. Bisection alone needs 50, and where false position
-/// converges more slowly than bisection, every third evaluation is a bisection. An example is a slope that is constant
-/// to nine digits up to a kink.
+/// Maximum number of evaluations of the search along an axis. Bisection alone needs 50. False position may converge
+/// more slowly than bisection, for example where the slope is constant to nine digits up to a kink; then every third
+/// evaluation is a bisection.
 const MOST_ALONG: u32 = 180;
 
 /// Result of a search along a segment: the position, from −1 at `middle − half` to 1 at `middle + half`; the gap at
 /// this position; the number of evaluations; and `true` if the gap is the minimum.
 type Along = (f64, Gap<Spatial>, u32, bool);
 
-/// Tolerance of the slope of a gap along a segment, at the minimum of the gap; a fraction of the terms that add up to
+/// Tolerance within which the slope of a gap along a segment counts as zero, as a fraction of the terms that add up to
 /// the slope.
 const FLAT: f64 = 1e-14;
 /// Maximum number of steps of Halley's method along a segment before the slower search takes over.
 const MOST_HALLEY: u32 = 6;
-/// Length of a step below which the error after the step, which is proportional to its third power, is smaller than the
-/// rounding error.
+/// Length of a step below which the error that remains after the step is smaller than the rounding error; the error is
+/// proportional to the third power of the length.
 const LAST_HALLEY: f64 = 1e-5;
 
 /// Returns the point of a segment that is closest to a hull. For a tube there is a closed form. For the stave of a
@@ -74,8 +74,8 @@ pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     )
 }
 
-/// Searches as [`along`] does for a barrel, in all lanes together. Returns the position, the gap, and the lanes in which
-/// they have the bits of [`along`]; in all other lanes, the slower search is needed.
+/// Searches as [`along`] does for a barrel, in all lanes together. Returns the position, the gap, and the lanes in
+/// which both are bit-identical to the result of [`along`]; in all other lanes, the slower search is needed.
 #[inline(always)]
 pub(super) fn along_barrel<R: Real>(
     barrel: &Barrel<R>,
@@ -243,8 +243,8 @@ impl Set<'_> {
         Support { point, along, across, around, outward }
     }
 
-    /// Returns the support in the direction of the axis of a head, at the point of the rim that is nearest to a point
-    /// (m).
+    /// Returns the support in the axial direction of a head. All points of the head are equally far in this direction;
+    /// the point of the rim that is nearest to `toward` (m) is used.
     fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
         let (barrel, toward) = (self.barrel, self.rotation.unapply(toward - self.center));
         let radial = Vec3::new(0.0, toward.y, toward.z).unit_or(Vec3::new(0.0, 0.0, 1.0));

@@ -174,11 +174,11 @@ pub(super) fn shared_by_both(
 /// and `normal` points out of the target at the closest points.
 ///
 /// The two faces that meet at the closest points overlap in a polygon, in projection on the face of the target. Each
-/// corner of the polygon acts like one spring per right angle by which the polygon turns at the corner, so the whole
-/// polygon always acts like four springs. A corner of a block on the face of the other block acts like one spring.
-/// Where edges of twisted blocks cross, two corners of the polygon replace one corner of a block. The result is a
-/// continuous function of the pose, since the turn of a convex boundary is continuous, and exactly flush faces need no
-/// special case.
+/// corner of the polygon acts like a number of springs: the angle by which the boundary turns at the corner, divided by
+/// 90°. So the whole polygon always acts like four springs. A corner of a block on the face of the other block acts
+/// like one spring. Where edges of twisted blocks cross, two corners of the polygon replace one corner of a block. The
+/// result is a continuous function of the pose, since the turn of a convex boundary is continuous, and exactly flush
+/// faces need no special case.
 fn shared(
     contactor: &Block,
     target: &Block,

@@ -36,8 +36,8 @@ pub(super) fn smooth(u: f64) -> f64 {
 /// Returns the weights of a patch that acts like `springs` springs and extends `length` (m) from its middle, for two
 /// solids that are inclined to each other; `sine_squared` is the squared sine of the angle between them.
 ///
-/// The shorter the patch, the smaller the permitted angle: the part of an inclined tube in front of a head does not
-/// contain the deepest point, so its weight must vanish before this part ends.
+/// The shorter the patch, the smaller the permitted angle. If a tube is inclined to a head, its deepest point is not in
+/// the part of the tube in front of the head, so the weight must decrease to zero before this part ends.
 fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     let short = LONG / length;
     let flat = smooth(1.0 - sine_squared * (1.0 + short * short) / (WIDEST * WIDEST));
@@ -204,7 +204,7 @@ struct Line {
     length: f64,
 }
 
-/// Component along the axis of a barrel below which a contact normal is taken to be that of the stave.
+/// Axial component of a contact normal below which the contact is taken to be on the stave of a barrel.
 pub(super) const MOST_ON_STAVE: f64 = 0.5;
 
 /// Returns the contact line of a tube on a head or a face of a solid, in the frame of that solid.
@@ -309,8 +309,8 @@ fn head_on_block(
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// Returns the patch of the head of a barrel on a plane perpendicular to an axis; the plane is given by its height (m)
-/// along the axis and its rounding (m).
+/// Returns the contact patch of a barrel's head on a plane perpendicular to an axis; the plane is given by its height
+/// (m) along the axis and its rounding (m).
 ///
 /// `middle` maps the position of the center of the head in the plane to the middle of the shared area and its extent
 /// (m).

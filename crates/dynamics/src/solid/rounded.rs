@@ -36,10 +36,11 @@ pub struct Rounded<R = f64> {
     pub tributary_length: R,
 }
 
-/// Numbers of sticks of a line and of a face: one at the center of pressure, and two along each axis of the patch.
+/// Numbers of tangential springs of a line contact and of a face contact: one at the center of pressure, and two along
+/// each axis of the patch.
 const OF_LINE: usize = 3;
 const OF_FACE: usize = 5;
-/// Number of sticks of a block, which touches the half-space with each of its corners.
+/// Number of tangential springs of a block on the half-space: one for each corner.
 const CORNERS: usize = 8;
 
 impl<R: Real> Rounded<R> {
@@ -143,14 +144,14 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
     }
 }
 
-/// Returns a touch whose force acts midway between the surfaces, so that the result does not depend on the choice of
-/// the target.
+/// Returns a contact point at which the force acts midway between the surfaces. So the result does not depend on the
+/// choice of the target.
 #[inline(always)]
 fn midway<R: Real>(point: Vec3<R>, gap: Gap<Spatial<R>>) -> Touch<Spatial<R>> {
     Touch { node: point + gap.normal * (gap.distance * R::splat(0.5)), gap }
 }
 
-/// Returns the touch of a ball of a radius (m) on the half-space.
+/// Returns the contact point of a ball with a radius (m) on the half-space.
 #[inline(always)]
 fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
     let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));

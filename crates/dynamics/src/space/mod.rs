@@ -164,7 +164,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Returns the rate of a rotation vector whose current value is `turned`, for a body with a spin.
     ///
     /// In three dimensions rotations are not additive, so the integral of a spin over time is not a rotation vector.
-    /// The integral of this rate is one.
+    /// The integral of the rate returned here is a rotation vector.
     fn turn_rate(turned: Self::Spin, spin: Self::Spin) -> Self::Spin;
     /// Returns the smallest principal moment of inertia (kg·m²) in one lane.
     fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
@@ -190,9 +190,9 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
     /// Transforms a tangent from the inertial frame to a rotated frame.
     fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Returns the rate of change (m/s) of a stick in the inertial frame that is due to its rotation about the normal.
-    /// The stick rotates with the mean spin of both bodies. `spins` contains the spin (rad/s) of one body and the spin
-    /// of the other body relative to the first, in a rotated frame.
+    /// Returns the rate of change (m/s) of a stick displacement, in the inertial frame, due to its rotation about the
+    /// normal. The displacement rotates with the mean spin of both bodies. `spins` contains the spin (rad/s) of one
+    /// body and the spin of the other body relative to the first, in a rotated frame.
     fn stick_turn(
         displacement: Self::Tangent,
         plane: Self::TangentPlane,

@@ -150,7 +150,7 @@ class BodyFields(TypedDict, total=False):
 
 
 class BodyInSpaceFields(TypedDict, total=False):
-    """A rigid body of a free scene in space, with x to the right, y away from the viewer and z up."""
+    """A rigid body of a three-dimensional scene, with x to the right, y away from the viewer and z up."""
 
     center_of_mass: list[Quantity]
     """Center of mass, relative to the reference point of the solid. Default: the center of mass of a homogeneous
@@ -1019,7 +1019,7 @@ class SineFields(TypedDict, total=False):
 
 
 class SolidFields(TypedDict, total=False):
-    """Shape of a body in space, relative to its reference point."""
+    """Shape of a three-dimensional body, relative to its reference point."""
 
     radius: Quantity
     """Radius."""
@@ -1259,7 +1259,7 @@ class ViscousFields(TypedDict, total=False):
 
 
 class ViscousInSpaceFields(TypedDict, total=False):
-    """Viscous drag on the motion of a body in space, the same in all directions."""
+    """Viscous drag on the motion of a three-dimensional body, the same in all directions."""
 
     angular: Quantity
     """Drag moment divided by the angular velocity. Default: 0 N m s."""

@@ -74,7 +74,7 @@ impl<S: Space> PairKinematics<S> {
     }
 }
 
-/// Frame and relative motion of two bodies at their contact, in the frame of the target's surface.
+/// Relative pose and relative motion of two bodies, in the frame of the target's surface.
 #[derive(Clone, Copy)]
 pub(super) struct Meeting<'a, S: Space> {
     frame: &'a PairFrame<S>,

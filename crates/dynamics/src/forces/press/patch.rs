@@ -1,5 +1,5 @@
-//! Forces of a patch: normal forces, which need no history, and friction, with sticks placed around the center of
-//! pressure.
+//! Forces of a contact patch: normal forces, which need no history, and friction, whose tangential springs are placed
+//! around the center of pressure.
 
 use super::{Contact, Laws, Press, Pressed};
 use crate::contact::NormalForce;
@@ -8,7 +8,7 @@ use crate::shape::{Bearing, Gap, Patch, Points, Spread, Touch};
 use crate::space::{Linear, Space, Wrench};
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds the forces of a patch whose sticks start at `first` in the list of elements.
+    /// Adds the forces of a patch. The elements with its tangential springs start at the index `first` of the list.
     #[inline(always)]
     pub(super) fn patch(&mut self, first: usize, patch: &Patch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -139,7 +139,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             depth,
             rate,
         };
-        // In a point contact only the first stick remains.
+        // In a point contact only the first tangential spring remains.
         let aside = (one - lean * lean) * shares.aside;
         self.stick(first, &pressure, S::Vector::default(), one - aside);
         let axes = spread.axes.all();
@@ -152,11 +152,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// Adds the forces of points that act like parallel springs, whose sticks start at `first` in the list of elements.
+    /// Adds the forces of points that act like parallel springs. The elements with their tangential springs start at
+    /// the index `first` of the list.
     ///
-    /// Friction acts about the center of pressure, at the root-mean-square distance of the points. So the friction
-    /// transfers the same moment as friction at the points would, and the sticks persist when different points come
-    /// into contact.
+    /// Friction acts at places around the center of pressure: in the directions of [`Points::axes`], at the
+    /// root-mean-square distance of the bearing points from the center. So it transfers the same moment as friction at
+    /// the points would, and the tangential springs persist when different points come into contact.
     #[inline(always)]
     pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -302,7 +303,7 @@ struct Pressure<S: Space> {
     center: S::Vector,
     normal: S::Vector,
     normal_force: S::Real,
-    /// Factor by which the constants of the sticks are multiplied.
+    /// Factor by which the constants of the tangential springs are multiplied.
     stiffness: S::Real,
     depth: S::Real,
     rate: S::Real,

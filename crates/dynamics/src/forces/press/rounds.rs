@@ -14,13 +14,13 @@ const SLACK: f64 = 1e-9;
 /// to the end may share its contact with the other body's corner at that end.
 const COMPANION: f64 = 0.01;
 
-/// Sine of the largest angle, 45°, by which a side may lie outside the limits of a round piece and still be faced by
-/// the piece.
+/// Sine of the largest angle, 45°, by which the direction toward a side may lie outside the limits of a round piece
+/// that still faces the side.
 const FACES: f64 = 0.7;
 
-/// Maximum distance (m) of the center of a round piece outside the other body's core at which the piece can still bear
-/// on any side that it faces, and not only on the nearest one. Where two bodies are flush, one of two nearly coincident
-/// corners lies within this distance.
+/// Distance (m) outside the other body's core up to which the center of a round piece is treated like a center inside
+/// the core: the piece can bear on any side that it faces, and not only on the nearest side. Where two bodies are
+/// flush, one of two nearly coincident corners lies within this distance.
 const NEARLY_INSIDE: f64 = 1e-5;
 
 /// Tolerance by which the direction toward another round piece may lie outside the limits of a round piece.
@@ -30,8 +30,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the contacts of the round pieces of a convex boundary, each with its deepest point.
     ///
     /// A round piece touches a straight side if the normal of the contact lies within the [limits](Round::limits) of
-    /// the piece; limits at which the boundary of the body continues straight do not apply. Two round pieces touch if
-    /// the normal lies within the limits of both; this contact belongs to the pair whose contactor
+    /// the piece; a limit at which the boundary of the body continues with a straight side does not apply. Two round
+    /// pieces touch if the normal lies within the limits of both; this contact belongs to the pair whose contactor
     /// [leads](Press::leads).
     #[inline(always)]
     pub(super) fn rounds(&mut self, rounds: &[Round<S>], group: &Group, surface: &S::Surface) {
@@ -112,8 +112,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         surface.bearing(center, &facing, nearest)
     }
 
-    /// Returns the share of a corner that bears on a side near its end, where the corner at that end may bear on a side
-    /// of this body as well.
+    /// Returns the share, from 0 to 1, with which a corner bears on a side of the other body. The share is below 1 only
+    /// near the end of that side, where the other body's corner may bear on a side of this body as well.
     ///
     /// Where two faces overlap slightly, both corners at the ends of the overlap are inside the other body. They are
     /// one contact, which splits into two as the overlap grows. The corner nearer to the end of the side that it bears
@@ -133,7 +133,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             let apart = self.frame.to_contactor(apart);
             let toward = self.frame.to_contactor(-nearest.gap.normal);
             for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
-                // The side of this body that lies along the other.
+                // The side of this body that lies along the side of the other body.
                 if arc.is_none() {
                     let along = S::Real::splat(-FACES).lt(toward.dot(*limit));
                     partly = partly | (along & to_end.lt(apart.dot(*limit) - slack));
