@@ -1,9 +1,9 @@
 //! Studies: one scenario run many times, with varied values and motions.
 //!
 //! ```text
-//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard a chunk
+//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard per chunk
 //!                                                                    │ collect
-//!                                                  StudyTable: one row a case ─▶ CSV, Parquet
+//!                                                  StudyTable: one row per case ─▶ CSV, Parquet
 //! ```
 //!
 //! A study is a deterministic list of chunks of cases, and each chunk is run as a whole. The rows of a chunk
@@ -103,7 +103,7 @@ pub struct Study {
     correlations: Vec<Correlation>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
-    /// `true` if some cases simulate the stack in space.
+    /// `true` if some cases are three-dimensional.
     in_space: bool,
     /// Levels of intensity that are combined with every motion and every set of factors; a single `None` if
     /// there are no levels.
@@ -130,7 +130,7 @@ struct Factor {
     base: Option<Value>,
     /// `true` if models for different values of the factor may have different bodies or contacts.
     structural: bool,
-    /// `true` if at least one of the values causes the stack to be simulated in space.
+    /// `true` if at least one of the values causes the stack to be simulated in three dimensions.
     in_space: bool,
 }
 

@@ -117,10 +117,10 @@ pub struct JudgedCase {
     drift: f64,
     /// Intensity (SI) of the case in each measure of [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
-    /// Number of the curve to which the case belongs.
+    /// Index of the curve to which the case belongs.
     ///
-    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each
-    /// case. In an incremental dynamic analysis a curve is one hunt.
+    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each case. In an
+    /// incremental dynamic analysis, a curve is one hunt: the runs of one motion at rising levels until collapse.
     pub curve: u32,
 }
 
@@ -161,14 +161,14 @@ pub struct Cases {
     pub measures: Vec<Measure>,
     /// Index of the measure of the study in `measures`.
     pub main: usize,
-    /// `true` if every case was scaled to a level of the measure of the study, so that each level has a raw
-    /// fraction of collapse.
+    /// `true` if every case was scaled to a requested level of the study's intensity measure, so that each level has a
+    /// raw fraction of collapse.
     pub leveled: bool,
-    /// `true` if the levels were chosen by hunts for collapse, so that they depend on earlier results.
+    /// `true` for an incremental dynamic analysis, in which each level depends on the results of earlier runs.
     pub hunted: bool,
     /// `true` if cases are independent samples: motion, level and factors are drawn for each case.
     pub sampled: bool,
-    /// Names of the factors that are drawn anew for each case of a motion.
+    /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
     pub drawn: Vec<String>,
     /// Numbers of cases by the way in which they ended.
     pub endings: Endings,
@@ -218,7 +218,7 @@ pub(super) struct Reading {
     rows: usize,
     /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
-    /// Number of quantities that a sensitivity design exchanges between its samples; 0 for other designs.
+    /// Number of quantities that a Saltelli design exchanges between the two samples of a block; 0 for other designs.
     varied: usize,
 }
 
@@ -285,7 +285,8 @@ impl Reading {
         let drawn = &self.cases.drawn;
         let fixed: Vec<_> =
             table.of_role(Role::Factor).filter(|f| !drawn.contains(&f.spec.name)).collect();
-        // Of a block, only the first two cases are independent samples; the others differ from these in one quantity.
+        // Only the first two cases of a block are independent samples; each of the others differs from them in one
+        // quantity.
         let block = i64::try_from(self.varied + 2).unwrap_or(i64::MAX);
         let numbers = table.integers("case").filter(|_| self.varied > 0);
         let exchanged =
@@ -414,7 +415,7 @@ impl Cases {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns a noun for the curves, for use in a sentence.
+    /// Returns what the curves are called in a sentence: "motions", or a longer phrase if a motion has several curves.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"
@@ -436,10 +437,10 @@ impl Cases {
 
     /// Groups the cases by intensity, ascending.
     ///
-    /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with
-    /// equal numbers of neighboring cases, and the intensity of a bin is the geometric mean over its cases.
-    /// The limits of a few dozen cases per bin and about a dozen bins are chosen because a fraction needs
-    /// several dozen cases, and a trend is clearest in about a dozen bins.
+    /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
+    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least two
+    /// dozen cases, because the fraction of failures in a smaller bin would be too uncertain. There are at most sixteen
+    /// bins, because a trend is clearest in about a dozen.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all
@@ -486,7 +487,7 @@ const FEWEST_OF_BIN: usize = 24;
 /// Maximum number of bins.
 const MOST_BINS: usize = 16;
 
-/// Minimum mean number of cases per level; with fewer, levels are not counted separately.
+/// Minimum mean number of cases per level. With fewer cases, neighboring levels are counted together in bins.
 const FEWEST_OF_LEVEL: usize = 8;
 
 /// Formats a value of a factor.

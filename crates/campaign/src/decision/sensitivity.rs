@@ -18,7 +18,7 @@ pub struct Group {
     pub cases: u32,
     /// Number of cases that collapsed.
     pub collapsed: u32,
-    /// 95 % interval of the share of collapse.
+    /// 95 % interval of the share of cases that collapse.
     pub interval: Interval,
     /// Counts at each level of intensity, for one-at-a-time designs; empty otherwise.
     pub levels: Vec<Level>,
@@ -33,7 +33,7 @@ pub struct Level {
     pub cases: u32,
     /// Number of cases that collapsed.
     pub collapsed: u32,
-    /// 95 % interval of the share of collapse, clustered by motion.
+    /// 95 % interval of the share of cases that collapse, clustered by motion.
     pub interval: Interval,
 }
 
@@ -106,8 +106,8 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
     found
 }
 
-/// Returns the most frequent value of a factor, or the first of several. In a one-at-a-time design this is
-/// the base value.
+/// Returns the most frequent value of a factor; of several equally frequent values, the first. In a one-at-a-time
+/// design this is the base value.
 fn most_frequent(factor: &Column) -> Option<Value> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in 0..factor.values.len() {
@@ -124,7 +124,7 @@ fn group(label: String, of: Vec<&JudgedCase>) -> (Group, Vec<&JudgedCase>) {
     (Group { label, cases, collapsed, interval, levels: Vec::new() }, of)
 }
 
-/// Counts cases and collapses, and computes an interval of their share that is clustered by motion.
+/// Counts cases and collapses, and computes the interval of the share of collapses, clustered by motion.
 fn by_motion(of: &[&JudgedCase]) -> Level {
     let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     for case in of {

@@ -86,8 +86,8 @@ fn named(velocity: f64) -> String {
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which
-/// the upper bound of the probability of collapse is larger.
+/// Returns the results of stacks with a number of levels at a given PGV (m/s), in the direction in which the upper
+/// bound of the probability of collapse is larger.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     let directions = all.request.directions().into_iter();
     directions
@@ -106,8 +106,8 @@ fn rating(at: &AtLevel) -> Rating {
     }
 }
 
-/// Returns the largest number of levels that is rated low at a level of PGV (m/s), provided that all smaller
-/// numbers are rated low as well.
+/// Returns the largest number of levels that is rated low at a given PGV (m/s), provided that all smaller numbers are
+/// rated low as well.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     all.request
         .heights()
@@ -157,14 +157,14 @@ fn headline(all: &Heights) -> String {
     )
 }
 
-/// Returns the text `planes` if the stacks are simulated in planes, and the text `space` if they are simulated in
-/// space.
+/// Returns the text `planes` if the stacks are simulated in planes, and the text `space` if they are simulated in three
+/// dimensions.
 fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
     if all.request.in_space { space } else { planes }
 }
 
-/// Returns a direction as an insertion, such as ", along the barrels"; empty in space, where there is only one
-/// direction.
+/// Returns a direction as an insertion, such as ", along the barrels"; empty for three-dimensional shaking, which has
+/// only one direction to be reported.
 fn inserted(direction: Direction) -> String {
     match direction {
         Direction::Plane(view) => format!(", {}", view.words()),
@@ -172,8 +172,8 @@ fn inserted(direction: Direction) -> String {
     }
 }
 
-/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which the upper
-/// end of the range over the uncertain constants is larger.
+/// Returns the results of stacks with a number of levels at a given PGV (m/s), in the direction in which the range over
+/// the uncertain constants has the larger upper end.
 fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel, [f64; 2])> {
     let found = |direction| {
         let height = all.of(levels, direction)?;
@@ -185,15 +185,16 @@ fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel
     found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
 }
 
-/// Returns the largest number of levels whose range over the uncertain constants stays below the limit for the rating
-/// "low" at a level of PGV (m/s), provided that the ranges of all smaller numbers do as well.
+/// Returns the largest number of levels for which the probability of collapse at a given PGV (m/s), with its 95 % range
+/// over the uncertain constants, stays below the limit for the rating "low". All smaller numbers of levels must stay
+/// below it as well.
 fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
     let low =
         |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
     all.request.heights().take_while(low).last()
 }
 
-/// Describes up to which height the chance of collapse at a level of PGV (m/s) is low whatever the uncertain constants
+/// Describes up to which height the chance of collapse at a given PGV (m/s) is low, whatever the uncertain constants
 /// are; empty if their effect is unknown.
 fn over_constants(all: &Heights, velocity: f64) -> String {
     let highest = highest_over_constants(all, velocity);
@@ -224,7 +225,8 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     )
 }
 
-/// Tabulates the range over the uncertain constants, in the direction in which its upper end is higher.
+/// Tabulates the range of the probability of collapse over the uncertain constants, in the direction in which its upper
+/// end is higher.
 fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
@@ -243,8 +245,8 @@ fn over_constants_table(all: &Heights) -> Table {
     )
 }
 
-/// Returns the directions in which stacks of two levels are not rated low at a level of PGV (m/s), such as ",
-/// along the barrels".
+/// Returns the directions in which stacks of two levels are not rated low at a given PGV (m/s), such as ", along the
+/// barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |direction: &Direction| {
         let at = all.of(LOWEST, *direction).and_then(|height| height.at(velocity));
@@ -255,8 +257,8 @@ fn weaker(all: &Heights, velocity: f64) -> String {
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
-/// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24 motions
-/// none fell (the probability of collapse is at most 12 % with 95 % confidence)".
+/// Describes the worst result of all stacks of up to `levels` levels at a given PGV (m/s), such as "in 24 motions none
+/// fell (the probability of collapse is at most 12 % with 95 % confidence)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -549,7 +551,8 @@ fn medians(all: &Heights) -> Figure {
     )
 }
 
-/// Largest ratio of a fitted median to the highest level of shaking above which the cases do not determine it.
+/// Maximum ratio of a fitted median to the highest level of shaking. The cases do not determine a median that lies
+/// further above that level.
 const MOST_BEYOND: f64 = 2.0;
 
 /// Returns the fitted curve if the cases determine its median.

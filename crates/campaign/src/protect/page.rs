@@ -184,7 +184,7 @@ fn sentences(all: &Ranking) -> Vec<String> {
     said
 }
 
-/// Describes in which share of the draws of the uncertain constants the best protection is better than others.
+/// Describes how often the best protection is better than others, as a share of the draws of the uncertain constants.
 fn order(all: &Ranking, best: &Ranked) -> Option<String> {
     let better = best.better_than_as_it_is?;
     let at = all.all.iter().position(|one| std::ptr::eq(one, best));

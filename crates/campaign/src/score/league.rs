@@ -55,8 +55,8 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
     catalog::RACKS.iter().map(rack).chain(devices.map(device)).collect()
 }
 
-/// Returns the changes that put a stack on a rack: the rack, and the number of columns of one rack if the columns of
-/// the stack do not fill whole racks.
+/// Returns the overrides that replace the rack of a stack. If the columns of the stack do not fill whole racks, the
+/// overrides reduce the stack to the columns of a single rack.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
     if !stack.columns.is_multiple_of(rack.barrels.max(1)) {
@@ -137,14 +137,14 @@ fn reason(error: &ScoreError) -> String {
 
 impl League {
     /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than that of the
-    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, and if draws are unknown.
+    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, or if draws are unknown.
     pub fn better_than_next(&self, row: usize) -> Option<f64> {
         let [own, next] = [self.rows.get(row)?, self.rows.get(row + 1)?].map(|(_, s)| s.draws());
         (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))
     }
 
-    /// Returns the table as CSV, with units in the heading. Racks and devices that could not be scored follow all others,
-    /// each with the reason.
+    /// Returns the table as CSV, with units in the header row. Racks and devices that could not be scored follow all
+    /// others, each with the reason.
     pub fn to_csv(&self) -> String {
         type Cell<'a> = &'a dyn Fn(&Row<'_>) -> Option<Value>;
         struct Row<'a> {

@@ -58,7 +58,7 @@ pub(super) type OnScale = (String, u32, Option<[u32; 2]>);
 /// Scores of the racks of the catalog, from `validation/league`, without devices.
 const REFERENCES: &str = include_str!("references.csv");
 
-/// Returns the racks of the catalog with which a score of the protocol in planes is compared.
+/// Returns the scores of the catalog's racks, with which a score from runs in planes is compared.
 pub(super) fn references() -> Vec<OnScale> {
     let row = |line: &str| {
         let mut cells = line.split(',');
@@ -70,7 +70,7 @@ pub(super) fn references() -> Vec<OnScale> {
     REFERENCES.lines().skip(1).filter_map(row).collect()
 }
 
-/// Draws the score on a scale, among the racks of the catalog if these have a score of the same protocol.
+/// Draws the score on a scale, beside the scores of the catalog's racks if these were computed with the same protocol.
 fn scale_of(sheet: &Sheet) -> Figure {
     let own = (format!("this stack: {}", scored(sheet)), sheet.score(), sheet.range());
     let known = sheet.protocol.name.split(',').next() == Some(Protocol::rockscore().name.as_str());
@@ -239,8 +239,8 @@ fn protocol_ends(sheet: &Sheet) -> [f64; 2] {
     [velocities.first(), velocities.last()].map(|end| end.copied().unwrap_or(0.0))
 }
 
-/// Formats a range of velocities; an end beyond the levels of the protocol is shown as "below" or "above" the last
-/// level.
+/// Formats a range of velocities; an end beyond the levels of the protocol is shown as "below" the lowest level or
+/// "above" the highest level.
 fn over(of: &Interval, [lowest, highest]: [f64; 2]) -> String {
     let low = if of.low < lowest { format!("below {}", shown(lowest)) } else { shown(of.low) };
     let high =

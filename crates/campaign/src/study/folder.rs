@@ -74,10 +74,10 @@ described! {
         pub measure: Option<String>,
         /// Stopping rule of a Monte Carlo design; null if there is none.
         pub stop: Option<StopRule>,
-        /// Names of the factors that are drawn anew for each case of a motion.
+        /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
         pub drawn: Vec<String>,
-        /// Quantities that a sensitivity design exchanges between samples, in the order of the cases in a
-        /// block; empty for other designs.
+        /// Names of the quantities that a Saltelli design exchanges between the two samples of a block, in the order of
+        /// the cases in a block; empty for other designs.
         pub varied: Vec<String>,
         /// Inputs that all cases share.
         pub common: Vec<Common>,

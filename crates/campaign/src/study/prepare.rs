@@ -257,7 +257,7 @@ impl Study {
     }
 }
 
-/// Returns an error for scenarios that a study cannot run: a stack in both planes, and a free scene in space.
+/// Returns an error for scenarios that a study cannot run: a stack in both planes, and a three-dimensional free scene.
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {

@@ -133,11 +133,11 @@ pub enum PulseKind {
         /// Phase (rad).
         phase: f64,
     },
-    /// Cycloid A of Jacobsen and Ayre: one forward displacement.
+    /// Cycloidal pulse of type A (Jacobsen and Ayre): one forward displacement.
     CycloidA,
-    /// Cycloid B: one displacement forward and back.
+    /// Cycloidal pulse of type B: one displacement forward and back.
     CycloidB,
-    /// Cycloid C: several cycles that start and end at rest.
+    /// Cycloidal pulse of type C: several cycles that start and end at rest.
     CycloidC {
         /// Number of cycles.
         cycles: u32,
