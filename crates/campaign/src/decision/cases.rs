@@ -120,7 +120,8 @@ pub struct JudgedCase {
     /// Index of the curve to which the case belongs.
     ///
     /// A curve consists of the cases of one motion that agree in all factors except those drawn for each case. In an
-    /// incremental dynamic analysis, a curve is one hunt: the runs of one motion at rising levels until collapse.
+    /// incremental dynamic analysis, a curve is one hunt: all runs of the search for the level at which one motion makes
+    /// the stack collapse.
     pub curve: u32,
 }
 
@@ -285,8 +286,8 @@ impl Reading {
         let drawn = &self.cases.drawn;
         let fixed: Vec<_> =
             table.of_role(Role::Factor).filter(|f| !drawn.contains(&f.spec.name)).collect();
-        // Only the first two cases of a block are independent samples; each of the others differs from them in one
-        // quantity.
+        // Only the first two cases of a block are independent samples; each of the others is the first sample with one
+        // quantity taken from the second.
         let block = i64::try_from(self.varied + 2).unwrap_or(i64::MAX);
         let numbers = table.integers("case").filter(|_| self.varied > 0);
         let exchanged =
@@ -438,9 +439,9 @@ impl Cases {
     /// Groups the cases by intensity, ascending.
     ///
     /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
-    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least two
-    /// dozen cases, because the fraction of failures in a smaller bin would be too uncertain. There are at most sixteen
-    /// bins, because a trend is clearest in about a dozen.
+    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. Unless there are
+    /// fewer cases, a bin has at least two dozen, because the fraction of failures in a smaller bin would be too
+    /// uncertain. There are at most sixteen bins, because a trend is clearest in about a dozen.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all
