@@ -212,9 +212,9 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let series = vec![Series::bars("lowest to highest share of collapse", bars)];
     Figure::new(
         "tornado",
-        "Effect of the varied quantities: the share of collapse at the least favorable and at the most favorable \
-         value of each (or third of its values), over all motions and levels. The vertical line is the share of all \
-         cases.",
+        "Effect of the varied quantities: the share of collapse at the least and at the most favorable value of each \
+         quantity, over all motions and levels; if a quantity has many values, they are grouped into thirds. The \
+         vertical line marks the share for all cases together.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
             y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),
@@ -244,8 +244,8 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     Figure::new(
         "losses",
         format!(
-            "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is an assumption \
-             based on the height of its fall, with a range: see below.",
+            "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is assumed from \
+             the height of its fall; the range is that of the assumptions listed below.",
             losses.barrels
         ),
         Plot {

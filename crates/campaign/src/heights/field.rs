@@ -29,7 +29,8 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
          and is not modeled here."
             .into(),
         if all.request.in_space {
-            "Each run is in space, under all components of its motion; those of the record are scaled by one factor."
+            "Each run is three-dimensional, under all components of its motion; the components of a record are scaled \
+             by one factor."
         } else {
             "Each run is in one plane. A real stack is shaken across and along the barrels at once, so that its chance of \
              collapse lies between the larger of the two chances and their sum."

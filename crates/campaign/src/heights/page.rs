@@ -231,9 +231,9 @@ fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
         format!(
-            "95 % range of the chance of collapse over the uncertain constants of the seats, and the constant that \
-             decides{}.",
-            in_planes(all, ", in the direction in which the range ends higher", "")
+            "95 % range of the chance of collapse over the uncertain constants of the seats{}, and the constant that \
+             decides.",
+            in_planes(all, ", in the direction with the higher upper end", "")
         ),
         |levels, velocity| {
             Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
@@ -290,7 +290,7 @@ fn sentences(all: &Heights) -> Vec<String> {
         in_planes(
             all,
             "across and along the barrels",
-            "in space and in horizontal directions that were drawn for every run"
+            "in three dimensions, in horizontal directions that were drawn for every run"
         ),
         all.motions
     )];
@@ -342,8 +342,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse{}, and in brackets the range of the true chance; each \
              end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
-             below, so that a higher chance is rated low in at most one of 20 studies. ! medium: at most {:.0} %. ✗ \
-             high: more. These limits were chosen by judgment.",
+             below, so that a stack with a higher chance is rated low in at most one of 20 studies. ! medium: at most \
+             {:.0} %. ✗ high: more. These limits were chosen by judgment.",
             in_planes(all, ", in the direction with the higher bound", ""),
             100.0 * LOW.0,
             100.0 * LOW.1,
@@ -353,9 +353,9 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(
             "With a probability of 95 %, the range contains the chance of collapse of a stack whose friction, \
              stiffness and damping are drawn once from their distributions; it includes the sampling error. The \
-             brackets in the table above are for stacks whose constants are drawn anew for every run. A constant \
-             decides if the chance changes by 20 percentage points or more over the range of that constant. Measure \
-             this constant, and state its value in a scenario of your own.",
+             brackets in the table above are for stacks whose constants are drawn anew for every run. The constant \
+             that decides changes the chance by 20 percentage points or more over its own range. Measure this \
+             constant, and state its value in a scenario of your own.",
         ),
         text(
             "To find the row of your site, ask for the peak ground velocity of your design earthquake, or read it from a \
@@ -456,7 +456,7 @@ fn static_margins(all: &Heights) -> Table {
             in_planes(
                 all,
                 "",
-                "; the smaller of those of the models in planes, across and along the barrels"
+                "; the smaller of the margins of the two plane models, across and along the barrels"
             )
         ),
         &all.heights,
@@ -597,11 +597,11 @@ fn median_table(all: &Heights) -> Table {
 fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
-            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
-             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and near-fault \
-             pulses){}, each scaled to every level of PGV{}.",
-            all.request.synthetic,
+            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component{}. \
+             Number of additional synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, \
+             and near-fault pulses): {}. Each motion is scaled to every level of PGV{}.",
             if all.request.records.is_empty() { "" } else { ", and the given records" },
+            all.request.synthetic,
             in_planes(
                 all,
                 "",
@@ -610,20 +610,21 @@ fn rests_on(all: &Heights) -> Vec<String> {
             )
         ),
         format!(
-            "Full barrels, `{}` of the catalog. Friction, stiffness and damping of the seats are drawn for every run \
-             around the values of the catalog, with the default dispersions of a scenario. Values and dispersions \
-             are assumptions; wet floors and painted racks differ. Measure your own.",
+            "All barrels are full and of the type `{}` of the catalog. Friction, stiffness and damping of the seats \
+             are drawn for every run around the values of the catalog, with the default dispersions of a scenario. \
+             Values and dispersions are assumptions; wet floors and painted racks differ. Measure your own.",
             all.request.barrel
         ),
         format!(
             "Each stack stands alone, in {}: no neighbors, no walls, no straps. Collapse is the first loss of a seat by a \
              barrel or a rack.",
-            in_planes(all, "a plane model", "space")
+            in_planes(all, "a plane model", "a three-dimensional model")
         ),
         "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. \
          Results at levels far from the original strength of a motion are the least certain."
             .into(),
-        "Ranges count every motion as one observation. They apply to motions like these and do not cover errors of the model."
+        "In the ranges, every motion counts as one observation. The ranges apply to motions like these and do not \
+         cover errors of the model."
             .into(),
         "The racks are those of the catalog; several of their dimensions are assumptions. The folder holds the studies of this \
          page, which you can change and run for racks and rooms of your own."

@@ -264,7 +264,7 @@ fn headline(league: &League) -> String {
     format!(
         "The highest RockScore of {} racks and devices{} is {}{range}: {}.{next}{not}",
         league.rows.len(),
-        if sheet.scenario.is_spatial() { ", in space," } else { "" },
+        if sheet.scenario.is_spatial() { ", in three dimensions," } else { "" },
         sheet.score(),
         first.name
     )
@@ -305,7 +305,8 @@ fn table(league: &League) -> Table {
 
 fn legend(scenario: &Scenario) -> String {
     let space = if Direction::of(scenario) == Some(Direction::Space) {
-        " In space the ground moves in all directions, so that these scores cannot be compared with scores in planes."
+        " In three dimensions the ground moves in all directions, so that these scores cannot be compared with scores \
+         from runs in one plane."
     } else {
         ""
     };
@@ -313,7 +314,7 @@ fn legend(scenario: &Scenario) -> String {
         "A score compares racks and devices under the same motions; it does not predict the behavior of a particular \
          cellar. The confidence interval (95 %, clustered by motion) is that of the weakest state and direction; \
          there is none where no curve can be fitted. With a probability of 95 %, the range over the uncertain \
-         constants contains the score of a stack if the friction, stiffness and damping of its seats are drawn from \
-         their distributions, sampling error included. Each draw of the constants applies to all rows.{space}"
+         constants contains the score of a stack whose friction, stiffness and damping are drawn from their \
+         distributions; it includes the sampling error. Each draw of the constants applies to all rows.{space}"
     )
 }

@@ -261,15 +261,14 @@ impl Study {
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {
-            "a study runs stacks, and free scenes in a plane, but not free scenes in space: use another \
-             base"
+            "a study runs stacks, and free scenes in a plane, but not three-dimensional free scenes: use another base"
                 .to_owned()
         }
         (_, Some(stack)) => {
             let Some(along) = stack.columns_along else { return Ok(()) };
             format!(
-                "a study simulates one plane, or the stack in space. Leave `base.stack.columns_along` out and make a \
-                 study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
+                "a study simulates one plane, or the stack in three dimensions. Leave `base.stack.columns_along` out \
+                 and make a study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
                  `base.stack.columns = {}`, the other with `base.stack.view = \"longitudinal\"` and \
                  `base.stack.columns = {along}`, shaken by the other horizontal component of each record; or set \
                  `base.stack.view` to \"spatial\"",
