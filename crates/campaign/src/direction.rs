@@ -17,7 +17,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Returns the direction in which the stack of a scenario is shaken; `None` for a free scene.
+    /// Returns the direction in which the stack of a scenario is shaken; `None` if the scenario has no stack.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         let view = scenario.stack()?.view;
         Some(if scenario.is_spatial() { Self::Space } else { Self::Plane(view) })

@@ -82,7 +82,7 @@ impl Request {
     }
 }
 
-/// Results of stacks of one height in one direction of shaking.
+/// Results of stacks of one height, shaken in one direction.
 #[derive(Clone, Debug)]
 pub struct Height {
     /// Number of levels of the stack.
@@ -104,7 +104,7 @@ pub struct Height {
     pub effects: Vec<Option<Fitted>>,
 }
 
-/// Results of stacks of one height in one direction of shaking at one level of PGV.
+/// Results of stacks of one height, shaken in one direction at one level of PGV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtLevel {
     /// Number of runs and of collapses.
@@ -187,7 +187,7 @@ pub struct Heights {
     pub left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
-    /// Notes on runs that were not simulated until nothing moved.
+    /// Warnings about runs that ended before everything had come to rest.
     pub ends: Vec<String>,
     /// Warnings for the reader.
     pub warnings: Vec<String>,

@@ -85,7 +85,8 @@ pub struct Request {
     pub motions: u32,
     /// Number of rounds.
     pub rounds: u32,
-    /// Maximum cost (US$) of a protection of one stack; the midpoint of its cost range must not exceed it.
+    /// Maximum cost (US$) of a protection of one stack; it is compared with the midpoint of the cost range of the
+    /// protection.
     pub budget: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u32,

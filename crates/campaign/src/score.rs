@@ -86,7 +86,7 @@ impl Capacity {
         }
     }
 
-    /// Returns the 95 % interval of the velocity, if there is one.
+    /// Returns the 95 % interval of the velocity at which one stack in ten collapses; `None` if there is no interval.
     pub(crate) fn interval(self) -> Option<Interval> {
         if let Self::Fitted(_, interval) = self { interval } else { None }
     }
@@ -109,7 +109,7 @@ pub struct Scored {
     pub direction: Direction,
     /// Peak ground velocity at which one stack in ten collapses.
     pub capacity: Capacity,
-    /// Fragility curve of collapse, with the share of collapse at each level.
+    /// Fragility curve of collapse, with the share of stacks that collapse at each level.
     pub curve: LimitCurve,
     /// Number of runs.
     pub runs: usize,
@@ -129,8 +129,9 @@ pub struct Scored {
 }
 
 impl Scored {
-    /// Returns the range (m/s) that contains the velocity with a probability of 95 %, given the uncertain constants and
-    /// the sampling error. If no constant is drawn, it is the 95 % interval of the velocity.
+    /// Returns the range (m/s) that contains, with a probability of 95 %, the velocity at which one stack in ten
+    /// collapses, given the uncertain constants and the sampling error. If no constant is drawn, the range is the 95 %
+    /// interval of that velocity.
     pub fn range(&self) -> Option<Interval> {
         if self.draws.is_empty() {
             return self.capacity.interval().filter(|_| self.certain);

@@ -139,7 +139,7 @@ struct Factor {
 struct Correlation {
     /// Names of the factors.
     factors: Vec<String>,
-    /// Correlation of the standard normal deviates of any two of the factors.
+    /// Correlation of any two of the factors, each expressed as a standard normal deviate.
     coefficient: f64,
 }
 
@@ -242,7 +242,8 @@ impl Study {
         })
     }
 
-    /// Returns the correlation of the standard normal deviates of two factors, by the names of their columns.
+    /// Returns the correlation of two factors, each expressed as a standard normal deviate; the factors are given by
+    /// the names of their columns.
     pub(crate) fn correlation(&self, factors: [&str; 2]) -> f64 {
         if factors[0] == factors[1] {
             return 1.0;

@@ -151,7 +151,8 @@ impl Sample {
         Some(fitted.correlated(self.correlations.clone()))
     }
 
-    /// Returns the range of a share, and the constants that decide it.
+    /// Returns the 95 % range of a share of collapses over the constants, and the effect of each constant on this
+    /// share.
     pub(crate) fn effect(&self, share: &Conditional) -> Fitted {
         let constants: Vec<Constant<'_>> = self.constants.iter().map(Drawn::constant).collect();
         Fitted::of(share, &constants)

@@ -24,7 +24,7 @@ fn toml(value: &str) -> String {
 /// Returns the `[[factor]]` tables of a scenario, which vary the friction, stiffness and damping of its seats
 /// around the stated values, and the correlation of the factors of friction.
 ///
-/// The text is empty for a free scene and for a scenario in which no constants are drawn.
+/// The text is empty for a scenario without a stack, and for a scenario in which no constants are drawn.
 pub(crate) fn factors(scenario: &Scenario) -> String {
     let mut text = String::new();
     let Scene::Stack { stack, unknowns: spread, .. } = &scenario.scene else { return text };

@@ -152,7 +152,7 @@ impl JudgedCase {
 pub struct Cases {
     /// Title of the study.
     pub title: String,
-    /// Description of the stacks, without the properties that a factor varies; `None` for free scenes.
+    /// Description of the stacks, without the properties that a factor varies; `None` for scenarios without a stack.
     pub stacks: Option<String>,
     /// Names of the motions, to which [`JudgedCase::record`] refers.
     pub records: Vec<String>,

@@ -123,7 +123,7 @@ impl LimitCurve {
         }
     }
 
-    /// Returns the standard errors of the logarithm of the median and of the logarithm of the dispersion.
+    /// Returns the standard errors of the logarithms of the median and of the dispersion.
     ///
     /// With several records, the standard errors are clustered by record. With one record, the cases are
     /// taken as independent.

@@ -134,8 +134,8 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
 /// Maximum number of curves in a plot of incremental dynamic analysis; each curve belongs to one motion.
 const MOST_CURVES: usize = 60;
 
-/// Plots the curves of an incremental dynamic analysis with their fractiles; `None` if records have too few
-/// levels.
+/// Plots the curves of an incremental dynamic analysis with their fractiles; `None` if there are too few levels per
+/// record.
 pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     if !cases.leveled || cases.sampled {
         return None;
@@ -202,7 +202,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     ))
 }
 
-/// Plots the effects of the factors on the share of collapse (tornado diagram).
+/// Plots the effects of the factors on the share of cases that collapse (tornado diagram).
 pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let bar = |effect: &Effect| {
         let shares = || effect.groups.iter().map(Group::share);

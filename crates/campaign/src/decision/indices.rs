@@ -26,7 +26,7 @@ pub(super) struct Results {
 }
 
 impl Results {
-    /// Adds the results of the next rows; does nothing for designs that are not sensitivity designs.
+    /// Adds the results of the next rows; does nothing unless the design is a sensitivity (Saltelli) design.
     pub(super) fn add(&mut self, made: &Provenance, table: &StudyTable) {
         let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome"))
         else {
@@ -62,8 +62,8 @@ impl Results {
         }
     }
 
-    /// Returns the indices for collapse and for every demand that varies; empty for designs that are not
-    /// sensitivity designs.
+    /// Returns the indices for collapse and for every demand that varies; empty unless the design is a sensitivity
+    /// (Saltelli) design.
     pub(super) fn indices(self, made: &Provenance) -> Vec<Sensitivity> {
         let size = made.varied.len() + 2;
         let sensitivity = |(result, values): (String, Vec<f64>)| {

@@ -223,8 +223,8 @@ described! {
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
         /// Expected volume of wine lost in burst barrels, under the low, central and high assumption about breakage.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
-        /// Mean number of barrels that burst, if the largest force on a barrel determines whether it bursts;
-        /// null if the study does not record forces.
+        /// Mean number of barrels that burst, estimated from the largest force on each barrel; null if the study does
+        /// not record forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 
@@ -259,11 +259,11 @@ described! {
     pub struct FactorEffect of effect: &Effect {
         /// Name of the factor.
         pub factor: String = effect.factor.clone(),
-        /// Counts of collapses for each group of values of the factor.
+        /// Counts of collapses, for each value of the factor or for each third of its values.
         pub groups: Vec<EffectGroup> = effect.groups.iter().map(EffectGroup::of).collect(),
     }
 
-    /// Cases of one group of values of a factor.
+    /// Cases in which a factor has one value, or a value in one third of its values.
     pub struct EffectGroup of group: &Group {
         /// Values of the factor in the group, as text.
         pub value: String = group.label.clone(),
@@ -278,7 +278,7 @@ described! {
         pub levels: Vec<EffectLevel> = group.levels.iter().map(EffectLevel::of).collect(),
     }
 
-    /// Cases of one group of values of a factor at one level.
+    /// Cases of one group of an effect, at one level of intensity.
     pub struct EffectLevel of level: &Level {
         /// Intensity of the level.
         pub intensity: f64 as "of the measure" = level.intensity,

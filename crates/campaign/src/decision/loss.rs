@@ -34,8 +34,8 @@ pub struct Loss {
     /// Expected loss of wine (m³), under each of the three assumptions in [`Breakage::RANGE`]: the contents of the
     /// barrels that burst. Leaks from the bungs of intact barrels are not counted.
     pub wine: [f64; 3],
-    /// Expected number of barrels that burst, if the largest force on a barrel determines whether it bursts;
-    /// `None` if the study does not record forces.
+    /// Expected number of barrels that burst, estimated from the largest force on each barrel; `None` if the study does
+    /// not record forces.
     pub burst_by_force: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Effects of the varied factors on collapse: the share of collapse at each value of a factor.
+//! Effects of the varied factors on collapse: the share of collapsed cases at each value of a factor.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ pub(super) fn alike(one: f64, other: f64) -> bool {
 }
 
 impl Group {
-    /// Returns the share of collapse.
+    /// Returns the share of cases that collapsed.
     pub fn share(&self) -> f64 {
         f64::from(self.collapsed) / f64::from(self.cases)
     }
@@ -60,7 +60,7 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// Returns the difference between the largest and the smallest share of collapse among the groups.
+    /// Returns the difference between the largest and the smallest share of collapsed cases among the groups.
     pub fn range(&self) -> f64 {
         let shares = || self.groups.iter().map(Group::share);
         shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)

@@ -15,14 +15,14 @@ use crate::direction::Direction;
 use crate::scenario::catalog;
 use crate::scenario::title::{counted, number};
 
-/// Conditions for the rating "low": the maximum share of collapse, and the maximum upper bound of the
+/// Conditions for the rating "low": the maximum share of stacks that collapse, and the maximum upper bound of the
 /// probability of collapse.
 ///
 /// A stack whose probability of collapse exceeds the second number is rated low in at most one of 20 studies,
 /// for any number of motions.
 const LOW: (f64, f64) = (0.05, 0.12);
 
-/// Maximum share of collapse for the rating "medium".
+/// Maximum share of stacks that collapse for the rating "medium".
 const MEDIUM: f64 = 0.25;
 
 /// Builds the report page.
@@ -482,7 +482,7 @@ fn level_axis(all: &Heights) -> Axis {
     Axis { range: Some(range), ..Axis::new("levels", "") }
 }
 
-/// Plots the share of collapse against height at three levels of shaking, with 95 % intervals.
+/// Plots the share of stacks that collapse against height, at three levels of shaking, with 95 % intervals.
 fn chart(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, at) in [1, 3, 5].into_iter().enumerate() {

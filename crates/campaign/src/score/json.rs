@@ -23,8 +23,8 @@ described! {
         /// the 95 % interval for the sampling error alone. Null if a run has no verdict, or if there are too few runs.
         pub range: Option<[u32; 2]> as "cm/s" = sheet.range(),
         /// The uncertain constant with the largest effect on the share of stacks that collapse, in the weakest state
-        /// and direction at the velocity of the score; null if no constant changes this share by 20 percentage points
-        /// or more.
+        /// and direction at the velocity of the score; null if no constant is decisive, that is, changes this share
+        /// significantly and by at least 20 percentage points.
         pub decides: Option<Unknown> = sheet.decisive().cloned(),
         /// Number of levels of the stack.
         pub levels: u32 = sheet.protocol.levels,
@@ -63,7 +63,7 @@ described! {
         /// Range of the velocity over the uncertain constants, defined like `range` of the score. An end below all
         /// levels is given as 0, and an end above all levels as the highest level.
         pub range: Option<[f64; 2]> as "m/s" = row.0.range().map(|of| [of.low, of.high]),
-        /// Share of collapse at each of the velocities of the protocol; null where no run has a verdict.
+        /// Share of stacks that collapse at each of the velocities of the protocol; null where no run has a verdict.
         pub collapsed: Vec<Option<f64>> as "1" = row.1.protocol.velocities.iter()
             .map(|velocity| row.0.at(*velocity).map(|stripe| stripe.fraction())).collect(),
         /// Number of runs.

@@ -279,7 +279,7 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-/// Returns limits on the number of values of factors, given the number of motions and the kind of design.
+/// Returns the limits on the number of factor values, given the number of motions and the kind of design.
 fn room_for(top: &Reader<'_>, motions: usize) -> Result<Room, ScenarioError> {
     let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
     let kind: Option<DesignKind> =

@@ -43,7 +43,7 @@ const SHARDS: &str = "shards";
 /// Name of the copy of the study file.
 const COPY: &str = "study.toml";
 
-/// Name of the metadata entry of a shard that holds the key of its chunk.
+/// Name of the metadata entry in which a shard stores the key of its chunk.
 const KEY: &str = "chunk";
 
 described! {
@@ -59,7 +59,7 @@ described! {
         /// Title of the study.
         pub title: String,
         /// Description of the stacks, such as "stacks of 4 levels on two-barrel racks, shaken along the barrels",
-        /// without the properties that a factor varies; null for free scenes.
+        /// without the properties that a factor varies; null for scenarios without a stack.
         pub stacks: Option<String>,
         /// Fingerprint of the study file, the scenarios that it extends, the bytes of its records, and the
         /// version of the program.

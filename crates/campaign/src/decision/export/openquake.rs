@@ -95,8 +95,8 @@ pub(super) fn fragility(
     text
 }
 
-/// Returns the share of the wine of a stack that is lost in burst barrels, under the central assumption of
-/// breakage; 0 if the stack holds no wine.
+/// Returns the share of a stack's wine that is lost in burst barrels, under the central assumption about breakage; 0 if
+/// the stack holds no wine.
 fn wine_lost(case: &JudgedCase) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
     // The sum starts from 0, since an empty sum of floats is -0.
