@@ -105,7 +105,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         ),
         number(
             "section 3",
-            "six barrels, μ 0.4: stands for",
+            "six barrels, μ 0.4: time for which the stack stands",
             (10.0, "s"),
             outcome.time,
             Some((8.5, 12.0, "8.5 to 12 s")),
@@ -367,7 +367,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
         ),
         number(
             "section 4",
-            "the test at half scale: both top barrels have fallen after",
+            "the test at half scale: time until both top barrels have fallen",
             (2.0, "s"),
             second,
             None,
@@ -473,7 +473,7 @@ fn along(results: &Results) -> Vec<Comparison> {
         ),
         number(
             "section 4",
-            "along the barrels: stands for",
+            "along the barrels: time for which the stack stands",
             (4.5, "s"),
             outcome.time,
             Some((3.0, 6.0, "3 to 6 s")),

@@ -182,7 +182,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     let note = match returned.len() {
         0 => String::new(),
         count => format!(
-            " {count} of {} return: the stack collapses at one level and stands at a higher one.",
+            " On {count} of {} curves, the stack collapses at one level and stands at a higher one.",
             cases.curves()
         ),
     };
@@ -190,7 +190,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         "ida",
         format!(
             "Incremental dynamic analysis: peak drift of the top while the stack stands, against {}. A line reaches \
-             the right edge where the stack collapses.{note}",
+             the right edge at the level at which the stack collapses.{note}",
             measure.label
         ),
         Plot {
@@ -212,9 +212,9 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let series = vec![Series::bars("lowest to highest share of collapse", bars)];
     Figure::new(
         "tornado",
-        "Effect of the varied quantities: the share of collapse at the least and at the most favorable value of each \
-         quantity, over all motions and levels; if a quantity has many values, they are grouped into thirds. The \
-         vertical line marks the share for all cases together.",
+        "Effect of the varied quantities: the share of cases that collapse at the least and at the most favorable \
+         value of each quantity, over all motions and levels; if a quantity has many values, they are grouped into \
+         thirds. The vertical line marks the share for all cases together.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
             y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),

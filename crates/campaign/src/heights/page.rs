@@ -612,7 +612,8 @@ fn rests_on(all: &Heights) -> Vec<String> {
         format!(
             "All barrels are full and of the type `{}` of the catalog. Friction, stiffness and damping of the seats \
              are drawn for every run around the values of the catalog, with the default dispersions of a scenario. \
-             Values and dispersions are assumptions; wet floors and painted racks differ. Measure your own.",
+             Values and dispersions are assumptions; they are different for wet floors and painted racks. Measure \
+             your own.",
             all.request.barrel
         ),
         format!(

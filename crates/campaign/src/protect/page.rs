@@ -383,8 +383,8 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     };
     vec![
         motions,
-        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, \
-         with the dispersions of the scenario. All protections draw the same quantiles."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with \
+         the dispersions of the scenario. All protections use the same quantiles of these distributions."
             .into(),
         "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
          table. Labor, lost time and injuries are not counted."
