@@ -238,8 +238,8 @@ pub enum HeightsError {
 /// receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
-/// If the rack, the barrel or the height is unknown, the rack is not supported in space, a record cannot be read, or a
-/// folder cannot be written.
+/// If the rack, the barrel or the height is unknown, the rack is not supported in three dimensions, a record cannot be
+/// read, or a folder cannot be written.
 pub fn heights(
     request: &Request,
     folder: &Path,

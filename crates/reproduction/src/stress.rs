@@ -7,7 +7,7 @@ use barrelstack_report::significant;
 use super::compare::{Agreement, Comparison, NOT_STATED};
 use super::numbering;
 
-/// Returns the stress envelope of the barrel with the given number of the paper.
+/// Returns the stress envelope of the barrel that has the given number in the paper.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -74,7 +74,7 @@ pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// Returns one row for every definition, for a case for which the paper states an amplification.
+/// Returns one row for every definition of the amplification, for a case for which the paper states a value.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

@@ -15,7 +15,8 @@ use crate::watch::Ending;
 /// Intensity measure, with the name and unit in which it is displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the measure: the name of its column in the table, or its name in the study file.
+    /// Name of the measure: that of its column in the table or, if the table has no column for it, that in the study
+    /// file.
     pub name: String,
     /// SI unit.
     pub unit: String,
@@ -425,7 +426,8 @@ impl Cases {
         }
     }
 
-    /// `true` if the numbers of fallen barrels are known, because hardly any case ended while something still moved.
+    /// `true` if the numbers of fallen barrels are known, that is, if almost every case was simulated until nothing
+    /// moved.
     pub fn has_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }

@@ -157,7 +157,8 @@ impl LimitCurve {
 
 /// Interpolates between points linearly in the logarithm of the abscissa.
 ///
-/// Above the last point, the value is constant. Below the first point, it decreases linearly to zero at zero.
+/// Above the last point, the value is constant. Below the first point, it decreases linearly to zero at an abscissa of
+/// zero.
 pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     let after = points.partition_point(|(x, _)| *x < at);
     match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {

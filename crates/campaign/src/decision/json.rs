@@ -200,7 +200,7 @@ described! {
     pub struct LossTable of losses: &Losses {
         /// Number of barrels in a stack.
         pub barrels: u32 = losses.barrels,
-        /// Fall height at which half of the barrels burst, under the low, central and high assumption about breakage.
+        /// Fall height at which half of the barrels burst, under the low, central and high assumptions about breakage.
         pub breakage_median_m: [f64; 3] as "m" = Breakage::RANGE.map(|breakage| breakage.median),
         /// Standard deviation of the logarithm of the fall height at which a barrel bursts, under the low, central and
         /// high assumption about breakage.
@@ -219,9 +219,9 @@ described! {
         pub barrels_fallen: f64 as "barrels" = loss.fallen,
         /// 95 % interval of the mean number of barrels that fall.
         pub barrels_fallen_interval: [Option<f64>; 2] as "barrels" = bounds(loss.interval),
-        /// Mean number of barrels that burst, under the low, central and high assumption about breakage.
+        /// Mean number of barrels that burst, under the low, central and high assumptions about breakage.
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
-        /// Expected volume of wine lost in burst barrels, under the low, central and high assumption about breakage.
+        /// Expected volume of wine lost in burst barrels, under the low, central and high assumptions about breakage.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
         /// Mean number of barrels that burst, estimated from the largest force on each barrel; null if the study does
         /// not record forces.
@@ -278,7 +278,7 @@ described! {
         pub levels: Vec<EffectLevel> = group.levels.iter().map(EffectLevel::of).collect(),
     }
 
-    /// Cases of one group of an effect, at one level of intensity.
+    /// Cases of one group of factor values, at one level of intensity.
     pub struct EffectLevel of level: &Level {
         /// Intensity of the level.
         pub intensity: f64 as "of the measure" = level.intensity,
@@ -303,10 +303,10 @@ described! {
         /// Barrels that fall per year; null if the study does not record falls.
         pub barrels_fallen_per_year: Option<YearlyRate> =
             site.lost.as_ref().map(|lost| YearlyRate::of(&lost.fallen)),
-        /// Barrels that burst per year, under the low, central and high assumption about breakage.
+        /// Barrels that burst per year, under the low, central and high assumptions about breakage.
         pub barrels_burst_per_year: Option<Vec<YearlyRate>> =
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
-        /// Wine lost per year, under the low, central and high assumption about breakage.
+        /// Wine lost per year, under the low, central and high assumptions about breakage.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
         /// Lower and upper cost of the barrels that burst per year and of their wine, under the central assumption
         /// about breakage.

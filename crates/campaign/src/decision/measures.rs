@@ -17,7 +17,7 @@ pub struct MeasureRow {
     pub drift: Option<Demanded>,
 }
 
-/// Compares all measures. The measure under which the observed collapses are most likely comes first.
+/// Compares all measures. The measure that gives the observed collapses the largest likelihood comes first.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())

@@ -9,7 +9,7 @@ use super::cases::{Cases, JudgedCase, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Cases with one value of a factor, or with values in one third of its range of values.
+/// Cases in which a factor has one value, or a value in one third of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.

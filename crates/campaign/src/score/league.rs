@@ -56,7 +56,7 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
 }
 
 /// Returns the overrides that replace the rack of a stack. If the columns of the stack do not fill whole racks, the
-/// overrides reduce the stack to the columns of a single rack.
+/// overrides also set the number of columns to that of a single rack.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
     if !stack.columns.is_multiple_of(rack.barrels.max(1)) {

@@ -20,7 +20,7 @@ pub enum Design {
     OneAtATime {
         /// Probabilities of the quantiles that represent a distribution.
         quantiles: Vec<f64>,
-        /// Number of draws per motion of the factors with distributions; 0 to use quantiles instead.
+        /// Number of times that the factors with distributions are drawn for each motion; 0 to use quantiles instead.
         draws: u32,
     },
     /// Latin hypercube: the range of every factor is divided into `count` equally probable parts, and one

@@ -414,7 +414,7 @@ impl Study {
 
     /// Describes the stacks of the study by the number of levels, the rack and the direction of shaking in `base`. Each
     /// of these is omitted if a factor varies it; the rack is omitted also if a factor varies one of its dimensions.
-    /// Returns `None` for a free scene.
+    /// Returns `None` for a scenario without a stack.
     fn stacks(&self, base: &Scenario) -> Option<String> {
         let fields = || self.factors.iter().flat_map(|factor| &factor.fields);
         let varied = |path: &str| {

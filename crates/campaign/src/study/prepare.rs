@@ -33,7 +33,7 @@ pub(super) struct Resources<'a> {
     pub(super) stop: &'a dyn Fn() -> bool,
 }
 
-/// A case with its motion that is ready to run, or the reason why it cannot run.
+/// A case that is ready to run, with its motion, or the reason why it cannot run.
 struct Built {
     shaken: Option<Shaken>,
     prepared: Result<Prepared, String>,

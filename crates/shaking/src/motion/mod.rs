@@ -257,7 +257,7 @@ impl MotionSpec {
         held.map(print).collect()
     }
 
-    /// Returns the motion with its loaded files identified by content.
+    /// Returns the motion with every loaded file identified by its content instead of its path.
     #[must_use]
     pub fn by_content(&self) -> Self {
         let mut same = self.clone();
