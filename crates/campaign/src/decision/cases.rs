@@ -121,8 +121,8 @@ pub struct JudgedCase {
     /// Index of the curve to which the case belongs.
     ///
     /// A curve consists of the cases of one motion that agree in all factors except those drawn for each case. In an
-    /// incremental dynamic analysis, a curve is one hunt: all runs of the search for the level at which one motion makes
-    /// the stack collapse.
+    /// incremental dynamic analysis, a curve is one hunt: all runs of the search for the level at which one motion
+    /// makes the stack collapse.
     pub curve: u32,
 }
 
