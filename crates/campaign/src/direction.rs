@@ -7,17 +7,17 @@ use barrelstack::check::Checked;
 use crate::run::RunFailure;
 use crate::scenario::{Scenario, View};
 
-/// Direction in which a stack is shaken: in one plane, or in space by all components of a motion.
+/// Direction in which a stack is shaken: in one vertical plane, or in three dimensions by all components of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// In the plane of a view.
+    /// In one vertical plane, across or along the barrels.
     Plane(View),
-    /// In space.
+    /// In three dimensions, by all components of a motion.
     Space,
 }
 
 impl Direction {
-    /// Returns the direction in which the stack of a scenario is shaken; `None` for a free scene.
+    /// Returns the direction in which the stack of a scenario is shaken; `None` if the scenario has no stack.
     pub fn of(scenario: &Scenario) -> Option<Self> {
         let view = scenario.stack()?.view;
         Some(if scenario.is_spatial() { Self::Space } else { Self::Plane(view) })
@@ -52,11 +52,11 @@ pub(crate) fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     }
 }
 
-/// Returns the `[[factor]]` table that turns the motions of a study around a stack in space; empty for a stack in a
-/// plane.
+/// Returns the `[[factor]]` table that rotates the motions of a study about the vertical axis by a random angle, for a
+/// three-dimensional stack; empty for a stack in one plane.
 ///
-/// Pulses and synthetic motions have one horizontal component, and no direction of a record is that of the next
-/// earthquake. The angle is therefore drawn for every run.
+/// Pulses and synthetic motions have only one horizontal component, and the direction of the next earthquake is
+/// unknown. The angle is therefore drawn for every run.
 pub(crate) fn turned(scenario: &Scenario) -> String {
     let mut text = String::new();
     if scenario.is_spatial() {

@@ -1,9 +1,9 @@
 //! Safe heights: probability of collapse of stacks by height, direction and strength of shaking.
 //!
-//! Stacks of two or more levels on one kind of rack are shaken by the bundled record of South Napa, by
-//! synthetic motions and by the user's own records. All motions are scaled to the same levels of peak ground
-//! velocity. Friction, stiffness and damping of the seats are drawn at random for each run. The stacks are shaken in the
-//! planes across and along their barrels, or in space.
+//! Stacks of two or more levels on one kind of rack are shaken by the bundled record of South Napa, by synthetic
+//! motions and by the user's own records. All motions are scaled to the same levels of peak ground velocity. Friction,
+//! stiffness and damping of the seats are drawn at random for each run. The stacks are shaken in the planes across and
+//! along their barrels, or in three dimensions.
 
 mod field;
 mod json;
@@ -48,8 +48,8 @@ pub struct Request {
     pub seed: u32,
     /// Number of levels of the highest stacks, from [`LOWEST`] to [`HIGHEST`].
     pub highest: u32,
-    /// `true` if the stacks are shaken in space, in a horizontal direction that is drawn for every run; `false` for the
-    /// planes across and along the barrels.
+    /// `true` if the stacks are shaken in three dimensions, in a horizontal direction that is drawn for every run;
+    /// `false` for the planes across and along the barrels.
     pub in_space: bool,
 }
 
@@ -82,7 +82,7 @@ impl Request {
     }
 }
 
-/// Results of stacks of one height in one direction of shaking.
+/// Results of stacks of one height, shaken in one direction.
 #[derive(Clone, Debug)]
 pub struct Height {
     /// Number of levels of the stack.
@@ -96,15 +96,15 @@ pub struct Height {
     /// Mean share of the barrels that fall, for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
     /// Static margin (m/s²): the largest steady horizontal acceleration that the stack bears, with the friction and the
-    /// seats of the catalog; `None` if the stack stands even at 1 g. In space it is the smaller of the margins across
-    /// and along the barrels.
+    /// seats of the catalog; `None` if the stack stands even at 1 g. For three-dimensional shaking it is the smaller of
+    /// the margins across and along the barrels.
     pub static_margin: Option<f64>,
     /// Effect of the uncertain constants of the seats on the share of collapses, for each stripe of `by_velocity`; `None`
     /// if a run has no verdict, or if there are too few runs.
     pub effects: Vec<Option<Fitted>>,
 }
 
-/// Results of stacks of one height in one direction of shaking at one level of PGV.
+/// Results of stacks of one height, shaken in one direction at one level of PGV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtLevel {
     /// Number of runs and of collapses.
@@ -142,7 +142,8 @@ impl Height {
         })
     }
 
-    /// Returns the most influential decisive constant at a level of PGV (m/s); `None` if no constant is decisive there.
+    /// Returns the uncertain constant with the largest effect on the share of collapses at a given PGV (m/s); `None` if
+    /// no constant is decisive there ([`Fitted::decisive`]).
     pub fn decisive(&self, velocity: f64) -> Option<&Unknown> {
         let same = |stripe: &Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-9;
         let at = self.by_velocity.stripes.iter().position(same)?;
@@ -186,7 +187,7 @@ pub struct Heights {
     pub left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
-    /// Notes on runs that were not simulated until nothing moved.
+    /// Warnings about runs that ended before everything had come to rest.
     pub ends: Vec<String>,
     /// Warnings for the reader.
     pub warnings: Vec<String>,
@@ -237,8 +238,8 @@ pub enum HeightsError {
 /// receives the number of finished runs and the total, and may cancel.
 ///
 /// # Errors
-/// If the rack, the barrel or the height is unknown, the rack is not supported in space, a record cannot be read, or a
-/// folder cannot be written.
+/// If the rack, the barrel or the height is unknown, the rack is not supported in three dimensions, a record cannot be
+/// read, or a folder cannot be written.
 pub fn heights(
     request: &Request,
     folder: &Path,
@@ -251,7 +252,7 @@ pub fn heights(
     let mut studies: Vec<(Direction, bool, Study)> = Vec::new();
     for direction in request.directions() {
         if direction == Direction::Space {
-            // Not every rack is supported in space.
+            // Not every rack is supported in three dimensions.
             check(&plan::at_rest(request, direction, LOWEST)?).map_err(HeightsError::Stack)?;
         }
         for recorded in [false, true] {
@@ -286,7 +287,7 @@ pub fn heights(
     Ok(found)
 }
 
-/// Evaluates the tables of the studies.
+/// Evaluates the tables of the studies; `stop` may cancel the evaluation.
 ///
 /// `stop` may cancel.
 fn gather(

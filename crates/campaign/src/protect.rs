@@ -85,7 +85,8 @@ pub struct Request {
     pub motions: u32,
     /// Number of rounds.
     pub rounds: u32,
-    /// Maximum cost (US$) of a protection of one stack; the midpoint of its cost range must not exceed it.
+    /// Maximum cost (US$) of a protection of one stack; it is compared with the midpoint of the cost range of the
+    /// protection.
     pub budget: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u32,
@@ -130,11 +131,11 @@ pub struct Ranked {
     /// such state was tried.
     pub worn: Option<(String, Estimate)>,
     /// Range that contains, with a probability of 95 %, the probability of collapse, or its annual rate, given the
-    /// uncertain constants of the seats and the sampling error. `None` if it is unknown, and for a protection that was
-    /// not run in all rounds.
+    /// uncertain constants of the seats and the sampling error. `None` if it is unknown, or if the protection was not
+    /// run in all rounds.
     pub range: Option<[f64; 2]>,
-    /// Number of barrels that fall, in every draw of the uncertain constants and of the regression. A draw has the same
-    /// constants for all protections. Empty if `range` is `None`, and without uncertain constants.
+    /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients. A draw
+    /// has the same constants for all protections. Empty if `range` is `None` or if there are no uncertain constants.
     pub draws: Vec<f64>,
     /// Share of the draws in which fewer barrels fall than with the unprotected stack; a draw with equal numbers counts
     /// as one half.
@@ -177,7 +178,7 @@ impl Ranking {
         self.all.len().saturating_sub(1)
     }
 
-    /// Returns the protection that saves most barrels for its cost; `None` if no protection helps
+    /// Returns the protection that saves the most barrels per dollar of its cost; `None` if no protection helps
     /// significantly.
     ///
     /// Only protections that were run in all rounds are considered, and a saving is significant if the
@@ -188,7 +189,7 @@ impl Ranking {
         let helps = self.all.iter().filter(|one| {
             Some(one.round) == last && one.saved_together.is_some_and(|saved| saved.low > 0.0)
         });
-        // Of equally good protections the first is kept, with which fewer barrels fall.
+        // Of equally good protections the first is kept, because fewer barrels fall with it.
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
@@ -197,8 +198,8 @@ impl Ranking {
         ProtectDocument::of(self)
     }
 
-    /// Runs the stack unprotected and with the best protection under the motion of the scenario, and shows
-    /// both runs side by side on the page. Stacks in space are not shown.
+    /// Runs the stack unprotected and with the best protection under the motion of the scenario, and shows both runs
+    /// side by side on the page. Three-dimensional stacks are not shown.
     ///
     /// Returns `true` if both runs finished.
     ///

@@ -37,8 +37,7 @@ pub use protocol::{Protocol, State};
 pub enum Capacity {
     /// The velocity is that of the fitted curve, with its 95 % interval if the records determine an interval.
     Fitted(f64, Option<Interval>),
-    /// The share of collapse exceeds one in ten between these two levels. The lower level counts for the
-    /// score.
+    /// The share of collapses rises above one in ten between these two levels. The lower level counts for the score.
     ///
     /// Used if no curve can be fitted because there is at most one level at which some stacks collapse and
     /// others stand.
@@ -76,7 +75,7 @@ impl Capacity {
         })
     }
 
-    /// Returns the two levels (m/s) between which the share of collapse exceeds `chance`; `stripes` are in
+    /// Returns the two levels (m/s) between which the share of collapses rises above `chance`; `stripes` are in
     /// ascending order of intensity.
     fn between(stripes: &[Stripe], chance: f64) -> Self {
         let above = stripes.partition_point(|stripe| stripe.fraction() <= chance);
@@ -87,7 +86,7 @@ impl Capacity {
         }
     }
 
-    /// Returns the 95 % interval of the velocity, if there is one.
+    /// Returns the 95 % interval of the velocity at which one stack in ten collapses; `None` if there is no interval.
     pub(crate) fn interval(self) -> Option<Interval> {
         if let Self::Fitted(_, interval) = self { interval } else { None }
     }
@@ -110,7 +109,7 @@ pub struct Scored {
     pub direction: Direction,
     /// Peak ground velocity at which one stack in ten collapses.
     pub capacity: Capacity,
-    /// Fragility curve of collapse, with the share of collapse at each level.
+    /// Fragility curve of collapse, with the share of stacks that collapse at each level.
     pub curve: LimitCurve,
     /// Number of runs.
     pub runs: usize,
@@ -118,19 +117,21 @@ pub struct Scored {
     pub left_out: usize,
     /// Number of runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
-    /// `true` if no constant is drawn.
+    /// `true` if the study draws no uncertain constant.
     certain: bool,
-    /// Velocity (m/s) at which one stack in ten collapses, in every draw of the uncertain constants and of the
-    /// regression. A draw has the same constants in all rows. Empty if no constant is drawn, if a run has no verdict,
+    /// Velocity (m/s) at which one stack in ten collapses, for every draw of the uncertain constants and the regression
+    /// coefficients. A draw has the same constants in all rows. Empty if no constant is drawn, if a run has no verdict,
     /// or if there are too few runs.
     pub draws: Vec<f64>,
-    /// Effect of the uncertain constants on the share of collapses at the velocity of the score, if that is known.
+    /// Effect of the uncertain constants on the share of collapses at the velocity of the score; `None` if it is
+    /// unknown.
     pub effect: Option<Fitted>,
 }
 
 impl Scored {
-    /// Returns the range (m/s) that contains the velocity with a probability of 95 %, given the uncertain constants and
-    /// the sampling error. If no constant is drawn, it is the 95 % interval of the velocity.
+    /// Returns the range (m/s) that contains, with a probability of 95 %, the velocity at which one stack in ten
+    /// collapses, given the uncertain constants and the sampling error. If no constant is drawn, the range is the 95 %
+    /// interval of that velocity.
     pub fn range(&self) -> Option<Interval> {
         if self.draws.is_empty() {
             return self.capacity.interval().filter(|_| self.certain);
@@ -204,7 +205,8 @@ impl Sheet {
         Some([whole(low + 1e-6), whole((high - 1e-6).ceil())])
     }
 
-    /// Returns the most influential decisive constant of the weakest row, if there is one.
+    /// Returns the uncertain constant with the largest effect on the share of collapses in the weakest row; `None` if
+    /// no constant is decisive ([`Fitted::decisive`]).
     pub fn decisive(&self) -> Option<&Unknown> {
         self.weakest()?.effect.as_ref()?.decisive()
     }

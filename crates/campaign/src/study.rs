@@ -1,9 +1,9 @@
 //! Studies: one scenario run many times, with varied values and motions.
 //!
 //! ```text
-//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard a chunk
+//! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard per chunk
 //!                                                                    │ collect
-//!                                                  StudyTable: one row a case ─▶ CSV, Parquet
+//!                                                  StudyTable: one row per case ─▶ CSV, Parquet
 //! ```
 //!
 //! A study is a deterministic list of chunks of cases, and each chunk is run as a whole. The rows of a chunk
@@ -103,7 +103,7 @@ pub struct Study {
     correlations: Vec<Correlation>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
-    /// `true` if some cases simulate the stack in space.
+    /// `true` if some cases are three-dimensional.
     in_space: bool,
     /// Levels of intensity that are combined with every motion and every set of factors; a single `None` if
     /// there are no levels.
@@ -130,7 +130,7 @@ struct Factor {
     base: Option<Value>,
     /// `true` if models for different values of the factor may have different bodies or contacts.
     structural: bool,
-    /// `true` if at least one of the values causes the stack to be simulated in space.
+    /// `true` if at least one of the values causes the stack to be simulated in three dimensions.
     in_space: bool,
 }
 
@@ -139,7 +139,7 @@ struct Factor {
 struct Correlation {
     /// Names of the factors.
     factors: Vec<String>,
-    /// Correlation of the standard normal deviates of any two of the factors.
+    /// Correlation of any two of the factors, each expressed as a standard normal deviate.
     coefficient: f64,
 }
 
@@ -242,7 +242,8 @@ impl Study {
         })
     }
 
-    /// Returns the correlation of the standard normal deviates of two factors, by the names of their columns.
+    /// Returns the correlation of two factors, each expressed as a standard normal deviate; the factors are given by
+    /// the names of their columns.
     pub(crate) fn correlation(&self, factors: [&str; 2]) -> f64 {
         if factors[0] == factors[1] {
             return 1.0;

@@ -1,8 +1,9 @@
-//! Ranges over the uncertain constants of the seats, from the runs of a study.
+//! Ranges of results over the uncertain constants of the seats, from the runs of a study.
 //!
 //! Every run of a study of heights, a ranking or a score draws its own friction, stiffness and damping. The same
-//! regression as for the variants of a stack ([`Fitted`]) separates their effect from sampling. Since each motion is run
-//! at several levels of shaking, the regression has a term for every motion and for the level.
+//! regression as for the variants of a stack ([`Fitted`]) separates the effect of these constants from the sampling
+//! error. Since each motion is run at several levels of shaking, the regression has a term for every motion and for the
+//! level.
 
 use barrelstack::variants::Constant;
 use barrelstack_fragility::{Conditional, Intensities, Interval, Shaken, Shape, Stripe, shaken};
@@ -13,7 +14,7 @@ pub use barrelstack::variants::Fitted;
 use crate::decision::Cases;
 use crate::study::{Collected, Column, Distribution, Study, Value};
 
-/// Uncertain constants: the field of a scenario and the name of the constant.
+/// Uncertain constants, each with its field in a scenario and its name.
 const CONSTANTS: [(&str, &str); 12] = [
     ("interface.rack-ground.friction.coefficient", "friction of racks on the floor"),
     ("interface.rack-ground.stiffness", "stiffness of racks on the floor"),
@@ -75,7 +76,7 @@ pub(crate) struct Sample {
     motions: Vec<String>,
     runs: Vec<Shaken>,
     seed: u64,
-    /// Correlations of the deviates of the constants.
+    /// Correlation matrix of the standard normal deviates of the constants.
     correlations: Vec<Vec<f64>>,
     /// `true` if some run has no verdict, or if its intensity or a value of its constants is not known.
     incomplete: bool,
@@ -150,7 +151,8 @@ impl Sample {
         Some(fitted.correlated(self.correlations.clone()))
     }
 
-    /// Returns the range of a share, and the constants that decide it.
+    /// Returns the 95 % range of a share of collapses over the constants, and the effect of each constant on this
+    /// share.
     pub(crate) fn effect(&self, share: &Conditional) -> Fitted {
         let constants: Vec<Constant<'_>> = self.constants.iter().map(Drawn::constant).collect();
         Fitted::of(share, &constants)

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use crate::scenario::{Scenario, Scene, Setting};
 
-/// Interfaces of seats. Each is paired with the interface of fallen bodies that has the same materials, if
+/// Interfaces of seats, each with the interface that applies between the same materials once a body has fallen, if
 /// there is one.
 const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-ground", Some("fallen-rack-ground")),
@@ -21,10 +21,10 @@ fn toml(value: &str) -> String {
     if bare { value.to_owned() } else { format!("\"{value}\"") }
 }
 
-/// Returns the `[[factor]]` tables of a scenario, which vary the friction, stiffness and damping of its seats
-/// around the stated values, and the correlation of the factors of friction.
+/// Returns the `[[factor]]` tables that vary the friction, stiffness and damping of the seats of a scenario around
+/// their stated values, and the correlation of the friction factors.
 ///
-/// The text is empty for a free scene and for a scenario in which no constants are drawn.
+/// The text is empty for a scenario without a stack, and for a scenario in which no constants are drawn.
 pub(crate) fn factors(scenario: &Scenario) -> String {
     let mut text = String::new();
     let Scene::Stack { stack, unknowns: spread, .. } = &scenario.scene else { return text };

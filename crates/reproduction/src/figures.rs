@@ -228,7 +228,7 @@ pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> 
     Some(lengths)
 }
 
-/// Builds the collapsed table of contact and target bodies of all pairs that touch by design.
+/// Builds the folded table of contact and target bodies of all pairs that touch by design.
 pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     let table = Table::of(
         caption,
@@ -270,7 +270,7 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// Returns `true` if racks are the contactors of all contacts by design.
+/// Returns `true` if the contactor is a rack in every pair that touches by design.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)

@@ -225,7 +225,8 @@ fn stand_in(results: &Results) -> String {
     };
     format!(
         "This is not the paper's motion, so the results cannot be compared with the paper's numbers. Under {} the six \
-         barrels with μ 0.4 have the outcome: {}, with a residual slip of {} cm; with μ 0.1: {}, with {} cm.",
+         barrels with μ 0.4 have the outcome: {}, with a residual slip of {} cm; with μ 0.1: {}, with a residual slip \
+         of {} cm.",
         results.motion.name(),
         what(six),
         slip(six),
@@ -280,13 +281,13 @@ fn figure_7(results: &Results) -> Vec<Block> {
     blocks.push(figures::strip(
         &half_scene,
         "figure-7b-half",
-        "Half scale, sine of 2 in and 0.76 s, at the instants t*.",
+        "Half scale, sine with an amplitude of 2 in and a period of 0.76 s, at the instants t*.",
         equivalent(&moments),
     ));
     blocks.push(figures::strip(
         &full_scene,
         "figure-7b-full",
-        "Full scale, sine of 4 in and 0.76 √2 s, at √2 t*.",
+        "Full scale, sine with an amplitude of 4 in and a period of 0.76 √2 s, at the instants √2 t*.",
         moments,
     ));
     blocks.push(Block::heading(3, "(c) normal stress on bodies 2 and 3"));
@@ -313,7 +314,7 @@ fn along(results: &Results) -> Vec<Block> {
         figures::strip(
             &scene,
             "along",
-            "Four levels along the barrels under the sine of 4 in: the rack of level 2 (body 4, R2) \
+            "Four levels along the barrels under the sine with an amplitude of 4 in: the rack of level 2 (body 4, R2) \
              walks off the barrel below.",
             figures::moments(run),
         ),

@@ -64,7 +64,8 @@ pub(super) struct Tried {
     eight: Summary,
     /// Summary of the six barrels, if the paper's record is given.
     six: Option<Summary>,
-    /// Number of combinations of contact parameters changed by 10 % that keep the mode of the eight barrels.
+    /// Number of combinations of contact parameters, each changed by 10 %, in which the collapse mode of the eight
+    /// barrels stays the same.
     pub(super) same_mode: usize,
     /// Number of combinations that were run.
     pub(super) members: usize,

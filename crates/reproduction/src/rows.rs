@@ -105,7 +105,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         ),
         number(
             "section 3",
-            "six barrels, μ 0.4: stands for",
+            "six barrels, μ 0.4: time for which the stack stands",
             (10.0, "s"),
             outcome.time,
             Some((8.5, 12.0, "8.5 to 12 s")),
@@ -154,8 +154,9 @@ fn six(results: &Results) -> Vec<Comparison> {
                 significant(100.0 * bottom, 3)
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
-            "Length of boundary under stress, at rest → at any time while the stack stands; on top the rack \
-             slides. Agrees if the length on top grows by more than a fifth and by more than twice the growth at the bottom.",
+            "Length of boundary under stress, at rest → at any time while the stack stands; on top of the barrel, the \
+             rack slides. Agrees if the length on top grows by more than a fifth and by more than twice the growth at \
+             the bottom.",
         ));
     }
     rows.push(number(
@@ -165,9 +166,9 @@ fn six(results: &Results) -> Vec<Comparison> {
         demands.base_slip_residual.map(|slip| 100.0 * slip.abs()),
         Some((0.0, 5.0, "at most 5 cm")),
         format!(
-            "At the end of the run. While the stack stands the rack slips by {} cm at most, and by \
-             {} cm up to the loss of seat. The residual comes from the fall of the upper levels, \
-             which is sensitive to small changes.",
+            "At the end of the run. While the stack stands the rack slips by {} cm at most; at the loss of seat, its \
+             slip is {} cm. The residual comes from the fall of the upper levels, which is sensitive to small \
+             changes.",
             centimeters(demands.base_slip_peak),
             centimeters(demands.base_slip_at_collapse)
         ),
@@ -341,7 +342,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
     vec![
         finding(
             "section 4",
-            "sine of 2 in, 0.76 s against 4 in, 0.76 √2 s",
+            "sine with amplitude 2 in and period 0.76 s against 4 in and 0.76 √2 s",
             "same acceleration",
             accelerations
                 .map(|a| format!("{} g", significant(a / barrelstack_motion::STANDARD_GRAVITY, 3)))
@@ -366,7 +367,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
         ),
         number(
             "section 4",
-            "the test at half scale: both top barrels have fallen after",
+            "the test at half scale: time until both top barrels have fallen",
             (2.0, "s"),
             second,
             None,
@@ -443,8 +444,9 @@ fn parameters(results: &Results) -> Vec<Comparison> {
         band: None,
         agreement: Agreement::NotCompared,
         why: format!(
-            "The calibrated values are 10 % and 16 % greater than the measured ones: 9.8 kN/cm / 1.10, 22.0 N s/cm / \
-             1.16. The paper gives no result for the measured values. With the calibrated values, the result is: {}, first fall {}.",
+            "The calibrated k and c are 10 % and 16 % greater than the measured ones, which are therefore 9.8 kN/cm / \
+             1.10 and 22.0 N s/cm / 1.16. The paper gives no result for the measured values. With the calibrated \
+             values, the result is: {}, first fall {}.",
             mode_of(base),
             base.outcome.first_fall.map_or_else(|| "none".into(), seconds)
         ),
@@ -471,7 +473,7 @@ fn along(results: &Results) -> Vec<Comparison> {
         ),
         number(
             "section 4",
-            "along the barrels: stands for",
+            "along the barrels: time for which the stack stands",
             (4.5, "s"),
             outcome.time,
             Some((3.0, 6.0, "3 to 6 s")),

@@ -7,15 +7,15 @@ use barrelstack_report::significant;
 use super::compare::{Agreement, Comparison, NOT_STATED};
 use super::numbering;
 
-/// Returns the stress envelope of the barrel with the given number of the paper.
+/// Returns the stress envelope of the barrel that has the given number in the paper.
 pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     run.stresses.of(body)
 }
 
-/// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the
-/// force at rest. The force is exerted by the rack above the barrel or by the rack that carries it.
+/// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the force at rest. The force
+/// is that of the rack above the barrel if `above` is `true`, and otherwise that of the rack below it.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =
@@ -74,7 +74,7 @@ pub(super) fn average(run: &Run) -> Option<f64> {
     envelope(run, 1)?.mean_amplification()
 }
 
-/// Returns one row for every definition, for a case for which the paper states an amplification.
+/// Returns one row for every definition of the amplification, for a case for which the paper states a value.
 pub(super) fn definitions(run: &Run, place: &'static str, case: &str) -> Vec<Comparison> {
     let row = |(name, value, meaning): Definition| Comparison {
         place,

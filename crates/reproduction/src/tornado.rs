@@ -43,7 +43,8 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
             let y = Axis::row(row) + PLACES[quantity];
             for x in effect.ends.iter().filter_map(|(_, summary)| change(quantity, summary)) {
                 (low, high) = (low.min(x), high.max(x));
-                // Every bar starts from the case as stated; the gap separates it from the next.
+                // Every bar starts at zero, the value of the case as stated. The NaN ends the bar, so that it is not
+                // joined to the next.
                 for (x, y) in [(0.0, y), (x, y), (f64::NAN, y)] {
                     line.x.push(x);
                     line.y.push(y);

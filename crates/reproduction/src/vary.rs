@@ -4,8 +4,7 @@ use barrelstack::scenario::{
     Cradle, Fill, Friction, Interface, MotionSource, Scenario, Scene, StackSpec,
 };
 
-/// Returns a copy of a scenario with `change` applied to its stack; a free scene is returned
-/// unchanged.
+/// Returns a copy of a scenario with `change` applied to its stack; a scenario without a stack is returned unchanged.
 pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> Scenario {
     let mut changed = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut changed.scene {

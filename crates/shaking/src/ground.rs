@@ -212,9 +212,9 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
     Ok(Ground { motion: Some(motion), warnings })
 }
 
-/// Aligns a horizontal component in time with the first channel of a separate file with the vertical component, if both
-/// files state their start times. Returns both records, with a warning if their headers suggest that they do not belong
-/// together.
+/// Aligns a horizontal component in time with the first channel of the separate file that contains the vertical
+/// component, if both files state their start times. Returns both records, with a warning if their headers suggest that
+/// they do not belong together.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,

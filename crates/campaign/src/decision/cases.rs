@@ -15,7 +15,8 @@ use crate::watch::Ending;
 /// Intensity measure, with the name and unit in which it is displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the measure: the name of its column in the table, or its name in the study file.
+    /// Name of the measure: that of its column in the table or, if the table has no column for it, that in the study
+    /// file.
     pub name: String,
     /// SI unit.
     pub unit: String,
@@ -117,10 +118,11 @@ pub struct JudgedCase {
     drift: f64,
     /// Intensity (SI) of the case in each measure of [`Cases::measures`]; NaN if unknown.
     intensities: Box<[f64]>,
-    /// Number of the curve to which the case belongs.
+    /// Index of the curve to which the case belongs.
     ///
-    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each
-    /// case. In an incremental dynamic analysis a curve is one hunt.
+    /// A curve consists of the cases of one motion that agree in all factors except those drawn for each case. In an
+    /// incremental dynamic analysis, a curve is one hunt: all runs of the search for the level at which one motion
+    /// makes the stack collapse.
     pub curve: u32,
 }
 
@@ -151,7 +153,7 @@ impl JudgedCase {
 pub struct Cases {
     /// Title of the study.
     pub title: String,
-    /// Description of the stacks, without the properties that a factor varies; `None` for free scenes.
+    /// Description of the stacks, without the properties that a factor varies; `None` for scenarios without a stack.
     pub stacks: Option<String>,
     /// Names of the motions, to which [`JudgedCase::record`] refers.
     pub records: Vec<String>,
@@ -161,14 +163,14 @@ pub struct Cases {
     pub measures: Vec<Measure>,
     /// Index of the measure of the study in `measures`.
     pub main: usize,
-    /// `true` if every case was scaled to a level of the measure of the study, so that each level has a raw
-    /// fraction of collapse.
+    /// `true` if every case was scaled to a requested level of the study's intensity measure, so that each level has a
+    /// raw fraction of collapse.
     pub leveled: bool,
-    /// `true` if the levels were chosen by hunts for collapse, so that they depend on earlier results.
+    /// `true` for an incremental dynamic analysis, in which each level depends on the results of earlier runs.
     pub hunted: bool,
     /// `true` if cases are independent samples: motion, level and factors are drawn for each case.
     pub sampled: bool,
-    /// Names of the factors that are drawn anew for each case of a motion.
+    /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
     pub drawn: Vec<String>,
     /// Numbers of cases by the way in which they ended.
     pub endings: Endings,
@@ -218,7 +220,7 @@ pub(super) struct Reading {
     rows: usize,
     /// Number of rows read so far that are independent samples; each sample is a separate curve.
     own: usize,
-    /// Number of quantities that a sensitivity design exchanges between its samples; 0 for other designs.
+    /// Number of quantities that a Saltelli design exchanges between the two samples of a block; 0 for other designs.
     varied: usize,
 }
 
@@ -285,7 +287,8 @@ impl Reading {
         let drawn = &self.cases.drawn;
         let fixed: Vec<_> =
             table.of_role(Role::Factor).filter(|f| !drawn.contains(&f.spec.name)).collect();
-        // Of a block, only the first two cases are independent samples; the others differ from these in one quantity.
+        // Only the first two cases of a block are independent samples; each of the others is the first sample with one
+        // quantity taken from the second.
         let block = i64::try_from(self.varied + 2).unwrap_or(i64::MAX);
         let numbers = table.integers("case").filter(|_| self.varied > 0);
         let exchanged =
@@ -414,7 +417,7 @@ impl Cases {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns a noun for the curves, for use in a sentence.
+    /// Returns what the curves are called in a sentence: "motions", or a longer phrase if a motion has several curves.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"
@@ -423,7 +426,8 @@ impl Cases {
         }
     }
 
-    /// `true` if the numbers of fallen barrels are known, because hardly any case ended while something still moved.
+    /// `true` if the numbers of fallen barrels are known, that is, if almost every case was simulated until nothing
+    /// moved.
     pub fn has_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }
@@ -436,10 +440,10 @@ impl Cases {
 
     /// Groups the cases by intensity, ascending.
     ///
-    /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with
-    /// equal numbers of neighboring cases, and the intensity of a bin is the geometric mean over its cases.
-    /// The limits of a few dozen cases per bin and about a dozen bins are chosen because a fraction needs
-    /// several dozen cases, and a trend is clearest in about a dozen bins.
+    /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
+    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. Unless there are
+    /// fewer cases, a bin has at least two dozen, because the fraction of failures in a smaller bin would be too
+    /// uncertain. There are at most sixteen bins, because a trend is clearest in about a dozen.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all
@@ -486,7 +490,7 @@ const FEWEST_OF_BIN: usize = 24;
 /// Maximum number of bins.
 const MOST_BINS: usize = 16;
 
-/// Minimum mean number of cases per level; with fewer, levels are not counted separately.
+/// Minimum mean number of cases per level. With fewer cases, neighboring levels are counted together in bins.
 const FEWEST_OF_LEVEL: usize = 8;
 
 /// Formats a value of a factor.

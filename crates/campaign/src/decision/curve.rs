@@ -26,7 +26,7 @@ pub enum BandKind {
     Records,
     /// Profile likelihood of independent cases, used if all cases are of one record.
     Likelihood,
-    /// No band, since without one of the records the cases determine no curve.
+    /// No band: with one of the records left out, the remaining cases determine no curve.
     None,
 }
 
@@ -51,8 +51,7 @@ pub struct LimitCurve {
     pub median: Option<Interval>,
     /// Method by which the confidence band was computed.
     pub band_kind: BandKind,
-    /// Curves that are each fitted without one of the records. The uncertainty of derived results follows
-    /// from them.
+    /// Curves fitted with one record left out at a time, from which the uncertainty of derived results is computed.
     pub left_out: Option<LeaveOneOut>,
     /// Goodness of fit of the fitted curve to the raw counts.
     pub goodness: Option<Goodness>,
@@ -124,7 +123,7 @@ impl LimitCurve {
         }
     }
 
-    /// Returns the standard errors of the logarithm of the median and of the logarithm of the dispersion.
+    /// Returns the standard errors of the logarithms of the median and of the dispersion.
     ///
     /// With several records, the standard errors are clustered by record. With one record, the cases are
     /// taken as independent.
@@ -158,7 +157,8 @@ impl LimitCurve {
 
 /// Interpolates between points linearly in the logarithm of the abscissa.
 ///
-/// Above the last point, the value is constant. Below the first point, it decreases linearly to zero at zero.
+/// Above the last point, the value is constant. Below the first point, it decreases linearly to zero at an abscissa of
+/// zero.
 pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     let after = points.partition_point(|(x, _)| *x < at);
     match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
@@ -185,9 +185,10 @@ pub(super) fn stripe(
 
 /// Returns what the cases show about the capacity of the stack.
 ///
-/// In general, each case is one observation: the stack failed or stood at the intensity of the case. The
-/// levels of hunts depend on earlier results, so that counts at these levels would be biased. Each hunt is
-/// therefore one observation of a capacity between two levels.
+/// In general, each case is one observation: the stack failed or stood at the intensity of the case. In an incremental
+/// dynamic analysis, the levels of a hunt depend on the results of earlier runs, so counts at these levels would be
+/// biased. Each hunt is therefore one observation: the capacity lies between the lowest level at which the stack failed
+/// and the level below it.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let measured = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
@@ -215,8 +216,8 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts hunts at eight levels. At each level, the cases are the hunts that show whether the stack fails
-/// there, and the failures are those in which it fails.
+/// Counts the hunts of an incremental dynamic analysis at eight levels. At each level, only those hunts are counted
+/// that show whether the stack fails there.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);

@@ -134,8 +134,8 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
 /// Maximum number of curves in a plot of incremental dynamic analysis; each curve belongs to one motion.
 const MOST_CURVES: usize = 60;
 
-/// Plots the curves of an incremental dynamic analysis with their fractiles; `None` if records have too few
-/// levels.
+/// Plots the curves of an incremental dynamic analysis with their fractiles; `None` if there are too few levels per
+/// record.
 pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     if !cases.leveled || cases.sampled {
         return None;
@@ -182,7 +182,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     let note = match returned.len() {
         0 => String::new(),
         count => format!(
-            " {count} of {} return: the stack collapses at one level and stands at a higher one.",
+            " On {count} of {} curves, the stack collapses at one level and stands at a higher one.",
             cases.curves()
         ),
     };
@@ -190,7 +190,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         "ida",
         format!(
             "Incremental dynamic analysis: peak drift of the top while the stack stands, against {}. A line reaches \
-             the right edge where the stack collapses.{note}",
+             the right edge at the level at which the stack collapses.{note}",
             measure.label
         ),
         Plot {
@@ -202,7 +202,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     ))
 }
 
-/// Plots the effects of the factors on the share of collapse (tornado diagram).
+/// Plots the effects of the factors on the share of cases that collapse (tornado diagram).
 pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let bar = |effect: &Effect| {
         let shares = || effect.groups.iter().map(Group::share);
@@ -212,9 +212,9 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let series = vec![Series::bars("lowest to highest share of collapse", bars)];
     Figure::new(
         "tornado",
-        "Effect of the varied quantities: the share of collapse at the least favorable and at the most favorable \
-         value of each (or third of its values), over all motions and levels. The vertical line is the share of all \
-         cases.",
+        "Effect of the varied quantities: the share of cases that collapse at the least and at the most favorable \
+         value of each quantity, over all motions and levels; if a quantity has many values, they are grouped into \
+         thirds. The vertical line marks the share for all cases together.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
             y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),
@@ -244,8 +244,8 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     Figure::new(
         "losses",
         format!(
-            "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is an assumption \
-             based on the height of its fall, with a range: see below.",
+            "Mean number of barrels (of {}) that fall and that burst. The chance that a barrel bursts is assumed from \
+             the height of its fall; the range is that of the assumptions listed below.",
             losses.barrels
         ),
         Plot {

@@ -98,12 +98,12 @@ pub struct LimitRate {
 pub struct Lost {
     /// Barrels that fall (1/year).
     pub fallen: Rate,
-    /// Barrels that burst (1/year), under the low, central and high assumptions of breakage.
+    /// Barrels that burst (1/year), under the low, central and high assumptions about breakage.
     pub burst: [Rate; 3],
-    /// Wine that is lost (m³/year), under the same three assumptions.
+    /// Wine that is lost (m³/year), under the low, central and high assumptions about breakage.
     pub wine: [f64; 3],
-    /// Lower and upper cost (US$/year) of the barrels that burst and of their wine, under the central
-    /// assumption.
+    /// Lower and upper cost (US$/year) of the barrels that burst and of their wine, under the central assumption about
+    /// breakage.
     pub money: [f64; 2],
 }
 

@@ -10,7 +10,7 @@ use crate::study::{Column, Provenance, Role, StudyTable};
 pub struct Sensitivity {
     /// Name of the result: "collapse", or the column of a demand.
     pub result: String,
-    /// Number of blocks of cases that are evaluated, that is, blocks in which every case has the result.
+    /// Number of blocks of cases that are evaluated: those in which every case has the result.
     pub blocks: usize,
     /// Number of blocks that are left out because a case lacks the result.
     pub left_out: usize,
@@ -26,7 +26,7 @@ pub(super) struct Results {
 }
 
 impl Results {
-    /// Adds the results of the next rows; does nothing for designs that are not sensitivity designs.
+    /// Adds the results of the next rows; does nothing unless the design is a sensitivity (Saltelli) design.
     pub(super) fn add(&mut self, made: &Provenance, table: &StudyTable) {
         let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome"))
         else {
@@ -62,8 +62,8 @@ impl Results {
         }
     }
 
-    /// Returns the indices for collapse and for every demand that varies; empty for designs that are not
-    /// sensitivity designs.
+    /// Returns the indices for collapse and for every demand that varies; empty unless the design is a sensitivity
+    /// (Saltelli) design.
     pub(super) fn indices(self, made: &Provenance) -> Vec<Sensitivity> {
         let size = made.varied.len() + 2;
         let sensitivity = |(result, values): (String, Vec<f64>)| {

@@ -89,7 +89,7 @@ described! {
         /// 95 % interval of the median; an unbounded end is null.
         pub median_interval: Option<[Option<f64>; 2]> as "of the measure" =
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
-        /// Reason why there is no curve; null if there is one.
+        /// Reason why no curve could be fitted; null if there is a curve.
         pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
         /// Method by which the confidence band was computed.
         pub band: &'static str ["jackknife over records", "profile likelihood", "none"] =
@@ -164,16 +164,16 @@ described! {
             row.0.collapse.as_ref().ok().and_then(|found| finite(found.concordance)),
         /// Name of the other measure against which sufficiency was tested.
         pub beside: Option<String> = row.0.beside.map(|at| row.1.measures[at].name.clone()),
-        /// p-value of the hypothesis that the other measure adds no information on collapse.
+        /// p-value of the hypothesis that the measure named in `beside` adds no information on collapse.
         pub sufficiency_p: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().and_then(|found| found.sufficiency),
-        /// Reason why there is no curve; null if there is one.
+        /// Reason why no curve could be fitted; null if there is a curve.
         pub no_curve: Option<String> = row.0.collapse.as_ref().err().map(ToString::to_string),
         /// Slope of the regression of ln drift on ln intensity, for stacks that stand.
         pub drift_slope: Option<f64> as "1" = row.0.drift.map(|found| found.slope),
-        /// Standard deviation of ln drift about that regression.
+        /// Standard deviation of ln drift about the regression line with the slope `drift_slope`.
         pub drift_dispersion: Option<f64> as "1" = row.0.drift.map(|found| found.dispersion),
-        /// p-value of the hypothesis that the other measure adds no information on the drift.
+        /// p-value of the hypothesis that the measure named in `beside` adds no information on the drift.
         pub drift_sufficiency_p: Option<f64> as "1" = row.0.drift.and_then(|found| found.sufficiency),
     }
 
@@ -200,10 +200,10 @@ described! {
     pub struct LossTable of losses: &Losses {
         /// Number of barrels in a stack.
         pub barrels: u32 = losses.barrels,
-        /// Fall height at which half of the barrels burst, under each of three assumptions.
+        /// Fall height at which half of the barrels burst, under the low, central and high assumptions about breakage.
         pub breakage_median_m: [f64; 3] as "m" = Breakage::RANGE.map(|breakage| breakage.median),
-        /// Standard deviation of the logarithm of the fall height at which a barrel bursts, under each
-        /// assumption.
+        /// Standard deviation of the logarithm of the fall height at which a barrel bursts, under the low, central and
+        /// high assumption about breakage.
         pub breakage_dispersion: [f64; 3] as "1" = Breakage::RANGE.map(|breakage| breakage.dispersion),
         /// Losses at every level.
         pub levels: Vec<LossAt> = losses.levels.iter().map(LossAt::of).collect(),
@@ -219,12 +219,12 @@ described! {
         pub barrels_fallen: f64 as "barrels" = loss.fallen,
         /// 95 % interval of the mean number of barrels that fall.
         pub barrels_fallen_interval: [Option<f64>; 2] as "barrels" = bounds(loss.interval),
-        /// Mean number of barrels that burst, under each assumption.
+        /// Mean number of barrels that burst, under the low, central and high assumptions about breakage.
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
-        /// Expected volume of wine lost in burst barrels, under each assumption.
+        /// Expected volume of wine lost in burst barrels, under the low, central and high assumptions about breakage.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
-        /// Mean number of barrels that burst, if the largest force on a barrel determines whether it bursts;
-        /// null if the study does not record forces.
+        /// Mean number of barrels that burst, estimated from the largest force on each barrel; null if the study does
+        /// not record forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 
@@ -259,11 +259,11 @@ described! {
     pub struct FactorEffect of effect: &Effect {
         /// Name of the factor.
         pub factor: String = effect.factor.clone(),
-        /// Counts of collapses for each group of values of the factor.
+        /// Counts of collapses, for each value of the factor or for each third of its values.
         pub groups: Vec<EffectGroup> = effect.groups.iter().map(EffectGroup::of).collect(),
     }
 
-    /// Cases of one group of values of a factor.
+    /// Cases in which a factor has one value, or a value in one third of its values.
     pub struct EffectGroup of group: &Group {
         /// Values of the factor in the group, as text.
         pub value: String = group.label.clone(),
@@ -271,14 +271,14 @@ described! {
         pub cases: u32 = group.cases,
         /// Number of cases that collapse.
         pub collapsed: u32 = group.collapsed,
-        /// 95 % interval of the share of collapse. Clustered by motion for one-at-a-time designs; Wilson's
-        /// interval otherwise.
+        /// 95 % interval of the share of cases that collapse: clustered by motion for one-at-a-time designs, otherwise
+        /// by Wilson's method.
         pub interval: [Option<f64>; 2] as "1" = bounds(group.interval),
         /// Counts of collapses at each level, for one-at-a-time designs; empty otherwise.
         pub levels: Vec<EffectLevel> = group.levels.iter().map(EffectLevel::of).collect(),
     }
 
-    /// Cases of one group of values of a factor at one level.
+    /// Cases of one group of factor values, at one level of intensity.
     pub struct EffectLevel of level: &Level {
         /// Intensity of the level.
         pub intensity: f64 as "of the measure" = level.intensity,
@@ -286,7 +286,7 @@ described! {
         pub cases: u32 = level.cases,
         /// Number of cases that collapse.
         pub collapsed: u32 = level.collapsed,
-        /// 95 % interval of the share of collapse, clustered by motion.
+        /// 95 % interval of the share of cases that collapse, clustered by motion.
         pub interval: [Option<f64>; 2] as "1" = bounds(level.interval),
     }
 
@@ -303,13 +303,13 @@ described! {
         /// Barrels that fall per year; null if the study does not record falls.
         pub barrels_fallen_per_year: Option<YearlyRate> =
             site.lost.as_ref().map(|lost| YearlyRate::of(&lost.fallen)),
-        /// Barrels that burst per year, under each assumption.
+        /// Barrels that burst per year, under the low, central and high assumptions about breakage.
         pub barrels_burst_per_year: Option<Vec<YearlyRate>> =
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
-        /// Wine lost per year, under each assumption.
+        /// Wine lost per year, under the low, central and high assumptions about breakage.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
-        /// Lower and upper cost of the barrels that burst per year and of their wine, under the central
-        /// assumption.
+        /// Lower and upper cost of the barrels that burst per year and of their wine, under the central assumption
+        /// about breakage.
         pub money_lost_per_year: Option<[f64; 2]> as "US$/year" = site.lost.as_ref().map(|lost| lost.money),
         /// Contributions of ranges of intensity to the rate of collapse.
         pub contributions: Vec<RatePart> = site.contributions.iter().map(RatePart::of).collect(),
@@ -332,12 +332,13 @@ described! {
     /// Annual rate, as a lower and an upper bound. The bounds differ in the assumed effect of shaking beyond the hazard
     /// curve.
     pub struct YearlyRate of rate: &Rate {
-        /// Rate if shaking stronger than the last row of the hazard curve has the same effect as the last
-        /// row.
+        /// Rate if shaking stronger than that of the last row of the hazard curve has the same effect as the shaking of
+        /// the last row.
         pub low: f64 as "1/year" = rate.low,
-        /// Rate if shaking stronger than the last row of the hazard curve has the worst possible effect.
+        /// Rate if shaking stronger than that of the last row of the hazard curve has the worst possible effect.
         pub high: f64 as "1/year" = rate.high,
-        /// Effect of shaking with the intensity of the first row of the hazard curve.
+        /// Expected effect (probability of failure, or number of barrels) at the intensity of the first row of the
+        /// hazard curve.
         pub at_first_row: f64 as "1" = rate.at_first,
     }
 

@@ -30,7 +30,7 @@ impl LimitState {
         }
     }
 
-    /// Returns the name for display, which can follow "chance of".
+    /// Returns the name for display, worded so that it can follow "chance of".
     pub fn words(&self) -> String {
         match self {
             Self::SeatLost => "collapse (first seat lost)".to_owned(),

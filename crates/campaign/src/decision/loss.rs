@@ -12,10 +12,10 @@ use super::curve::{LEVEL, interpolate};
 /// The function has not been tested. It corresponds to the central assumption of [`Breakage`] for a barrel of
 /// 269 kg that falls freely on the floor.
 ///
-/// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The
-/// force grows as the height to the power 0.6, so that the dispersion of the force is 0.6 times that of the
-/// height. A landing on other barrels or on barrel heads is softer than a landing on the floor, so that the
-/// two assumptions differ there.
+/// With the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, a fall from 5 m gives a force of 2.2 MN. The force
+/// grows as the height to the power 0.6, so that the dispersion of the force is 0.6 times that of the height. A landing
+/// on other barrels or on barrel heads is softer than a landing on the floor, so that this function and the assumption
+/// based on the height give different probabilities there.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
 
 /// Expected losses of one stack at a level.
@@ -31,11 +31,11 @@ pub struct Loss {
     pub interval: Interval,
     /// Expected number of barrels that burst, under each of the three assumptions in [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Expected loss of wine (m³), under each of the three assumptions. It is the contents of the barrels
-    /// that burst. Leaks from the bungs of intact barrels are not counted.
+    /// Expected loss of wine (m³), under each of the three assumptions in [`Breakage::RANGE`]: the contents of the
+    /// barrels that burst. Leaks from the bungs of intact barrels are not counted.
     pub wine: [f64; 3],
-    /// Expected number of barrels that burst, if the largest force on a barrel determines whether it bursts;
-    /// `None` if the study does not record forces.
+    /// Expected number of barrels that burst, estimated from the largest force on each barrel; `None` if the study does
+    /// not record forces.
     pub burst_by_force: Option<f64>,
 }
 

@@ -17,12 +17,13 @@ pub struct MeasureRow {
     pub drift: Option<Demanded>,
 }
 
-/// Compares all measures. The measure under which the observed collapses are most likely comes first.
+/// Compares all measures. The measure that gives the observed collapses the largest likelihood comes first.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())
         .map(|measure| {
-            // Each measure is tested against that of the study, which is tested against PGA, or against PGV if it is PGA.
+            // Each measure is tested against the measure of the study. The measure of the study itself is tested
+            // against PGA, or against PGV if it is PGA.
             let beside = if measure == cases.main {
                 ["pga", "pgv"].into_iter().filter_map(by_name).find(|other| *other != measure)
             } else {

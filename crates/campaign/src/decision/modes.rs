@@ -26,7 +26,7 @@ fn is(case: &JudgedCase, mode: usize) -> bool {
 
 /// Returns the incidence of every mode that occurs, the most frequent first.
 ///
-/// The result is empty for hunts, since most of their levels lie near collapse.
+/// The result is empty for an incremental dynamic analysis, because most of its levels are chosen close to collapse.
 pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
     if cases.hunted {
         return Vec::new();

@@ -91,8 +91,9 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(text(
             "The first-order index is the share of the variance that would vanish if the quantity were known; the \
              total index is the share that would remain if all other quantities were known. The total index exceeds \
-             the first-order index by the effect of interactions. Demands are recorded until the collapse. A \
-             quantity without effect in these blocks may have an effect in others, so that no interval ends at zero.",
+             the first-order index by the effect of interactions. Demands are recorded until the collapse. A quantity \
+             without effect in these blocks may have an effect in others; the upper end of an interval is therefore \
+             never zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;

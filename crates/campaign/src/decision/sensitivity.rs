@@ -1,4 +1,4 @@
-//! Effects of the varied factors on collapse: the share of collapse at each value of a factor.
+//! Effects of the varied factors on collapse: the share of collapsed cases at each value of a factor.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use super::cases::{Cases, JudgedCase, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Cases with one value of a factor, or with values in one third of its range of values.
+/// Cases in which a factor has one value, or a value in one third of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.
@@ -18,7 +18,7 @@ pub struct Group {
     pub cases: u32,
     /// Number of cases that collapsed.
     pub collapsed: u32,
-    /// 95 % interval of the share of collapse.
+    /// 95 % interval of the share of cases that collapse.
     pub interval: Interval,
     /// Counts at each level of intensity, for one-at-a-time designs; empty otherwise.
     pub levels: Vec<Level>,
@@ -33,7 +33,7 @@ pub struct Level {
     pub cases: u32,
     /// Number of cases that collapsed.
     pub collapsed: u32,
-    /// 95 % interval of the share of collapse, clustered by motion.
+    /// 95 % interval of the share of cases that collapse, clustered by motion.
     pub interval: Interval,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn alike(one: f64, other: f64) -> bool {
 }
 
 impl Group {
-    /// Returns the share of collapse.
+    /// Returns the share of cases that collapsed.
     pub fn share(&self) -> f64 {
         f64::from(self.collapsed) / f64::from(self.cases)
     }
@@ -60,7 +60,7 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// Returns the difference between the largest and the smallest share of collapse among the groups.
+    /// Returns the difference between the largest and the smallest share of collapsed cases among the groups.
     pub fn range(&self) -> f64 {
         let shares = || self.groups.iter().map(Group::share);
         shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
@@ -106,8 +106,8 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
     found
 }
 
-/// Returns the most frequent value of a factor, or the first of several. In a one-at-a-time design this is
-/// the base value.
+/// Returns the most frequent value of a factor; of several equally frequent values, the first. In a one-at-a-time
+/// design this is the base value.
 fn most_frequent(factor: &Column) -> Option<Value> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in 0..factor.values.len() {
@@ -124,7 +124,7 @@ fn group(label: String, of: Vec<&JudgedCase>) -> (Group, Vec<&JudgedCase>) {
     (Group { label, cases, collapsed, interval, levels: Vec::new() }, of)
 }
 
-/// Counts cases and collapses, and computes an interval of their share that is clustered by motion.
+/// Counts cases and collapses, and computes the interval of the share of collapses, clustered by motion.
 fn by_motion(of: &[&JudgedCase]) -> Level {
     let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     for case in of {

@@ -11,7 +11,7 @@ use super::words::{count, percent, range};
 
 pub(super) fn effects(decision: &Decision) -> Table {
     let mut table = Table::new(
-        "Share of collapse at each value of every varied quantity, over all motions and levels.",
+        "Share of cases that collapse at each value of every varied quantity, over all motions and levels.",
         &[("quantity", ""), ("value", ""), ("cases", ""), ("collapsed", ""), ("95 % interval", "")],
     );
     let levels = decision.effects.iter().flat_map(|effect| &effect.groups).map(|g| &g.levels);

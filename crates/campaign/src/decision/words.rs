@@ -297,8 +297,8 @@ pub(super) fn warnings(
                 )
             };
             said.push(format!(
-                "{} of {} {} {} the stack standing at a higher level than one at which it falls (the first: collapse \
-                 at {}, standing at {}). {why}.",
+                "{} of {} {} {} the stack standing at a higher level of shaking than one at which it falls (the \
+                 first: collapse at {}, standing at {}). {why}.",
                 returned.len(),
                 cases.curves(),
                 cases.curves_are(),

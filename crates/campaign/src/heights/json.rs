@@ -40,7 +40,7 @@ described! {
     pub struct RecordedRow of run: &AsRecorded {
         /// Number of levels of the stack.
         pub levels: u32 = run.levels,
-        /// Direction of the shaking: across or along the barrels, or in space.
+        /// Direction of the shaking: across the barrels, along them, or three-dimensional.
         pub direction: &'static str ["transverse", "longitudinal", "spatial"] = run.direction.name(),
         /// Name of the horizontal component.
         pub motion: String = run.motion.clone(),
@@ -54,16 +54,16 @@ described! {
         pub pga: f64 as "m/s2" = run.acceleration,
     }
 
-    /// Results of stacks of one height in one direction of shaking.
+    /// Results of stacks of one height, shaken in one direction.
     pub struct HeightRow of height: &Height {
         /// Number of levels of the stack.
         pub levels: u32 = height.levels,
-        /// Direction of the shaking: across or along the barrels, or in space, in a horizontal direction that is drawn for
-        /// every run.
+        /// Direction of the shaking: across the barrels, along them, or three-dimensional with a horizontal direction
+        /// that is drawn for every run.
         pub direction: &'static str ["transverse", "longitudinal", "spatial"] = height.direction.name(),
         /// Static margin: largest steady horizontal acceleration under which the stack stands, with the friction and
-        /// the seats of the catalog; null if the stack stands at 1 g. In space it is the smaller of the margins across
-        /// and along the barrels.
+        /// the seats of the catalog; null if the stack stands at 1 g. For three-dimensional shaking it is the smaller
+        /// of the margins across and along the barrels.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
         /// Results at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),
@@ -92,7 +92,8 @@ described! {
         pub range: Option<[f64; 2]> as "1" = at.2.map(|effect| effect.range),
         /// Share of stacks that collapse if all uncertain constants have their stated values; null if `range` is null.
         pub share_as_stated: Option<f64> as "1" = at.2.map(|effect| effect.as_stated),
-        /// Constant that decides the result; null if no constant decides.
+        /// The uncertain constant with the largest effect on the share of stacks that collapse; null if no constant is
+        /// decisive, that is, changes this share significantly and by at least 20 percentage points.
         pub decides: Option<Unknown> = at.2.and_then(Fitted::decisive).cloned(),
     }
 
@@ -106,7 +107,7 @@ described! {
         /// 95 % interval of the median.
         pub median_interval: Option<[Option<f64>; 2]> as "of the intensity" =
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
-        /// Reason why there is no curve; null if there is one.
+        /// Reason why no curve could be fitted; null if there is a curve.
         pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
     }
 }

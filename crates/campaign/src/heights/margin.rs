@@ -12,7 +12,7 @@ use crate::scenario::View;
 use crate::study::StudyError;
 
 /// Returns the static margin (m/s²) of a stack: `None` if the stack stands even at 1 g, zero if it falls under its own
-/// weight. In space it is the smaller of the margins across and along the barrels.
+/// weight. For a three-dimensional stack it is the smaller of the margins across and along the barrels.
 fn margin(
     request: &Request,
     (levels, direction): (u32, Direction),
@@ -40,8 +40,8 @@ fn margin(
     }
 }
 
-/// Returns the static margin (m/s²) of each stack; stacks are given by levels and direction. `None` for a
-/// stack that stands even at 1 g.
+/// Returns the static margin (m/s²) of each stack, which is given by its number of levels and the direction; `None` for
+/// a stack that stands even at 1 g.
 pub(super) fn margins(
     request: &Request,
     stacks: &[(u32, Direction)],
@@ -90,7 +90,7 @@ mod tests {
         }
         // The margin of the higher stack is smaller.
         assert!(found[2] < found[1], "{found:?}");
-        // In space the margin is the smaller of the margins across and along the barrels.
+        // For a three-dimensional stack, the margin is the smaller of the margins across and along the barrels.
         assert_eq!(found[3], found[0].min(found[4]));
     }
 }

@@ -15,14 +15,14 @@ use crate::direction::Direction;
 use crate::scenario::catalog;
 use crate::scenario::title::{counted, number};
 
-/// Conditions for the rating "low": the maximum share of collapse, and the maximum upper bound of the
+/// Conditions for the rating "low": the maximum share of stacks that collapse, and the maximum upper bound of the
 /// probability of collapse.
 ///
 /// A stack whose probability of collapse exceeds the second number is rated low in at most one of 20 studies,
 /// for any number of motions.
 const LOW: (f64, f64) = (0.05, 0.12);
 
-/// Maximum share of collapse for the rating "medium".
+/// Maximum share of stacks that collapse for the rating "medium".
 const MEDIUM: f64 = 0.25;
 
 /// Builds the report page.
@@ -52,7 +52,7 @@ fn rack_source(name: &str) -> String {
     catalog::rack(name).map_or_else(String::new, |rack| format!("{name}: {}", rack.source))
 }
 
-/// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of shaking maps.
+/// Returns the perceived shaking at a peak ground velocity (m/s), in the terms of ShakeMap, such as "severe (VIII)".
 ///
 /// The classes are averages over earthquakes in California (Wald et al. 1999). For other regions they are an
 /// assumption.
@@ -86,8 +86,8 @@ fn named(velocity: f64) -> String {
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which
-/// the upper bound of the probability of collapse is larger.
+/// Returns the results of stacks with a number of levels at a given PGV (m/s), in the direction in which the upper
+/// bound of the probability of collapse is larger.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     let directions = all.request.directions().into_iter();
     directions
@@ -106,8 +106,8 @@ fn rating(at: &AtLevel) -> Rating {
     }
 }
 
-/// Returns the largest number of levels that is rated low at a level of PGV (m/s), provided that all smaller
-/// numbers are rated low as well.
+/// Returns the largest number of levels that is rated low at a given PGV (m/s), provided that all smaller numbers are
+/// rated low as well.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     all.request
         .heights()
@@ -157,14 +157,14 @@ fn headline(all: &Heights) -> String {
     )
 }
 
-/// Returns the text `planes` if the stacks are simulated in planes, and the text `space` if they are simulated in
-/// space.
+/// Returns the text `planes` if the stacks are simulated in planes, and the text `space` if they are simulated in three
+/// dimensions.
 fn in_planes<'a>(all: &Heights, planes: &'a str, space: &'a str) -> &'a str {
     if all.request.in_space { space } else { planes }
 }
 
-/// Returns a direction as an insertion, such as ", along the barrels"; empty in space, where there is only one
-/// direction.
+/// Returns a direction as an insertion, such as ", along the barrels"; empty for three-dimensional shaking, which has
+/// only one direction to be reported.
 fn inserted(direction: Direction) -> String {
     match direction {
         Direction::Plane(view) => format!(", {}", view.words()),
@@ -172,8 +172,8 @@ fn inserted(direction: Direction) -> String {
     }
 }
 
-/// Returns the results of stacks with a number of levels at a level of PGV (m/s), in the direction in which the upper
-/// end of the range over the uncertain constants is larger.
+/// Returns the results of stacks with a number of levels at a given PGV (m/s), in the direction in which the range over
+/// the uncertain constants has the larger upper end.
 fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel, [f64; 2])> {
     let found = |direction| {
         let height = all.of(levels, direction)?;
@@ -185,15 +185,16 @@ fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel
     found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
 }
 
-/// Returns the largest number of levels whose range over the uncertain constants stays below the limit for the rating
-/// "low" at a level of PGV (m/s), provided that the ranges of all smaller numbers do as well.
+/// Returns the largest number of levels for which the probability of collapse at a given PGV (m/s), with its 95 % range
+/// over the uncertain constants, stays below the limit for the rating "low". All smaller numbers of levels must stay
+/// below it as well.
 fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
     let low =
         |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
     all.request.heights().take_while(low).last()
 }
 
-/// Describes up to which height the chance of collapse at a level of PGV (m/s) is low whatever the uncertain constants
+/// Describes up to which height the chance of collapse at a given PGV (m/s) is low, whatever the uncertain constants
 /// are; empty if their effect is unknown.
 fn over_constants(all: &Heights, velocity: f64) -> String {
     let highest = highest_over_constants(all, velocity);
@@ -224,14 +225,15 @@ fn over_constants(all: &Heights, velocity: f64) -> String {
     )
 }
 
-/// Tabulates the range over the uncertain constants, in the direction in which its upper end is higher.
+/// Tabulates the range of the probability of collapse over the uncertain constants, in the direction in which its upper
+/// end is higher.
 fn over_constants_table(all: &Heights) -> Table {
     by_height(
         all,
         format!(
-            "95 % range of the chance of collapse over the uncertain constants of the seats, and the constant that \
-             decides{}.",
-            in_planes(all, ", in the direction in which the range ends higher", "")
+            "95 % range of the chance of collapse over the uncertain constants of the seats{}, and the constant that \
+             decides.",
+            in_planes(all, ", in the direction with the higher upper end", "")
         ),
         |levels, velocity| {
             Cell::maybe(widest(all, levels, velocity).map(|(height, _, [from, to])| {
@@ -243,8 +245,8 @@ fn over_constants_table(all: &Heights) -> Table {
     )
 }
 
-/// Returns the directions in which stacks of two levels are not rated low at a level of PGV (m/s), such as ",
-/// along the barrels".
+/// Returns the directions in which stacks of two levels are not rated low at a given PGV (m/s), such as ", along the
+/// barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |direction: &Direction| {
         let at = all.of(LOWEST, *direction).and_then(|height| height.at(velocity));
@@ -255,8 +257,8 @@ fn weaker(all: &Heights, velocity: f64) -> String {
     if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
-/// Describes the worst result of all stacks of up to `levels` levels at a level of PGV (m/s), such as "in 24 motions
-/// none fell (the probability of collapse is at most 12 % with 95 % confidence)".
+/// Describes the worst result of all stacks of up to `levels` levels at a given PGV (m/s), such as "in 24 motions none
+/// fell (the probability of collapse is at most 12 % with 95 % confidence)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
@@ -288,7 +290,7 @@ fn sentences(all: &Heights) -> Vec<String> {
         in_planes(
             all,
             "across and along the barrels",
-            "in space and in horizontal directions that were drawn for every run"
+            "in three dimensions, in horizontal directions that were drawn for every run"
         ),
         all.motions
     )];
@@ -340,8 +342,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(format!(
             "Each cell shows the share of stacks that collapse{}, and in brackets the range of the true chance; each \
              end of the range holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
-             below, so that a higher chance is rated low in at most one of 20 studies. ! medium: at most {:.0} %. ✗ \
-             high: more. These limits were chosen by judgment.",
+             below, so that a stack with a higher chance is rated low in at most one of 20 studies. ! medium: at most \
+             {:.0} %. ✗ high: more. These limits were chosen by judgment.",
             in_planes(all, ", in the direction with the higher bound", ""),
             100.0 * LOW.0,
             100.0 * LOW.1,
@@ -351,9 +353,9 @@ fn blocks(all: &Heights) -> Vec<Block> {
         text(
             "With a probability of 95 %, the range contains the chance of collapse of a stack whose friction, \
              stiffness and damping are drawn once from their distributions; it includes the sampling error. The \
-             brackets in the table above are for stacks whose constants are drawn anew for every run. A constant \
-             decides if the chance changes by 20 percentage points or more over the range of that constant. Measure \
-             this constant, and state its value in a scenario of your own.",
+             brackets in the table above are for stacks whose constants are drawn anew for every run. The constant \
+             that decides changes the chance by 20 percentage points or more over its own range. Measure this \
+             constant, and state its value in a scenario of your own.",
         ),
         text(
             "To find the row of your site, ask for the peak ground velocity of your design earthquake, or read it from a \
@@ -454,7 +456,7 @@ fn static_margins(all: &Heights) -> Table {
             in_planes(
                 all,
                 "",
-                "; the smaller of those of the models in planes, across and along the barrels"
+                "; the smaller of the margins of the two plane models, across and along the barrels"
             )
         ),
         &all.heights,
@@ -480,7 +482,7 @@ fn level_axis(all: &Heights) -> Axis {
     Axis { range: Some(range), ..Axis::new("levels", "") }
 }
 
-/// Plots the share of collapse against height at three levels of shaking, with 95 % intervals.
+/// Plots the share of stacks that collapse against height, at three levels of shaking, with 95 % intervals.
 fn chart(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
@@ -549,7 +551,8 @@ fn medians(all: &Heights) -> Figure {
     )
 }
 
-/// Largest ratio of a fitted median to the highest level of shaking above which the cases do not determine it.
+/// Maximum ratio of a fitted median to the highest level of shaking. The cases do not determine a median that lies
+/// further above that level.
 const MOST_BEYOND: f64 = 2.0;
 
 /// Returns the fitted curve if the cases determine its median.
@@ -594,11 +597,11 @@ fn median_table(all: &Heights) -> Table {
 fn rests_on(all: &Heights) -> Vec<String> {
     vec![
         format!(
-            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component, {} \
-             synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, and near-fault \
-             pulses){}, each scaled to every level of PGV{}.",
-            all.request.synthetic,
+            "Motions: both horizontal components of South Napa 2014 at Napa College with the vertical component{}. \
+             Number of additional synthetic motions (earthquakes of M 6 at 8 km and M 7 at 20 km by Boore's method, \
+             and near-fault pulses): {}. Each motion is scaled to every level of PGV{}.",
             if all.request.records.is_empty() { "" } else { ", and the given records" },
+            all.request.synthetic,
             in_planes(
                 all,
                 "",
@@ -607,20 +610,22 @@ fn rests_on(all: &Heights) -> Vec<String> {
             )
         ),
         format!(
-            "Full barrels, `{}` of the catalog. Friction, stiffness and damping of the seats are drawn for every run \
-             around the values of the catalog, with the default dispersions of a scenario. Values and dispersions \
-             are assumptions; wet floors and painted racks differ. Measure your own.",
+            "All barrels are full and of the type `{}` of the catalog. Friction, stiffness and damping of the seats \
+             are drawn for every run around the values of the catalog, with the default dispersions of a scenario. \
+             Values and dispersions are assumptions; they are different for wet floors and painted racks. Measure \
+             your own.",
             all.request.barrel
         ),
         format!(
             "Each stack stands alone, in {}: no neighbors, no walls, no straps. Collapse is the first loss of a seat by a \
              barrel or a rack.",
-            in_planes(all, "a plane model", "space")
+            in_planes(all, "a plane model", "a three-dimensional model")
         ),
         "Scaled motions are not the motions of stronger earthquakes, which last longer and have longer periods. \
          Results at levels far from the original strength of a motion are the least certain."
             .into(),
-        "Ranges count every motion as one observation. They apply to motions like these and do not cover errors of the model."
+        "In the ranges, every motion counts as one observation. The ranges apply to motions like these and do not \
+         cover errors of the model."
             .into(),
         "The racks are those of the catalog; several of their dimensions are assumptions. The folder holds the studies of this \
          page, which you can change and run for racks and rooms of your own."

@@ -103,7 +103,7 @@ fn columns_and_rack(
     })
 }
 
-/// Returns a stack of a number of levels on ground at rest.
+/// Returns the scenario of a stack with the given number of levels on ground at rest.
 pub(super) fn at_rest(
     request: &Request,
     direction: Direction,

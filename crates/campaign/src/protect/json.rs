@@ -34,7 +34,7 @@ described! {
         pub runs: usize = all.runs,
         /// Main result in a sentence.
         pub headline: String = all.document.verdict.headline.clone(),
-        /// Name of the protection that saves most barrels for its cost; null if no protection helps
+        /// Name of the protection that saves the most barrels per dollar of its cost; null if no protection helps
         /// significantly.
         pub best: Option<String> = all.best().map(|one| one.protection.name.clone()),
         /// Every protection that was tried, sorted by last round (the latest first) and then by the number of fallen
@@ -71,7 +71,7 @@ described! {
         /// Share of the draws in which fewer barrels fall than with the next protection of the list; computed like
         /// `better_than_as_it_is`.
         pub better_than_next: Option<f64> as "1" = one.better_than_next,
-        /// Number of barrels that fall, per event or per year.
+        /// Number of barrels that fall, per event or per year, according to `per`.
         pub barrels_fallen: Interval = Interval::of(&one.fallen),
         /// Number of barrels that burst under the central assumption, per event or per year, according to
         /// `per`.

@@ -177,14 +177,15 @@ fn sentences(all: &Ranking) -> Vec<String> {
         }
     }
     said.push(format!(
-        "{} protections were tried in {} runs, across the barrels and along them if the scenario has both directions.",
+        "{} protections were tried in {} runs, in both directions (across and along the barrels) if the scenario has \
+         both.",
         all.tries(),
         all.runs
     ));
     said
 }
 
-/// Describes in which share of the draws of the uncertain constants the best protection is better than others.
+/// Describes how often the best protection is better than others, as a share of the draws of the uncertain constants.
 fn order(all: &Ranking, best: &Ranked) -> Option<String> {
     let better = best.better_than_as_it_is?;
     let at = all.all.iter().position(|one| std::ptr::eq(one, best));
@@ -285,17 +286,17 @@ fn table(all: &Ranking) -> Table {
 
 fn legend(all: &Ranking) -> String {
     format!(
-        "•: no other protection that was run in all rounds costs at most as much and loses fewer barrels. \
-         Protections with fewer motions were dropped early, because a cheaper protection is significantly better or \
-         because half of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more \
-         precise than the difference of two means. The next column has an interval that holds for all {} protections \
-         at once; it decides whether a protection helps significantly, since the best of many protections looks \
-         better than it is. All intervals allow for the small number of motions. Numbers are for the direction of \
-         shaking in which more barrels fall. With a probability of 95 %, the range over the uncertain constants \
-         contains the frequency of collapse if friction, stiffness and damping of the seats are drawn from their \
-         distributions, sampling error included. Each draw of the constants applies to all protections; a protection \
-         is better in a draw if fewer barrels fall with it. The number of barrels that fall in a collapse is the \
-         mean at each level, whatever the constants are.",
+        "•: no other protection that was run in all rounds costs at most as much and loses fewer barrels. Protections \
+         with fewer motions were dropped early, because a cheaper protection is significantly better or because half \
+         of the others did better. \"Fewer fall\" compares run by run under the same {}, which is more precise than \
+         the difference of two means. The next column gives an interval that holds for all {} protections at once. \
+         This interval decides whether a protection helps significantly, since the best of many protections tends to \
+         look better than it is. All intervals allow for the small number of motions. Numbers are for the direction \
+         of shaking in which more barrels fall. With a probability of 95 %, the range over the uncertain constants \
+         contains the frequency of collapse of a stack whose friction, stiffness and damping are drawn from their \
+         distributions; it includes the sampling error. Each draw of the constants applies to all protections; a \
+         protection is better in a draw if fewer barrels fall with it. In the draws, the number of barrels that fall \
+         in a collapse is the mean at each level of shaking and does not depend on the constants.",
         if all.request.records.is_empty() && all.request.folder.is_none() {
             "motions and friction"
         } else {
@@ -382,8 +383,8 @@ fn rests_on(all: &Ranking) -> Vec<String> {
     };
     vec![
         motions,
-        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, \
-         with the dispersions of the scenario. All protections draw the same quantiles."
+        "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, with \
+         the dispersions of the scenario. All protections use the same quantiles of these distributions."
             .into(),
         "Costs are for one stack and for one purchase and installation; most are assumptions, listed in the \
          table. Labor, lost time and injuries are not counted."
@@ -394,7 +395,7 @@ fn rests_on(all: &Ranking) -> Vec<String> {
             "The stack stands alone{}: no neighbors that knock it down, no walls, no ropes between stacks. Straps \
              do not tear unless the scenario states a strength.",
             if all.request.scenario.is_spatial() {
-                ", in space, and the horizontal direction of the motion is drawn for every run"
+                ", in a three-dimensional model, and the horizontal direction of the motion is drawn for every run"
             } else {
                 ", in a plane model"
             }

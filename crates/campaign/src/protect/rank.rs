@@ -44,7 +44,7 @@ pub(super) struct Runs {
     pub(super) fallen_at_rest: usize,
     /// The runs with the constants that were drawn for them.
     sample: Sample,
-    /// Number and sum of fallen barrels of the runs that collapse, at each level.
+    /// For each level, the number of runs that collapse and the total number of barrels that fall in these runs.
     collapses: Vec<(f64, f64)>,
 }
 
@@ -53,14 +53,15 @@ pub(super) struct Runs {
 pub(super) struct Over {
     /// Range that contains, with a probability of 95 %, the probability of collapse, or its annual rate.
     pub(super) range: Option<[f64; 2]>,
-    /// Number of barrels that fall, in every draw of the constants and of the regression; empty if it is unknown.
+    /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients; empty if
+    /// unknown.
     pub(super) fallen: Vec<f64>,
 }
 
 /// Mean of one quantity, with its interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Mean over all motions; the levels of shaking are weighted.
+    /// Mean over all motions, and weighted mean over the levels of shaking.
     pub mean: f64,
     /// Lower end of the 95 % interval, clustered by motion.
     pub low: f64,
@@ -107,8 +108,9 @@ impl Runs {
 
     /// Returns the effect of the uncertain constants, over the weighted levels (m/s).
     ///
-    /// The regression gives the share of collapses at each level. The number of barrels that fall in a collapse is the
-    /// mean at that level, or over all levels if nothing collapses there, and does not depend on the constants.
+    /// The regression gives the share of collapses at each level. The number of barrels that fall in a collapse does
+    /// not depend on the constants: it is the mean over all collapses at that level or, if nothing collapses there,
+    /// over all levels.
     pub(super) fn over_constants(&self, levels: &[f64], weights: &[f64], most: f64) -> Over {
         let certain =
             self.sample.is_certain().then(|| self.estimate(|run| run.collapsed, weights, 1.0));

@@ -1,4 +1,4 @@
-//! Candidates of a ranking. A candidate is a protected stack in every direction, which is run in rounds of studies.
+//! Candidates of a ranking. A candidate is a stack with a protection; each round runs studies of it in every direction.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -64,8 +64,8 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns candidates of the protections that can be built and do not exceed the budget; records the reasons
-    /// for the others.
+    /// Returns candidates for the protections that can be built and do not exceed the budget; for all other
+    /// protections, records why they were not tried.
     pub(super) fn candidates(&mut self, protections: Vec<Protection>) -> Vec<Candidate> {
         let mut candidates = Vec::new();
         for protection in protections {
@@ -90,7 +90,7 @@ impl Search<'_> {
         candidates
     }
 
-    /// Runs a round of the candidates with the indices `open`.
+    /// Runs one round of studies for the candidates with the indices `open`.
     pub(super) fn round(
         &self,
         candidates: &mut [Candidate],

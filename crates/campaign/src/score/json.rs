@@ -22,8 +22,9 @@ described! {
         /// (friction, stiffness, damping) and the sampling error; rounded outward. Without uncertain constants it is
         /// the 95 % interval for the sampling error alone. Null if a run has no verdict, or if there are too few runs.
         pub range: Option<[u32; 2]> as "cm/s" = sheet.range(),
-        /// Constant that decides the result in the weakest state and direction, with the shares of collapse at the
-        /// velocity of the score as a function of that constant; null if no constant decides.
+        /// The uncertain constant with the largest effect on the share of stacks that collapse, in the weakest state
+        /// and direction at the velocity of the score; null if no constant is decisive, that is, changes this share
+        /// significantly and by at least 20 percentage points.
         pub decides: Option<Unknown> = sheet.decisive().cloned(),
         /// Number of levels of the stack.
         pub levels: u32 = sheet.protocol.levels,
@@ -43,12 +44,13 @@ described! {
         pub state: String = row.0.state.name.clone(),
         /// Changes of the scenario in this state, as overrides.
         pub changes: Vec<String> = row.0.state.changes.clone(),
-        /// Direction of shaking: across the barrels, along them, or in space by all components of the motions.
+        /// Direction of shaking: across the barrels, along them, or three-dimensional with all components of the
+        /// motions.
         pub direction: &'static str ["transverse", "longitudinal", "spatial"] = row.0.direction.name(),
         /// Peak ground velocity at which one stack in ten collapses; 0 if that velocity is below all levels.
         pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
-        /// Source of the velocity: the fitted curve, the lower of two levels between which the share of
-        /// collapse exceeds one in ten, or an end of the range of levels.
+        /// Source of the velocity: the fitted curve; the lower of the two levels between which the share of collapses
+        /// rises above one in ten; or an end of the range of levels.
         pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"] =
             match row.0.capacity {
                 Capacity::Fitted(..) => "curve",
@@ -61,7 +63,7 @@ described! {
         /// Range of the velocity over the uncertain constants, defined like `range` of the score. An end below all
         /// levels is given as 0, and an end above all levels as the highest level.
         pub range: Option<[f64; 2]> as "m/s" = row.0.range().map(|of| [of.low, of.high]),
-        /// Share of collapse at each of the velocities of the protocol; null where no run has a verdict.
+        /// Share of stacks that collapse at each of the velocities of the protocol; null where no run has a verdict.
         pub collapsed: Vec<Option<f64>> as "1" = row.1.protocol.velocities.iter()
             .map(|velocity| row.0.at(*velocity).map(|stripe| stripe.fraction())).collect(),
         /// Number of runs.

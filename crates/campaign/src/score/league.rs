@@ -55,8 +55,8 @@ pub fn contenders(scenario: &Scenario) -> Vec<Contender> {
     catalog::RACKS.iter().map(rack).chain(devices.map(device)).collect()
 }
 
-/// Returns the changes that put a stack on a rack: the rack, and the number of columns of one rack if the columns of
-/// the stack do not fill whole racks.
+/// Returns the overrides that replace the rack of a stack. If the columns of the stack do not fill whole racks, the
+/// overrides also set the number of columns to that of a single rack.
 fn on_rack(stack: &StackSpec, rack: &crate::scenario::Rack) -> Vec<String> {
     let mut changes = vec![format!("stack.rack=\"{}\"", rack.base)];
     if !stack.columns.is_multiple_of(rack.barrels.max(1)) {
@@ -137,14 +137,14 @@ fn reason(error: &ScoreError) -> String {
 
 impl League {
     /// Returns the share of the draws of the uncertain constants in which the score of a row is higher than that of the
-    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, and if draws are unknown.
+    /// next row. A draw has the same constants in all rows. Returns `None` for the last row, or if draws are unknown.
     pub fn better_than_next(&self, row: usize) -> Option<f64> {
         let [own, next] = [self.rows.get(row)?, self.rows.get(row + 1)?].map(|(_, s)| s.draws());
         (!own.is_empty() && own.len() == next.len()).then(|| share_less(&next, &own))
     }
 
-    /// Returns the table as CSV, with units in the heading. Racks and devices that could not be scored follow all others,
-    /// each with the reason.
+    /// Returns the table as CSV, with units in the header row. Racks and devices that could not be scored follow all
+    /// others, each with the reason.
     pub fn to_csv(&self) -> String {
         type Cell<'a> = &'a dyn Fn(&Row<'_>) -> Option<Value>;
         struct Row<'a> {
@@ -264,7 +264,7 @@ fn headline(league: &League) -> String {
     format!(
         "The highest RockScore of {} racks and devices{} is {}{range}: {}.{next}{not}",
         league.rows.len(),
-        if sheet.scenario.is_spatial() { ", in space," } else { "" },
+        if sheet.scenario.is_spatial() { ", in three dimensions," } else { "" },
         sheet.score(),
         first.name
     )
@@ -305,7 +305,8 @@ fn table(league: &League) -> Table {
 
 fn legend(scenario: &Scenario) -> String {
     let space = if Direction::of(scenario) == Some(Direction::Space) {
-        " In space the ground moves in all directions, so that these scores cannot be compared with scores in planes."
+        " In three dimensions the ground moves in all directions, so that these scores cannot be compared with scores \
+         from runs in one plane."
     } else {
         ""
     };
@@ -313,7 +314,7 @@ fn legend(scenario: &Scenario) -> String {
         "A score compares racks and devices under the same motions; it does not predict the behavior of a particular \
          cellar. The confidence interval (95 %, clustered by motion) is that of the weakest state and direction; \
          there is none where no curve can be fitted. With a probability of 95 %, the range over the uncertain \
-         constants contains the score of a stack if the friction, stiffness and damping of its seats are drawn from \
-         their distributions, sampling error included. Each draw of the constants applies to all rows.{space}"
+         constants contains the score of a stack whose friction, stiffness and damping are drawn from their \
+         distributions; it includes the sampling error. Each draw of the constants applies to all rows.{space}"
     )
 }

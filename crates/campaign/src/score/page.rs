@@ -58,7 +58,7 @@ pub(super) type OnScale = (String, u32, Option<[u32; 2]>);
 /// Scores of the racks of the catalog, from `validation/league`, without devices.
 const REFERENCES: &str = include_str!("references.csv");
 
-/// Returns the racks of the catalog with which a score of the protocol in planes is compared.
+/// Returns the scores of the catalog's racks, with which a score from runs in planes is compared.
 pub(super) fn references() -> Vec<OnScale> {
     let row = |line: &str| {
         let mut cells = line.split(',');
@@ -70,14 +70,14 @@ pub(super) fn references() -> Vec<OnScale> {
     REFERENCES.lines().skip(1).filter_map(row).collect()
 }
 
-/// Draws the score on a scale, among the racks of the catalog if these have a score of the same protocol.
+/// Draws the score on a scale, beside the scores of the catalog's racks if these were computed with the same protocol.
 fn scale_of(sheet: &Sheet) -> Figure {
     let own = (format!("this stack: {}", scored(sheet)), sheet.score(), sheet.range());
     let known = sheet.protocol.name.split(',').next() == Some(Protocol::rockscore().name.as_str());
     let others = if known { references() } else { Vec::new() };
     let caption = if known {
-        "The score of this stack, and those of the racks of the catalog without devices; the latter are computed \
-         with every fourth motion of the protocol."
+        "The score of this stack, and the scores of the catalog's racks without devices, which are computed with \
+         every fourth motion of the protocol."
     } else {
         "The score of this stack."
     };
@@ -159,7 +159,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     let new: Vec<String> =
         new.map(|row| format!("{} {}", bears(row.capacity), row.direction.words())).collect();
     said.push(format!(
-        "Velocity at which one in ten collapses, as good as new: {}.",
+        "In new condition, the velocity at which one stack in ten collapses is {}.",
         new.join(", ")
     ));
     said
@@ -184,7 +184,7 @@ fn over_constants(sheet: &Sheet) -> Option<String> {
     Some(format!(
         "Allowing for the uncertain friction, stiffness and damping of the seats, the score is between {low} and {high} with \
          a probability of 95 %{}.",
-        decides.unwrap_or_else(|| "; none of these decides alone".to_owned())
+        decides.unwrap_or_else(|| "; none of these constants alone decides the result".to_owned())
     ))
 }
 
@@ -239,8 +239,8 @@ fn protocol_ends(sheet: &Sheet) -> [f64; 2] {
     [velocities.first(), velocities.last()].map(|end| end.copied().unwrap_or(0.0))
 }
 
-/// Formats a range of velocities; an end beyond the levels of the protocol is shown as "below" or "above" the last
-/// level.
+/// Formats a range of velocities; an end beyond the levels of the protocol is shown as "below" the lowest level or
+/// "above" the highest level.
 fn over(of: &Interval, [lowest, highest]: [f64; 2]) -> String {
     let low = if of.low < lowest { format!("below {}", shown(lowest)) } else { shown(of.low) };
     let high =
@@ -292,16 +292,16 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
             "The stack: {} levels on the rack that is scored, with its barrels, interfaces and devices, on level ground, {}.",
             protocol.levels,
             if sheet.rows.iter().any(|row| row.direction == Direction::Space) {
-                "in space; the horizontal direction of the motion is drawn for every run"
+                "in three dimensions; the horizontal direction of the motion is drawn for every run"
             } else {
                 "across the barrels and along them"
             }
         ),
         format!(
-            "The motions: {} velocity pulses of Mavroeidis and Papageorgiou (2003; γ 1.5, 90°) of {} s, both \
-             components of South Napa 2014 at Napa College with the vertical component, and {} synthetic motions \
-             (half of them M 6 at 8 km, a quarter M 7 at 20 km, a quarter with near-fault pulses), each scaled to \
-             peak ground velocities of {} cm/s.",
+            "The motions: {} velocity pulses of Mavroeidis and Papageorgiou (2003; γ 1.5, phase 90°) with periods of \
+             {} s, both components of South Napa 2014 at Napa College with the vertical component, and {} synthetic \
+             motions (half of them M 6 at 8 km, a quarter M 7 at 20 km, a quarter with near-fault pulses), each \
+             scaled to peak ground velocities of {} cm/s.",
             protocol.periods.len(),
             list(&protocol.periods, 1.0),
             protocol.synthetic,
@@ -310,11 +310,11 @@ pub(super) fn rules(sheet: &Sheet) -> Vec<String> {
         "Friction, stiffness and damping of the seats are drawn for every run around the values in the scenario, \
          with the dispersions of the scenario; all racks get the same quantiles and the same motions."
             .into(),
-        "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device in worn condition, \
-         one at a time."
+        "States: as good as new; wet cradles, with a friction coefficient of 0.2 between barrels and racks; and each \
+         device in worn condition, one at a time."
             .into(),
-        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once the stack has come to rest on \
-         ground that stays below 0.02 g."
+        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after the collapse, or once the stack has come \
+         to rest on ground that stays below 0.02 g."
             .into(),
         "A protocol never changes; any change requires a new version number.".into(),
     ];

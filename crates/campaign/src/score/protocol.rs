@@ -72,7 +72,7 @@ impl Protocol {
         Self { name, periods, synthetic: self.synthetic / step, ..self }
     }
 
-    /// Returns the protocol under the name that it has for a stack: scores in space have a name of their own.
+    /// Returns the protocol with the name that it has for a stack; the name differs for three-dimensional stacks.
     pub(super) fn of(&self, stack: &Scenario) -> Self {
         if !stack.is_spatial() {
             return self.clone();
@@ -84,7 +84,7 @@ impl Protocol {
         Self { name, ..self.clone() }
     }
 
-    /// Returns the overrides that turn the stack of a scenario into that of the protocol.
+    /// Returns the overrides that give the stack of a scenario the number of levels that the protocol requires.
     pub(super) fn stacked(&self) -> Vec<String> {
         vec![format!("stack.levels={}", self.levels)]
     }

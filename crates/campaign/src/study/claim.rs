@@ -48,7 +48,7 @@ impl Claim {
     }
 }
 
-/// Removes a symbolic link, or a hard link to another file, that stands in the place of a claim.
+/// Removes a symbolic link, or a hard link to another file, that has taken the place of a claim file.
 fn remove_foreign(path: &Path) -> std::io::Result<()> {
     let found = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),

@@ -22,7 +22,7 @@ use super::table::StudyTable;
 pub struct Collected {
     /// Table with one row per finished case.
     pub table: StudyTable,
-    /// Provenance of the study with the number of these rows.
+    /// Provenance of the study; its number of cases is the number of rows in `table`.
     pub provenance: Provenance,
 }
 

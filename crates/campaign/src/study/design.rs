@@ -15,12 +15,12 @@ use barrelstack_report::column::Value;
 pub enum Design {
     /// Every combination of all values, levels and motions.
     FullFactorial,
-    /// The base values and, for every other value of a factor, the base values with only this factor changed;
-    /// for every level and motion.
+    /// For every level and motion: one case with the base values, and one case for each other value of each factor, in
+    /// which only that factor is changed.
     OneAtATime {
         /// Probabilities of the quantiles that represent a distribution.
         quantiles: Vec<f64>,
-        /// Number of draws per motion of the factors with distributions; 0 to use quantiles instead.
+        /// Number of times that the factors with distributions are drawn for each motion; 0 to use quantiles instead.
         draws: u32,
     },
     /// Latin hypercube: the range of every factor is divided into `count` equally probable parts, and one
@@ -104,8 +104,8 @@ pub(super) struct PlannedCase {
 pub(super) enum Cases {
     /// Every combination. The motion varies slowest, then the factors, and the level varies fastest.
     Crossed,
-    /// The base values, or a single change of them. The motion varies slowest, then the draw, then the level,
-    /// and the change varies fastest.
+    /// Cases with the base values or with a single change of them. The motion varies slowest, then the draw, then the
+    /// level, and the change varies fastest.
     OneAtATime {
         /// Changes: each has the index of a factor and a value.
         changes: Vec<(usize, Setting)>,
@@ -145,7 +145,7 @@ fn pick(u: f64, count: usize) -> usize {
     ((u * count as f64) as usize).min(count - 1)
 }
 
-/// Returns a uniformly distributed integer below `count`, by Lemire's multiplication with a bias below 2⁻³².
+/// Returns a uniformly distributed integer below `count`, by Lemire's multiplication method; its bias is below 2⁻³².
 #[expect(clippy::cast_possible_truncation, reason = "below the count")]
 fn below(random: &mut Random, count: usize) -> usize {
     ((u128::from(random.bits()) * count as u128) >> 64) as usize
@@ -363,8 +363,9 @@ impl Study {
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).chain(groups).collect()
     }
 
-    /// Returns the cumulative probability at which a factor is drawn. `own` is the uniform deviate of the factor; for
-    /// the number of a group of correlated factors, `common` returns the uniform deviate that the group shares.
+    /// Returns the cumulative probability at which a factor is drawn. `own` is the uniform deviate of the factor.
+    /// `common` takes the number of a group of correlated factors and returns the uniform deviate that the group
+    /// shares.
     fn correlated(&self, factor: &str, own: f64, common: impl FnOnce(usize) -> f64) -> f64 {
         let group = self.correlations.iter().position(|group| group.contains(factor));
         let Some(group) = group else { return own };

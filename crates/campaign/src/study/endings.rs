@@ -19,7 +19,8 @@ use crate::watch::{Ending, after_collapse};
 pub struct Endings {
     /// Number of all cases with a verdict.
     pub judged: u64,
-    /// Number of cases followed until nothing moved and the ground was still, or calm after a collapse.
+    /// Number of cases that were simulated until nothing moved. The ground was then still, or almost still after a
+    /// collapse.
     ///
     /// Includes cases whose stack fell under its own weight, before any shaking.
     pub followed: u64,

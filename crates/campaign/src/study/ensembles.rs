@@ -101,8 +101,8 @@ pub(super) fn read(
     Ok(motions)
 }
 
-/// Reads the motion that results from the entries `each`, `sine`, `pulse` and `scale` of a `[[motion]]` table
-/// and from further entries.
+/// Reads the motion that results from the entries `each`, `sine`, `pulse` and `scale` of a `[[motion]]` table and from
+/// the additional `entries`.
 fn motion_of(
     set: &Reader<'_>,
     opened: &Opened,

@@ -53,7 +53,7 @@ pub struct Progress {
     pub damaged: usize,
     /// `true` if the manifest of the folder was damaged and has been rewritten.
     pub manifest_healed: bool,
-    /// Number of a chunk that another process is running, if no other chunk is left to run.
+    /// Number of a chunk that another process is running, while this process has no chunk left to run.
     pub waits_for: Option<usize>,
 }
 
@@ -339,8 +339,8 @@ impl Shared<'_> {
         }
     }
 
-    /// Takes the next chunk; `None` if no chunk is left, or if the contiguous finished chunks satisfy the
-    /// stopping rule.
+    /// Takes the next chunk; `None` if no chunk is left, or if the finished chunks before the first unfinished chunk
+    /// satisfy the stopping rule.
     fn take(&self) -> Option<usize> {
         let mut state = self.state();
         if let Some(rule) = self.rule {

@@ -137,7 +137,7 @@ table! {
 }
 
 table! {
-    /// A group of factors that are drawn with a correlation. Factors are independent of each other without it.
+    /// A group of factors that are drawn with a correlation. Factors that share no group are independent of each other.
     static CORRELATION = "correlation";
     /// Names of the factors, each with a continuous distribution.
     factors = Kind::Texts, Default::Required;
@@ -176,8 +176,8 @@ table! {
     by kind {
         /// Every combination of all values, levels and motions.
         "full-factorial" {}
-        /// The base values and, for every other value of a factor, the base values with only this factor
-        /// changed; for every level and motion.
+        /// For every level and motion: one case with the base values, and one case for each other value of each factor,
+        /// in which only that factor is changed.
         "one-at-a-time" {
             /// Probabilities of the quantiles that represent a distribution.
             quantiles = Kind::Values, Default::Value("[0.1, 0.9]");
@@ -220,8 +220,8 @@ table! {
             step = Kind::Value, Default::Required;
             /// Amount by which each step is larger than the previous one.
             growth = Kind::Value, Default::Derived("half of `step`");
-            /// Gap between the highest level at which the stack stood and the lowest level at which it collapsed,
-            /// relative to the former, at which narrowing stops.
+            /// Narrowing stops when the gap between the highest level at which the stack stood and the lowest level at
+            /// which it collapsed is at most this fraction of the former level.
             resolution = Kind::Number(Range::between(1e-3, 1.0)), Default::Value("0.1");
             /// Number of runs in each hunt.
             runs = Kind::Integer(3, 1000), Default::Value("12");

@@ -53,8 +53,8 @@ impl Study {
         read(&Opened::parse(source_name, text)?, None)
     }
 
-    /// Reads a study that the program wrote for records named by the caller. Its errors have no place in a file, since
-    /// the user never sees that file, and they may quote the records.
+    /// Reads a study that the program wrote for records named by the caller. Errors do not state a place in the text,
+    /// which the user does not know; they may quote the records.
     pub(crate) fn written(name: &str, text: &str) -> Result<Self, StudyError> {
         let mut study = Self::parse(&format!("{name}.toml"), text).map_err(|error| {
             let StudyError::File(error) = error else { return error };
@@ -180,7 +180,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     let in_space = scenario.is_spatial() || factors.iter().any(|factor| factor.in_space);
     let correlations = read_correlations(&top, &factors)?;
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
-    // Cases in space do not run in lockstep, and each takes as long as many cases in a plane.
+    // Three-dimensional cases do not run in lockstep, and each takes as long as many cases in a plane.
     let usual = if in_space || matches!(design, Design::Ida(_)) { FEW } else { Sizes::Growing };
     let levels = match &intensity {
         Some(Intensity { levels: Levels::List(levels), .. }) => {
@@ -279,7 +279,7 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-/// Returns limits on the number of values of factors, given the number of motions and the kind of design.
+/// Returns the limits on the number of factor values, given the number of motions and the kind of design.
 fn room_for(top: &Reader<'_>, motions: usize) -> Result<Room, ScenarioError> {
     let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
     let kind: Option<DesignKind> =

@@ -43,7 +43,7 @@ const SHARDS: &str = "shards";
 /// Name of the copy of the study file.
 const COPY: &str = "study.toml";
 
-/// Name of the metadata entry of a shard that holds the key of its chunk.
+/// Name of the metadata entry in which a shard stores the key of its chunk.
 const KEY: &str = "chunk";
 
 described! {
@@ -59,7 +59,7 @@ described! {
         /// Title of the study.
         pub title: String,
         /// Description of the stacks, such as "stacks of 4 levels on two-barrel racks, shaken along the barrels",
-        /// without the properties that a factor varies; null for free scenes.
+        /// without the properties that a factor varies; null for scenarios without a stack.
         pub stacks: Option<String>,
         /// Fingerprint of the study file, the scenarios that it extends, the bytes of its records, and the
         /// version of the program.
@@ -74,10 +74,10 @@ described! {
         pub measure: Option<String>,
         /// Stopping rule of a Monte Carlo design; null if there is none.
         pub stop: Option<StopRule>,
-        /// Names of the factors that are drawn anew for each case of a motion.
+        /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
         pub drawn: Vec<String>,
-        /// Quantities that a sensitivity design exchanges between samples, in the order of the cases in a
-        /// block; empty for other designs.
+        /// Names of the quantities that a Saltelli design exchanges between the two samples of a block, in the order of
+        /// the cases in a block; empty for other designs.
         pub varied: Vec<String>,
         /// Inputs that all cases share.
         pub common: Vec<Common>,
@@ -414,7 +414,7 @@ impl Study {
 
     /// Describes the stacks of the study by the number of levels, the rack and the direction of shaking in `base`. Each
     /// of these is omitted if a factor varies it; the rack is omitted also if a factor varies one of its dimensions.
-    /// Returns `None` for a free scene.
+    /// Returns `None` for a scenario without a stack.
     fn stacks(&self, base: &Scenario) -> Option<String> {
         let fields = || self.factors.iter().flat_map(|factor| &factor.fields);
         let varied = |path: &str| {

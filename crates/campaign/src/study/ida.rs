@@ -15,8 +15,8 @@ pub struct Hunt {
     pub step: f64,
     /// Amount by which each step is larger than the previous one.
     pub growth: f64,
-    /// Gap between the highest level at which the stack stood and the lowest level at which it collapsed, relative to
-    /// the former, at which narrowing ends.
+    /// Narrowing stops when the gap between the highest level at which the stack stood and the lowest level at which it
+    /// collapsed is at most this fraction of the former level.
     pub resolution: f64,
     /// Number of runs in each hunt.
     pub runs: u32,

@@ -33,7 +33,7 @@ pub(super) struct Resources<'a> {
     pub(super) stop: &'a dyn Fn() -> bool,
 }
 
-/// A case with its motion that is ready to run, or the reason why it cannot run.
+/// A case that is ready to run, with its motion, or the reason why it cannot run.
 struct Built {
     shaken: Option<Shaken>,
     prepared: Result<Prepared, String>,
@@ -257,19 +257,18 @@ impl Study {
     }
 }
 
-/// Returns an error for scenarios that a study cannot run: a stack in both planes, and a free scene in space.
+/// Returns an error for scenarios that a study cannot run: a stack in both planes, and a three-dimensional free scene.
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {
-            "a study runs stacks, and free scenes in a plane, but not free scenes in space: use another \
-             base"
+            "a study runs stacks, and free scenes in a plane, but not three-dimensional free scenes: use another base"
                 .to_owned()
         }
         (_, Some(stack)) => {
             let Some(along) = stack.columns_along else { return Ok(()) };
             format!(
-                "a study simulates one plane, or the stack in space. Leave `base.stack.columns_along` out and make a \
-                 study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
+                "a study simulates one plane, or the stack in three dimensions. Leave `base.stack.columns_along` out \
+                 and make a study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
                  `base.stack.columns = {}`, the other with `base.stack.view = \"longitudinal\"` and \
                  `base.stack.columns = {along}`, shaken by the other horizontal component of each record; or set \
                  `base.stack.view` to \"spatial\"",

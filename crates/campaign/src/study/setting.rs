@@ -175,7 +175,7 @@ impl Domain {
         Ok(Setting { node: node.clone(), value })
     }
 
-    /// Reads a required number, whose unit must be one of the field's, and returns it in SI units.
+    /// Reads a required number with a unit that the field allows, and returns it in SI units.
     pub(super) fn number(
         self,
         reader: &Reader<'_>,

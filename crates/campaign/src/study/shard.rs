@@ -186,7 +186,7 @@ fn joined(defined: &[i16], repeated: &[i16], numbers: Vec<f64>, into: &mut Vec<O
     }
 }
 
-/// Returns the definition level of every row, which is 1 if the row has a value, and the values.
+/// Returns the definition level of every row (1 if the row has a value, otherwise 0), and the values.
 fn present<T, U>(values: &[Option<T>], as_stored: impl Fn(&T) -> U) -> (Vec<i16>, Vec<U>) {
     let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
     (levels, values.iter().flatten().map(as_stored).collect())

@@ -1,4 +1,4 @@
-//! Cases of stacks in space.
+//! Three-dimensional cases of a study.
 //!
 //! The result of each case is bit-identical to that of a single run of its scenario. A case has columns for
 //! directions in addition to the columns of a case in a plane.
@@ -17,7 +17,7 @@ use crate::ensemble::CaseResult;
 use crate::scenario::Scenario;
 use crate::watch::Ending;
 
-/// Result of a case, with directions if the case was in space.
+/// Result of a case, with directions if the case is three-dimensional.
 pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
     /// Heading in which the first body left its seat, and the heading of each fallen barrel from its original
@@ -42,8 +42,8 @@ impl From<InSpace> for FinishedCase {
 }
 
 impl Study {
-    /// Runs a case in space under all components of its motion, which are scaled by a common factor; `None`
-    /// if canceled.
+    /// Runs a three-dimensional case under all components of its motion, which are scaled by a common factor; `None` if
+    /// canceled.
     pub(super) fn run_in_space(
         &self,
         case: &PlannedCase,
@@ -71,7 +71,7 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
     }
 }
 
-/// Returns the values of a case for the columns that only stacks in space have.
+/// Returns the values of a case for the columns that only three-dimensional cases have.
 pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
     columns::values(finished.headings.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

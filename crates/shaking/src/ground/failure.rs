@@ -14,7 +14,7 @@ pub enum GroundError {
         path: PathBuf,
         /// Message of the operating system.
         reason: String,
-        /// Advice on obtaining the file, worded as a continuation of `reason`; may be empty.
+        /// Advice on obtaining the file, worded so that it can follow `reason`; may be empty.
         obtain: String,
     },
     /// The content of the file cannot be read as a record.

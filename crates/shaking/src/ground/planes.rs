@@ -4,8 +4,8 @@ use super::record::read;
 use super::{GroundError, component_of, of_spec};
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
 
-/// Returns the specification of a motion with the other horizontal component of the record in place of its own, and
-/// with the same scale factor; `None` if there is no such component.
+/// Returns the specification of a motion in which the other horizontal component of the record replaces the component
+/// of `spec`; the scale factor is unchanged. Returns `None` if there is no such component.
 ///
 /// # Errors
 /// If the record cannot be read, or cannot be scaled as specified.

@@ -80,7 +80,7 @@ fn unreadable(path: PathBuf, reason: String, obtain: &str) -> GroundError {
     GroundError::Unreadable { path, reason, obtain: obtain.to_owned() }
 }
 
-/// Returns advice on obtaining the file of a record, worded as a continuation of the reason of an error.
+/// Returns advice on obtaining the file of a record, worded so that it can follow the reason of an error.
 fn how_to_obtain(record: &RecordMotion) -> String {
     record.obtain.as_ref().map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"))
 }

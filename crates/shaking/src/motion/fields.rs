@@ -21,7 +21,7 @@ impl Named for PulseKind {
         ("mavroeidis-papageorgiou", Self::MavroeidisPapageorgiou { gamma: 0.0, phase: 0.0 }),
     ];
 
-    /// Returns the name of the form, independent of its parameters, which are separate fields.
+    /// Returns the name of the form without its parameters, which are separate fields.
     fn name(self) -> &'static str {
         let same = |form: &Self| discriminant(form) == discriminant(&self);
         Self::NAMES.iter().find(|(_, form)| same(form)).map_or("", |(name, _)| name)
@@ -101,11 +101,11 @@ table! {
             phase = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
                 Default::Value("\"0 rad\"");
         }
-        /// One forward displacement.
+        /// Cycloidal pulse of type A: one forward displacement.
         "cycloid-a" {}
-        /// One displacement forward and back.
+        /// Cycloidal pulse of type B: one displacement forward and back.
         "cycloid-b" {}
-        /// Several cycles that start and end at rest.
+        /// Cycloidal pulse of type C: several cycles that start and end at rest.
         "cycloid-c" {
             /// Number of cycles.
             cycles = Kind::Integer(1, 100), Default::Value("1");
@@ -212,11 +212,10 @@ static FIELDS: [Field; OF_SHOCK + 1] = {
     all
 };
 
-/// Number of groups of fields of a shock of which at most one field may be given.
+/// Number of groups of mutually exclusive fields in a shock.
 const EXCLUDED: usize = SHOCK.exclusive.len();
 
-/// Groups of fields of which at most one may be given: those of a shock, and `sequence` paired with each field of a
-/// shock.
+/// Groups of mutually exclusive fields: the groups of a shock, and `sequence` paired with each field of a shock.
 static EXCLUSIVE: [&[&str]; EXCLUDED + OF_SHOCK] = {
     const PAIRS: [[&str; 2]; OF_SHOCK] = {
         let mut all = [["sequence"; 2]; OF_SHOCK];

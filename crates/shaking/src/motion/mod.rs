@@ -133,11 +133,11 @@ pub enum PulseKind {
         /// Phase (rad).
         phase: f64,
     },
-    /// Cycloid A of Jacobsen and Ayre: one forward displacement.
+    /// Cycloidal pulse of type A (Jacobsen and Ayre): one forward displacement.
     CycloidA,
-    /// Cycloid B: one displacement forward and back.
+    /// Cycloidal pulse of type B: one displacement forward and back.
     CycloidB,
-    /// Cycloid C: several cycles that start and end at rest.
+    /// Cycloidal pulse of type C: several cycles that start and end at rest.
     CycloidC {
         /// Number of cycles.
         cycles: u32,
@@ -257,7 +257,7 @@ impl MotionSpec {
         held.map(print).collect()
     }
 
-    /// Returns the motion with its loaded files identified by content.
+    /// Returns the motion with every loaded file identified by its content instead of its path.
     #[must_use]
     pub fn by_content(&self) -> Self {
         let mut same = self.clone();

@@ -95,8 +95,8 @@ pub(super) fn fragility(
     text
 }
 
-/// Returns the share of the wine of a stack that is lost in burst barrels, under the central assumption of
-/// breakage; 0 if the stack holds no wine.
+/// Returns the share of a stack's wine that is lost in burst barrels, under the central assumption about breakage; 0 if
+/// the stack holds no wine.
 fn wine_lost(case: &JudgedCase) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
     // The sum starts from 0, since an empty sum of floats is -0.
@@ -112,11 +112,12 @@ fn wine_lost(case: &JudgedCase) -> f64 {
 /// needed.
 const MOST_SCATTER: f64 = 0.99;
 
-/// Largest variance that interpolation between two written levels may give, as a share of m (1 − m).
+/// Largest variance that interpolation between two written levels may give, as a share of m (1 − m), where m is the
+/// mean.
 const MOST_BETWEEN: f64 = 0.999;
 
-/// Maximum relative and absolute difference between two interpolated means: that of `OpenQuake`, which is linear in the
-/// intensity, and that of [`Ratios::at`], which is linear in the logarithm of the intensity.
+/// Maximum relative and absolute difference between two interpolated means: the mean that `OpenQuake` interpolates
+/// linearly in the intensity, and the mean that [`Ratios::at`] interpolates linearly in the logarithm of the intensity.
 const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-7];
 
 /// One level of a vulnerability function.
@@ -257,7 +258,7 @@ pub(super) fn vulnerabilities(
 
 /// Returns an exposure template with one stack at 0° E, 0° N, and the taxonomy mapping of that stack.
 ///
-/// The wine (m³) is the contents of the stack, and the barrels are its nonstructural value.
+/// The contents of the stack are its wine (m³), and its nonstructural value is its number of barrels.
 pub(super) fn exposure(
     decision: &Decision,
     asset: &str,

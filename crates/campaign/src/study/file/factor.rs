@@ -49,7 +49,7 @@ pub(super) struct Room {
     cases: Option<(u64, u64)>,
 }
 
-/// Maximum number of values of all factors of a study together.
+/// Maximum total number of values, over all factors of a study.
 const MOST_VALUES: usize = 20_000;
 
 impl Room {
