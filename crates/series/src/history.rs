@@ -87,8 +87,8 @@ impl History {
     }
 
     /// Returns the time step (s) at which samples represent this history well: the time step of a
-    /// sampled history, 1/400 of the period of a pulse, or the smallest such step of the parts of a
-    /// sum.
+    /// sampled history, 1/400 of [`Pulse::time_scale`] for a pulse, or the smallest such step among
+    /// the parts of a sum.
     pub fn natural_step(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.time_step(),

@@ -11,8 +11,8 @@ pub(super) const LARGEST_BARE_STEP: f64 = 0.5;
 /// Smallest time step (s) of a time column with an unstated unit. Times in minutes, hours or days
 /// have smaller steps.
 const SMALLEST_BARE_STEP: f64 = 4e-4;
-/// Smallest step (s) of a time column in seconds. No recorder is faster, but spreadsheet times in
-/// days have smaller steps.
+/// Smallest step (s) of a time column in seconds. No recorder has smaller steps, but spreadsheet
+/// times in days do.
 const SMALLEST_STEP: f64 = 1e-5;
 
 /// Returns the length (s) of the time unit of the first column, or `None` if the column does not
