@@ -19,8 +19,8 @@ impl Record {
     /// added to the notes.
     ///
     /// Channels are shifted by sinc interpolation with a squared-cosine window over 32 samples on
-    /// each side. The relative error is at most 1e-4 below 80 % of the Nyquist frequency. Channels
-    /// with unknown start are not changed.
+    /// each side. Below 80 % of the Nyquist frequency, the error is at most 1e-4 of the amplitude.
+    /// Channels with unknown start are not changed.
     ///
     /// # Errors
     /// If the channels have no common span.

@@ -48,7 +48,7 @@ impl Instrument {
             })
     }
 
-    /// Fills in the coordinates of a site that the waveform file does not state.
+    /// Fills in those coordinates of a site that are not stated in the waveform file.
     pub(crate) fn complete(&self, site: &mut Site) {
         let [latitude, longitude, elevation] = self.place;
         site.latitude = site.latitude.or(latitude);

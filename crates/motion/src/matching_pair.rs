@@ -15,8 +15,8 @@ use crate::wavelets::{FORGOTTEN, Wavelet};
 const FREQUENCY_ROUNDS: usize = 12;
 /// Exponent of the ratio of target to spectrum in the frequency domain.
 const AMPLITUDE_STEP: f64 = 0.7;
-/// Fraction of the misfit that the wavelets of one round remove: in the first round, and at least.
-/// Rounds without improvement reduce the fraction.
+/// Initial and smallest fraction of the misfit that the wavelets of one round remove. Rounds
+/// without improvement reduce the fraction.
 const RELAXATION: [f64; 2] = [0.6, 0.1];
 /// Number of rounds without improvement after which the match gives up.
 const PATIENCE: usize = 12;

@@ -324,12 +324,13 @@ impl Residuals {
             v => format!("{v:.1e}"),
         };
         let [velocity, displacement] = [self.velocity, self.displacement].map(share);
-        let values = format!("ends with {velocity} of PGV and {displacement} of PGD");
+        let values =
+            format!("ends with a velocity of {velocity} PGV and a displacement of {displacement} PGD");
         if self.acceptable() {
             values
         } else {
             format!(
-                "{values}, above 1e-3 and 1e-2: the ground does not return to rest at its initial position"
+                "{values} (limits 1e-3 and 1e-2): the ground does not return to rest at its initial position"
             )
         }
     }

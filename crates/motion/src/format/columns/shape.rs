@@ -158,7 +158,7 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
 }
 
 /// Returns, for each column, whether its values are, within 1 %, the lengths of the vectors formed
-/// by all other columns or by three of them.
+/// by all other columns, or by two or three adjacent columns.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];

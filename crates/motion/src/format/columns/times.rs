@@ -43,8 +43,8 @@ pub(super) fn unit_of(
             });
             (true, factor.transpose()?.or(in_label))
         }
-        // Evenly increasing values under the name of a motion, or without a name, are times, as in
-        // a damaged header; no ground acceleration increases evenly.
+        // Values that increase evenly are times, even if the column has no name, or has the name of
+        // a motion because the header is damaged: no ground acceleration increases evenly.
         Some([Name { holds, label, .. }, ..])
             if rises
                 && shape::is_even(&table[0])
