@@ -28,9 +28,9 @@
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
 //! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is
 //!   constant.
-//! - Measures are computed from the samples, with the trapezoidal rule, as is customary for
-//!   published values. The displacement that drives a model is the exact integral of its
-//!   acceleration; its peak ([`Sampled::pgd`]) is up to 0.4 % above the published value.
+//! - Measures are computed with the trapezoidal rule and from the peaks at the samples, as is
+//!   customary for published values. The displacement that drives a model is the exact integral of
+//!   its acceleration; its peak ([`Sampled::pgd`]) is up to 0.4 % above the published value.
 //! - Units and steps are never guessed: a file without them needs [`ReadOptions`].
 //!
 //! # Overview

@@ -324,8 +324,9 @@ impl Residuals {
             v => format!("{v:.1e}"),
         };
         let [velocity, displacement] = [self.velocity, self.displacement].map(share);
-        let values =
-            format!("ends with a velocity of {velocity} PGV and a displacement of {displacement} PGD");
+        let values = format!(
+            "ends with a velocity of {velocity} PGV and a displacement of {displacement} PGD"
+        );
         if self.acceptable() {
             values
         } else {

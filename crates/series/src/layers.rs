@@ -7,8 +7,8 @@
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};
 
-/// Minimum number of time steps per oscillator period in a coarser layer. Oscillators with shorter
-/// periods use a finer layer.
+/// Minimum number of time steps per oscillator period in every layer except the finest one.
+/// Oscillators with shorter periods use a finer layer.
 const LAYER_STEPS: f64 = 40.0;
 
 /// A piecewise-linear acceleration at successively coarser time steps.

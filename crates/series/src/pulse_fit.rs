@@ -31,7 +31,7 @@ pub struct PulseFit {
 /// Trial values of the width `γ`. Below 1 the pulse has no zero crossing; above 3 it is a wave
 /// train.
 const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
-/// Number of trial periods within a factor of e.
+/// Number of trial periods in a range of periods that spans a factor of e.
 const PER_E_FOLD: f64 = 14.0;
 
 /// Finds the pulse that explains most of the squared velocity, with a period from `shortest` to

@@ -424,8 +424,8 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
 }
 
 /// Returns the index of a sample that is a placeholder for a missing value, such as -9999 in any
-/// unit of acceleration. The step to such a sample is more than three times as large as any other
-/// step between samples.
+/// unit of acceleration. The step to such a sample is more than three times as large as any step
+/// between other samples.
 fn missing_value(values: &[f64]) -> Option<usize> {
     let jump = |row: usize| (values[row] - values[row - 1]).abs();
     let largest = (1..values.len()).max_by(|a, b| jump(*a).total_cmp(&jump(*b)))?;

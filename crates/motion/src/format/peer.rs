@@ -124,8 +124,8 @@ fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with("***") && source.has(line, "end")
 }
 
-/// Parses the number of samples and the time step from `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100
-/// NPTS, DT`.
+/// Parses the number of samples and the time step (s) from a line such as
+/// `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
 fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
     let line = (0..HEADER_LINES)
         .find(|&line| source.has(line, "NPTS") && source.has(line, "DT"))

@@ -50,7 +50,7 @@ impl Wavelet {
         self.values.len() / 2
     }
 
-    /// Returns the coefficient in a series of the wavelet centered on sample `at`.
+    /// Returns the coefficient of the wavelet, centered on sample `at`, in `series`.
     pub(super) fn coefficient(&self, series: &[f64], at: usize) -> f64 {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -58,7 +58,7 @@ impl Wavelet {
         self.values[first..].iter().zip(&series[start..]).map(|(w, v)| w * v).sum()
     }
 
-    /// Returns the Fourier transform of the wavelet centered on sample 0, with the given length.
+    /// Returns the Fourier transform, with `length` values, of the wavelet centered on sample 0.
     fn spectrum(&self, length: usize) -> Vec<Complex> {
         let half = self.half();
         let mut placed = vec![Complex::default(); length];

@@ -266,8 +266,8 @@ pub(in crate::format) fn count_and_step(text: &str) -> Option<(f64, f64)> {
     Some((count(text)? as f64, step(text)?))
 }
 
-/// Returns the time step (s) from a line that does not name this quantity, such as `Sampling: 200
-/// Hz`, `interval 5 ms`, or `200 Hz` alone.
+/// Returns the time step (s) from a line that does not name this quantity, such as `interval 5 ms`,
+/// `Sampling: 200 Hz`, or `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
     let rate = |value: f64| (value >= SMALLEST_UNNAMED_RATE).then_some(1.0 / value);
