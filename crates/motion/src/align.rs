@@ -9,16 +9,18 @@ use crate::utc::Utc;
 
 /// Number of samples on each side in the interpolation of a fractional shift.
 const REACH: usize = 32;
-/// Shifts below this fraction of a step are ignored; recorder clocks are less accurate.
+/// Shifts below this fraction of a time step are ignored, because the clocks of recorders are less
+/// accurate.
 const NEGLECTED: f64 = 0.01;
 
 impl Record {
-    /// Aligns channels that begin at different instants. Channels are cut to their common span and
-    /// shifted by the remaining fraction of a step; the notes state what was done.
+    /// Aligns channels that begin at different instants. The channels are cut to their common time
+    /// span and then shifted by the remaining fraction of a time step. The cuts and shifts are
+    /// added to the notes.
     ///
-    /// The fractional shift is a sinc interpolation with a squared-cosine window over 32 samples on
-    /// each side, accurate to 1e-4 below 80 % of the Nyquist frequency. Channels with unknown start
-    /// are not changed.
+    /// Channels are shifted by sinc interpolation with a squared-cosine window over 32 samples on
+    /// each side. Below 80 % of the Nyquist frequency, the error is at most 1e-4 of the amplitude.
+    /// Channels with unknown start are not changed.
     ///
     /// # Errors
     /// If the channels have no common span.
@@ -102,7 +104,7 @@ impl Record {
 }
 
 /// Makes a channel begin `late` seconds later and last `length` seconds. Returns the fraction of a
-/// step by which the channel was shifted by interpolation, if any.
+/// time step by which the channel was shifted by interpolation, if it was shifted.
 fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -> Option<f64> {
     let steps = late / channel.time_step;
     let part = steps - steps.round();
@@ -128,8 +130,9 @@ fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -
     shifted
 }
 
-/// Returns values interpolated at `k + part` for every `k` of a range. Near the ends, where samples
-/// are missing, the remaining weights are normalized.
+/// Returns the values interpolated at the positions `k + part` (in samples), for every `k` in
+/// `range`. Near the ends, where some samples of the window are missing, the weights of the other
+/// samples are normalized.
 fn interpolated(values: &[f64], range: std::ops::Range<usize>, part: f64) -> Vec<f64> {
     let reach = REACH as f64;
     // Weight of the sample `j - REACH` steps away.

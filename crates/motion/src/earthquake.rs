@@ -49,8 +49,8 @@ impl Earthquake {
 }
 
 impl Record {
-    /// Returns the epicentral distance (km) as stated in the header, or else along the great circle
-    /// from the epicenter to the station, if both positions are stated.
+    /// Returns the epicentral distance (km) stated in the header. If it is not stated, returns the
+    /// great-circle distance from the epicenter to the station, if both positions are stated.
     pub fn epicentral_distance(&self) -> Option<f64> {
         let quake = &self.earthquake;
         let stated =

@@ -35,8 +35,8 @@ impl Horizontals {
     ///
     /// For measures over directions, the longer component is cut to the shorter one; the geometric
     /// mean uses each component in full. Peaks and spectral accelerations are computed from the
-    /// convex hull of the two responses. All other measures are computed from the motion rotated
-    /// degree by degree.
+    /// convex hull of the two responses. All other measures are computed from the motion rotated in
+    /// steps of one degree.
     ///
     /// # Errors
     /// If the steps differ, or a parameter of the measure is out of range.
@@ -55,7 +55,7 @@ impl Horizontals {
             (_, IntensityMeasure::Pga) => rotated_peak(first.acceleration(), second.acceleration()),
             (_, IntensityMeasure::Pgv) => rotated_peak(first.velocity(), second.velocity()),
             (_, IntensityMeasure::Pgd) => {
-                // Integrates by the trapezoidal rule, like the measure of one component.
+                // Integrates by the trapezoidal rule, as for the measure of one component.
                 let along = |one: &Sampled| running_trapezoid(one.time_step(), one.velocity());
                 rotated_peak(&along(first), &along(second))
             }
@@ -82,8 +82,8 @@ impl Horizontals {
         }
     }
 
-    /// Returns the common factor of both components that brings the combined measure to `target`
-    /// (SI units).
+    /// Returns the factor, the same for both components, that brings the combined measure to
+    /// `target` (SI units).
     ///
     /// # Errors
     /// The same as for [`Horizontals::of`], and if the measure does not grow with the amplitude or

@@ -48,7 +48,7 @@ impl Instrument {
             })
     }
 
-    /// Fills in the coordinates of a site that the waveform file does not state.
+    /// Fills in those coordinates of a site that are not stated in the waveform file.
     pub(crate) fn complete(&self, site: &mut Site) {
         let [latitude, longitude, elevation] = self.place;
         site.latitude = site.latitude.or(latitude);
@@ -67,8 +67,8 @@ pub(crate) struct SeedName {
 }
 
 impl SeedName {
-    /// Returns the quantity and the kind of instrument that the second letter of the channel code
-    /// states; `None` for accelerations and unknown codes (SEED 2.4, appendix A).
+    /// Returns the quantity and the kind of instrument according to the second letter of the
+    /// channel code; `None` for accelerations and unknown codes (SEED 2.4, appendix A).
     pub(crate) fn other_quantity(&self) -> Option<(Quantity, &'static str)> {
         let [_, instrument, _] = self.channel.as_bytes() else { return None };
         match instrument {

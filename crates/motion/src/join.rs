@@ -120,9 +120,10 @@ impl Record {
 
     /// Joins overlapping parts of one long record.
     ///
-    /// The overlap is found by sliding the start of the later part along the earlier part. The
-    /// later part is then shifted to the baseline of the earlier part. Parts are joined only if the
-    /// samples in the overlap are repeated; parts that overlap by less than 1 s are refused.
+    /// The overlap is found by comparing the start of the later part with every position in the
+    /// earlier part. The later part is then shifted to the baseline of the earlier part. Parts are
+    /// joined only if the samples in the overlap are the same in both parts. Parts that overlap by
+    /// less than 1 s are refused.
     ///
     /// # Errors
     /// If no part is given, channels or time steps differ, or two consecutive parts do not overlap.
@@ -241,7 +242,7 @@ fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
     let shortest = (SHORTEST_OVERLAP / first.time_step).ceil().min(1e9) as usize;
     let longest = a.len().min(b.len());
-    // The probe must contain motion; otherwise, any quiet part would match.
+    // The compared samples must contain motion; otherwise, any quiet interval would match.
     let probe_length = shortest.max(200).min(longest);
     let mut best: Option<(f64, usize)> = None;
     for samples in (shortest..=longest).rev() {

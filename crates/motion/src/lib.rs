@@ -28,9 +28,9 @@
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
 //! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is
 //!   constant.
-//! - Measures use the trapezoidal rule and peaks of the samples, like published values. The
-//!   displacement that drives a model is the exact integral of its acceleration; its peak
-//!   ([`Sampled::pgd`]) is up to 0.4 % above the published value.
+//! - Measures are computed with the trapezoidal rule and from the peaks at the samples, as is
+//!   customary for published values. The displacement that drives a model is the exact integral of
+//!   its acceleration; its peak ([`Sampled::pgd`]) is up to 0.4 % above the published value.
 //! - Units and steps are never guessed: a file without them needs [`ReadOptions`].
 //!
 //! # Overview
@@ -38,7 +38,7 @@
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]. Parts and components: [`Record::join`],
 //!   [`Record::gather`].
 //! - Selecting and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
-//! - Filter corners from the noise: [`Record::noise_corners`]. Axes of a fault:
+//! - Filter corners determined from the noise: [`Record::noise_corners`]. Axes of a fault:
 //!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
 //!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].

@@ -23,8 +23,8 @@ pub struct Matched {
     /// The motion. The horizontal component is matched; the vertical component is only multiplied by
     /// the factor that scales the horizontal component to the target on average.
     pub motion: GroundMotion,
-    /// Largest relative misfit at the periods from the shortest to the longest matched period, on a
-    /// grid of 1080 periods per decade.
+    /// Largest relative misfit between the shortest and the longest matched period, on a grid of
+    /// 1080 periods per decade.
     pub misfit: f64,
     /// Ranges of periods with a misfit beyond the tolerance; empty if the tolerance is met.
     pub missed: Vec<Missed>,
@@ -55,7 +55,7 @@ impl Matched {
         missed_in_words(&self.missed)
     }
 
-    /// Describes the domain of the match, to follow the words "matched in".
+    /// Describes the domain of the match, in words that follow "matched in".
     pub fn domain(&self) -> &'static str {
         match (self.first, self.chosen) {
             (MatchMethod::Time, _) => "the time domain",

@@ -19,15 +19,16 @@ pub enum MatchMethod {
     /// Multiplies the Fourier amplitudes repeatedly by the ratio of target to spectrum, and keeps
     /// the phases.
     ///
-    /// Simple and fast at first, but changes the character of the motion everywhere. Scaling the
-    /// amplitudes alone stalls at a misfit of 5 to 9 %; wavelets then remove the remaining misfit.
+    /// This method is simple and converges fast at first, but changes the character of the whole
+    /// motion. Scaling the amplitudes alone stalls at a misfit of 5 to 9 %; wavelets then remove
+    /// the remaining misfit.
     Frequency,
     /// Adds wavelets at the times of the peak responses (Lilhanand and Tseng 1988; Al Atik and
     /// Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
-    /// Slower, but keeps the character of the motion. If the match stalls, further rounds start
-    /// from the best motion and keep all other extrema below the target. If that also fails, the
-    /// match restarts in the frequency domain, and the provenance says so.
+    /// This method is slower, but keeps the character of the motion. If the match stalls, further
+    /// rounds start from the best motion and keep all other extrema below the target. If that also
+    /// fails, the match restarts in the frequency domain, and the provenance says so.
     Time,
 }
 
@@ -62,10 +63,10 @@ impl Default for Matching {
 }
 
 /// Exponents of the ratio of target to spectrum in the frequency domain. Each match uses one
-/// exponent; if the match stalls, the next exponent is tried.
+/// exponent; if the match stalls, the next match uses the next exponent.
 const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
-/// Product of samples and rounds above which no further match is started. For a motion of 35,000
-/// samples, the limit is 400 rounds, which take about 6 s.
+/// Product of the number of samples and the number of rounds above which no further match is
+/// started. For a motion of 35,000 samples, the limit is 400 rounds, which take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
 /// Time steps per shortest matched period. With this number, a peak between two samples is
@@ -79,7 +80,7 @@ const PER_DECADE: f64 = 60.0;
 const JUDGED: usize = 3;
 /// Number of checked periods per judged period. The final check uses this even finer grid.
 const CHECKED: usize = 6;
-/// If the misfit is at most this fraction of the tolerance, no further method is tried.
+/// No further method is used if the misfit is at most this fraction of the tolerance.
 const CLEAR: f64 = 0.98;
 /// Number of rounds without improvement after which a method gives up.
 pub(crate) const PATIENCE: usize = 15;
@@ -308,7 +309,7 @@ impl<'a> Work<'a> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Returns the layers of a motion, for oscillators with periods up to the longest matched
+    /// Returns the [`Layers`] of a motion, for oscillators with periods up to the longest matched
     /// period.
     pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
         let longest = self.checked.last().copied().unwrap_or(0.0);
@@ -395,8 +396,8 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Brings the final velocity and displacement to zero. Wavelets cause no drift, so no filter is
-    /// needed.
+    /// Brings the final velocity and displacement to zero, without a filter, because wavelets cause
+    /// no drift.
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         let ends = Processing { high_pass: None, ..self.chain.clone() };
         Ok(ends.apply(self.time_step, acceleration, 0.0)?.acceleration)

@@ -15,8 +15,8 @@ use crate::wavelets::{FORGOTTEN, Wavelet};
 const FREQUENCY_ROUNDS: usize = 12;
 /// Exponent of the ratio of target to spectrum in the frequency domain.
 const AMPLITUDE_STEP: f64 = 0.7;
-/// Fraction of the misfit removed by the wavelets of the first round, and the smallest fraction
-/// after rounds without improvement.
+/// Initial and smallest fraction of the misfit that the wavelets of one round remove. Rounds
+/// without improvement reduce the fraction.
 const RELAXATION: [f64; 2] = [0.6, 0.1];
 /// Number of rounds without improvement after which the match gives up.
 const PATIENCE: usize = 12;
@@ -77,7 +77,7 @@ pub(crate) fn match_pair(
     Ok((best.pair, MatchedPair { misfit, missed, rounds }))
 }
 
-/// Returns the measure (m/s²) of the response of a pair at the given periods.
+/// Returns the response of a pair at the given periods (m/s²), measured as `RotD50` or `RotD100`.
 pub(crate) fn spectrum(
     work: &Work<'_>,
     measure: Horizontals,
@@ -188,8 +188,9 @@ impl Search<'_> {
         Ok([self.work.close(&sum[0])?, self.work.close(&sum[1])?])
     }
 
-    /// Returns the required changes of the response at a period: one change for the largest
-    /// response, or two for the median, which is the mean of the two middle responses.
+    /// Returns the required changes of the response at a period. For `RotD100`, there is one
+    /// change, of the largest response. For `RotD50`, there are two changes, because the median is
+    /// the mean of the two middle responses.
     fn aims(&self, period: f64, pair: &Pair, share: f64) -> Vec<Aim> {
         let histories = histories(self.work, period, pair);
         let peak = rotated(&histories);
@@ -219,8 +220,8 @@ impl Search<'_> {
         degrees.into_iter().map(aim).collect()
     }
 
-    /// Returns the pseudo-acceleration (m/s²) that a wavelet causes in the oscillator of an aim at
-    /// the sample of the aim.
+    /// Returns the pseudo-acceleration (m/s²) that a wavelet causes in the oscillator of `aim` at
+    /// the sample of `aim`.
     fn response(&self, aim: &Aim, wavelet: &Wavelet) -> f64 {
         let Work { damping, time_step, .. } = *self.work;
         let w = TAU / aim.period;

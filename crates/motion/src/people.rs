@@ -43,7 +43,8 @@ impl Record {
         let coded =
             text.split_once(' ').filter(|(code, _)| code.chars().any(|c| c.is_ascii_digit()));
         let name = coded.map_or(text.as_str(), |(_, name)| name);
-        // Remove the state after the name, and the town before it if the place repeats the town.
+        // Remove the state after the name. Also remove the town before the name if the name begins
+        // with the town.
         let name = name.split_once(", ").map_or(name, |(name, _)| name);
         let name = match name.split_once(" - ") {
             Some((town, place)) if place.starts_with(town) => place,

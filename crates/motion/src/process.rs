@@ -57,8 +57,8 @@ pub struct Processing {
     /// Treatment of the zero pads at both ends, `1.5 n/fc` seconds in total (Converse and Brady
     /// 1992).
     pub pads: Pads,
-    /// If `true`, adds the smallest smooth acceleration of two terms that brings the final velocity
-    /// and displacement to zero.
+    /// If `true`, adds a smooth acceleration with two terms, which brings the final velocity and
+    /// displacement to zero.
     pub close: bool,
 }
 
@@ -89,8 +89,8 @@ impl Processing {
         }
     }
 
-    /// Returns [`Processing::raw`] with the pads removed, for runs that cannot afford half a minute
-    /// of quiet before the shaking.
+    /// Returns [`Processing::raw`] with the pads removed, for runs in which half a minute of quiet
+    /// before the shaking would take too long.
     pub fn compact() -> Self {
         Self { pads: Pads::Removed, ..Self::raw() }
     }
@@ -324,12 +324,14 @@ impl Residuals {
             v => format!("{v:.1e}"),
         };
         let [velocity, displacement] = [self.velocity, self.displacement].map(share);
-        let values = format!("ends with {velocity} of PGV and {displacement} of PGD");
+        let values = format!(
+            "ends with a velocity of {velocity} PGV and a displacement of {displacement} PGD"
+        );
         if self.acceptable() {
             values
         } else {
             format!(
-                "{values}, above 1e-3 and 1e-2: the ground does not return to rest at its initial position"
+                "{values} (limits 1e-3 and 1e-2): the ground does not return to rest at its initial position"
             )
         }
     }
@@ -338,8 +340,8 @@ impl Residuals {
 /// Returns the number of samples before the first arrival, at most 5 s; `None` if there is less
 /// than half a second.
 ///
-/// The arrival is the first deviation from the level of the first half second by 5 % of the peak.
-/// The half second before the arrival is excluded.
+/// The arrival is the first sample that differs from the mean of the first half second by more than
+/// 5 % of the peak. The half second before the arrival is excluded.
 fn quiet_samples(time_step: f64, a: &[f64]) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
     let samples = |seconds: f64| (seconds / time_step).ceil().min(1e9) as usize;

@@ -20,7 +20,8 @@ pub struct RotatedPeak {
     /// Direction of the largest peak (degrees from the first component toward the second, 0 to
     /// 179).
     pub angle: f64,
-    /// Directions of the two middle peaks, whose mean is the median (degrees as in `angle`).
+    /// Directions of the two middle peaks (degrees, as in `angle`). The median is the mean of these
+    /// two peaks.
     pub median_angles: [f64; 2],
 }
 
@@ -71,8 +72,8 @@ pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     }
 }
 
-/// Returns the corners of the convex hull of the points (x, y). In every direction, the peak is at
-/// one of these corners.
+/// Returns the corners of the convex hull of the points (`first`, `second`). In every direction,
+/// the peak is at one of these corners.
 fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = first.iter().copied().zip(second.iter().copied()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));

@@ -316,8 +316,8 @@ fn cut_to_shorter(
     Ok(())
 }
 
-/// Returns the motion along an azimuth from two horizontals of different azimuth, by solving for
-/// the north and the east component. The two horizontals need not be perpendicular.
+/// Returns the motion along an azimuth, computed from two horizontals of different azimuth by
+/// solving for the north and the east component. The two horizontals need not be perpendicular.
 fn rotate(
     first: (&Channel, f64),
     second: (&Channel, f64),

@@ -8,14 +8,14 @@ use crate::response::{Bank, Step, TOGETHER};
 
 /// Fraction of the misfit removed in one round; with a larger fraction, peaks jump to other times.
 const RELAXATION: f64 = 0.6;
-/// Fraction of the target above which other extrema are also constrained, so that the reduction of
-/// one peak does not raise another.
+/// Fraction of the target above which extrema other than the peak are also constrained, so that the
+/// correction of one peak does not raise another.
 const WATCHED: f64 = 0.85;
 /// Weight of a constrained extremum that does not exceed the target.
 const WATCHED_WEIGHT: f64 = 0.4;
 
-/// Largest number of times that a correction is solved again because it raised another extremum
-/// above its target.
+/// Largest number of times that the system of a round is solved, because each solution may raise
+/// further extrema above the target.
 const BOUNDING: usize = 5;
 /// Limits of the applied fraction of a correction. The fraction is doubled after a success and
 /// halved after a failure.
@@ -99,11 +99,12 @@ pub(crate) fn polish(
     let mut fit = work.fit(&best);
     let (mut gained, mut share) = (0, LARGEST_SHARE);
     let target = POLISHED * settings.tolerance;
-    // Below this misfit, the exact misfit is computed, which is expensive.
+    // The exact misfit is expensive; it is computed only if the approximate misfit is at most this
+    // value.
     let mut promising = target;
     for round in 1..=settings.rounds {
-        // Every third round makes demands on all peaks, so that the peaks that are within the band,
-        // which other rounds do not correct, do not drift to its edge.
+        // Other rounds do not correct peaks within the band. Every third round corrects all peaks,
+        // so that the peaks within the band do not drift to its edge.
         let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
         let mut periods = matched_periods(settings, round);
         periods.extend(
@@ -223,8 +224,8 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     added(a, &wavelets, &amplitudes)
 }
 
-/// Returns the weighted responses to wavelets with an amplitude of 1: one row for each demand, one column for each
-/// wavelet.
+/// Returns the weighted responses to wavelets with an amplitude of 1, with one row for each demand
+/// and one column for each wavelet.
 fn rows(
     work: &Work<'_>,
     oscillators: &[Oscillator],
@@ -287,8 +288,8 @@ impl Group {
         Bank::new(&steps)
     }
 
-    /// Returns the displacement of oscillator `k`, `since` samples after the start of a wavelet,
-    /// from the state of the bank after `whole` strides of the wavelet.
+    /// Returns the displacement of oscillator `k` at `since` samples after the start of a wavelet.
+    /// It is computed from `bank`, the state after `whole` strides of the wavelet.
     fn on(&self, k: usize, bank: &Bank, wavelet: &Wavelet, whole: usize, since: usize) -> f64 {
         let (u, v) = (bank.u[k], bank.v[k]);
         let left = since - whole * wavelet.stride;
@@ -429,7 +430,8 @@ impl Wavelet {
         Self { first, values, stride }
     }
 
-    /// Returns the number of whole strides of the wavelet; after the last one, the wavelet is zero.
+    /// Returns the number of whole strides of the wavelet; after the last stride, the wavelet is
+    /// zero.
     fn coarse(&self) -> usize {
         self.values.len().div_ceil(self.stride)
     }

@@ -45,7 +45,7 @@ pub enum MotionError {
         /// The channels of the file.
         available: String,
     },
-    /// Two time series to be combined differ in step or do not match.
+    /// Two time series that are to be combined have different time steps or otherwise do not match.
     #[error("{what}; {remedy}")]
     Mismatch {
         /// Description of the mismatch.

@@ -40,9 +40,9 @@ pub(crate) fn fiv3(time_step: f64, acceleration: &[f64], period: f64) -> f64 {
     pushes(1.0).max(pushes(-1.0))
 }
 
-/// Applies a causal second-order Butterworth low-pass filter, by the bilinear transform with
-/// prewarped corner (Hz). Returns the input unchanged if the corner lies above the Nyquist
-/// frequency.
+/// Applies a causal second-order Butterworth low-pass filter with a corner frequency (Hz). The
+/// filter is derived by the bilinear transform with prewarping. Returns the input unchanged if the
+/// corner is not below the Nyquist frequency.
 fn low_pass(time_step: f64, a: &[f64], corner: f64) -> Vec<f64> {
     if corner * time_step >= 0.5 {
         return a.to_vec();

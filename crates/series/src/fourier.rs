@@ -32,7 +32,7 @@ pub fn forward(values: &mut [Complex]) {
     transform(values, -1.0);
 }
 
-/// Computes the inverse transform in place, including the division by the length.
+/// Computes the inverse transform in place, including the division by the number of values.
 pub fn inverse(values: &mut [Complex]) {
     transform(values, 1.0);
     let factor = 1.0 / values.len() as f64;
@@ -56,8 +56,8 @@ fn transform(values: &mut [Complex], sign: f64) {
             values.swap(i, j);
         }
     }
-    // One table serves all stages: twiddle factor k of the stage with `size` points is entry k *
-    // n/size.
+    // All stages use one table of twiddle factors: factor k of the stage with `size` points is
+    // entry k * n/size.
     let table: Vec<Complex> = (0..n / 2)
         .map(|k| {
             let (s, c) = math::sin_cos(TAU * k as f64 / n as f64);
@@ -81,8 +81,9 @@ fn transform(values: &mut [Complex], sign: f64) {
     }
 }
 
-/// Returns the correlation of two series at every shift, from their transforms. If the kernel is
-/// real, the real and the imaginary part of the series remain separate in the result.
+/// Returns the correlation of two series at every shift, computed from their transforms `series`
+/// and `kernel`. If the untransformed kernel is real, the real part of the result is the
+/// correlation of the real part of the series, and likewise for the imaginary part.
 pub fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
     let mut product: Vec<Complex> = series
         .iter()
@@ -101,8 +102,8 @@ pub fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
     padded
 }
 
-/// Multiplies the transform of a real signal by a real gain, a function of frequency (Hz). Phases
-/// are preserved. `time_step` is the step of the signal (s).
+/// Multiplies the transform of a real signal by a real gain that depends on frequency (Hz). Phases
+/// are preserved. `time_step` is the time between the samples of the signal (s).
 pub fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -> f64) {
     let n = spectrum.len();
     for k in 0..=n / 2 {
@@ -124,8 +125,8 @@ pub struct FourierSpectrum {
 }
 
 impl FourierSpectrum {
-    /// Computes the spectrum of accelerations (m/s²) with step `time_step` (s), padded with zeros
-    /// to the next power of two.
+    /// Computes the spectrum of accelerations (m/s²) at intervals of `time_step` (s). The
+    /// accelerations are padded with zeros to the next power of two.
     pub fn new(time_step: f64, acceleration: &[f64]) -> Self {
         let length = acceleration.len().max(2).next_power_of_two();
         let transform = forward_real(acceleration, length);

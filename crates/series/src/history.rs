@@ -86,8 +86,9 @@ impl History {
         }
     }
 
-    /// Returns the time step (s) at which samples represent this history well: the step of a
-    /// sampled history, or a 400th of the period of a pulse.
+    /// Returns the time step (s) at which samples represent this history well: the time step of a
+    /// sampled history, 1/400 of [`Pulse::time_scale`] for a pulse, or the smallest such step among
+    /// the parts of a sum.
     pub fn natural_step(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.time_step(),
@@ -100,10 +101,10 @@ impl History {
         }
     }
 
-    /// Samples the accelerations at steps of at most `time_step` (s) and integrates them.
+    /// Samples the accelerations at equal steps of at most `time_step` (s) and integrates them.
     ///
-    /// A sampled history with the same step is returned unchanged. The step is reduced so that the
-    /// last sample falls on the end of the history.
+    /// A sampled history that already has this step is returned unchanged. Otherwise, the step is
+    /// reduced, if necessary, so that the last sample is at the end of the history.
     ///
     /// # Errors
     /// If the step is not above zero or would require more than 100 million samples.
@@ -127,8 +128,9 @@ impl History {
 
     /// Returns the time (s) from which the absolute acceleration stays below a limit (m/s²).
     ///
-    /// For a sampled history, this is the time of the sample after the last one above the limit.
-    /// For an analytic history, this is the end of the history, since the shaking stops abruptly.
+    /// For a sampled history, this is the time of the sample that follows the last sample above the
+    /// limit. For an analytic history, this is the end of the history, because the shaking stops
+    /// abruptly.
     pub fn calm_from(&self, limit: f64) -> f64 {
         match self {
             Self::Sampled(sampled) => {

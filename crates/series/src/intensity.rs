@@ -13,9 +13,9 @@ use crate::sampled::Sampled;
 
 /// An intensity measure of one component, in SI units.
 ///
-/// Integrals over time use the trapezoidal rule on the samples, like published values. The text
-/// form is `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner` and so on; printing includes all
-/// parameters, such as `sa(1,0.05)`.
+/// Integrals over time are computed by the trapezoidal rule from the samples, as is customary for
+/// published values. The text form is `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner` and so
+/// on; printing includes all parameters, such as `sa(1,0.05)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntensityMeasure {
     /// Peak ground acceleration (m/s²).
@@ -48,8 +48,8 @@ pub enum IntensityMeasure {
     },
     /// Root mean square of the acceleration over the whole record (m/s²).
     Rms,
-    /// Housner intensity `∫ PSV dT` from 0.1 to 2.5 s (m) (Housner 1952), by trapezoids with steps
-    /// of 0.01 s.
+    /// Housner intensity `∫ PSV dT` from 0.1 to 2.5 s (m) (Housner 1952), by the trapezoidal rule
+    /// with steps of 0.01 s.
     Housner {
         /// Damping ratio; 0, 0.05 and 0.2 occur in the literature.
         damping: f64,
@@ -98,7 +98,7 @@ impl IntensityMeasure {
     /// Bracketed duration at 0.05 g.
     pub const BRACKETED: Self = Self::BracketedDuration { threshold: 0.05 * STANDARD_GRAVITY };
 
-    /// Returns the SI unit; empty for a pure number.
+    /// Returns the SI unit of the measure; empty for a dimensionless measure.
     pub fn unit(&self) -> &'static str {
         self.unit_and_growth().0
     }
@@ -123,8 +123,8 @@ impl IntensityMeasure {
 
     /// Returns the scale factor that brings this measure to `target` (SI units).
     ///
-    /// `value` returns the measure of the motion multiplied by a factor; `name` is the name of the
-    /// motion in errors.
+    /// `value` gets a scale factor and returns the measure of the motion scaled by this factor.
+    /// `name` is the name of the motion in error messages.
     ///
     /// # Errors
     /// If the measure does not grow with the amplitude, or is zero.
@@ -271,7 +271,8 @@ pub fn arias(time_step: f64, acceleration: &[f64]) -> f64 {
     PI / (2.0 * STANDARD_GRAVITY) * math::trapezoid(acceleration.iter().map(|a| a * a), time_step)
 }
 
-/// Returns the normalized growth of the Arias intensity at the samples (Husid plot), from 0 to 1.
+/// Returns the Arias intensity accumulated up to each sample, divided by its final value (Husid
+/// plot).
 pub fn husid(acceleration: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut build_up = Vec::with_capacity(acceleration.len());
@@ -326,8 +327,8 @@ fn bracketed_duration(time_step: f64, acceleration: &[f64], threshold: f64) -> f
     else {
         return 0.0;
     };
-    // The crossing lies inside a step; interpolate from the sample below the threshold to the
-    // sample above.
+    // The crossing lies between two samples; interpolate from the sample below the threshold to the
+    // sample above it.
     let part = |below: f64, above: f64| (threshold - below.abs()) / (above.abs() - below.abs());
     let start = if first == 0 {
         0.0

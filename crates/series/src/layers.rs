@@ -7,21 +7,22 @@
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};
 
-/// Minimum number of steps per period of an oscillator that uses a layer coarser than the motion.
+/// Minimum number of time steps per oscillator period in every layer except the finest one.
+/// Oscillators with shorter periods use a finer layer.
 const LAYER_STEPS: f64 = 40.0;
 
 /// A piecewise-linear acceleration at successively coarser time steps.
 pub struct Layers {
     time_step: f64,
-    /// Accelerations at steps of 1, 2, 4, … samples. Each value is a mean with triangular weights
-    /// over two such steps. It is the exact load of oscillators whose impulse response is linear
-    /// between the samples.
+    /// Accelerations at steps of 1, 2, 4, … samples. Each value is a weighted mean over the step
+    /// before it and the step after it, with triangular weights. The mean is the exact load of an
+    /// oscillator whose impulse response is linear between the samples.
     layers: Vec<Vec<f64>>,
 }
 
 impl Layers {
-    /// Creates the layers of accelerations (m/s²) with step `time_step` (s), for oscillators of
-    /// periods up to `longest` (s).
+    /// Creates the layers from accelerations (m/s²) at intervals of `time_step` (s), for
+    /// oscillators with periods up to `longest` (s).
     pub fn new(time_step: f64, acceleration: &[f64], longest: f64) -> Self {
         let mut layers = vec![averaged(acceleration, 1, [4.0 / 6.0, 1.0 / 6.0])];
         let mut step = 2.0 * time_step;
@@ -35,8 +36,8 @@ impl Layers {
 
     /// Computes the response of up to [`TOGETHER`] oscillators with ascending periods (s).
     ///
-    /// `see` is called once per step, with the index of the motion's sample and the
-    /// pseudo-accelerations (m/s²).
+    /// `see` is called once per step, with the index of the sample in the motion and with the
+    /// pseudo-accelerations of the oscillators (m/s²).
     #[inline]
     pub fn follow(
         &self,
@@ -88,8 +89,8 @@ impl Layers {
     }
 }
 
-/// Returns the weighted mean of every `stride`th value and its two neighbors; the weights are
-/// `[own, beside]`.
+/// Returns, for every `stride`th value, the weighted sum of the value (weight `own`) and its two
+/// neighbors (weight `beside` each).
 fn averaged(values: &[f64], stride: usize, [own, beside]: [f64; 2]) -> Vec<f64> {
     let n = values.len();
     let one = |k: usize| {

@@ -12,12 +12,12 @@ pub struct System {
 }
 
 impl System {
-    /// Creates a system for `size` unknowns that has no conditions yet.
+    /// Creates a system with `size` unknowns and without equations.
     pub fn new(size: usize) -> Self {
         Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
     }
 
-    /// Adds one condition, a row of `C` and its right-hand side.
+    /// Adds one equation: a row of `C` and the corresponding value of `r`.
     pub fn add(&mut self, row: &[f64], value: f64) {
         for j in 0..self.size {
             self.right[j] += row[j] * value;

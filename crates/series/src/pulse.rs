@@ -16,7 +16,7 @@ pub enum Pulse {
     /// the first and the last `ramp_cycles` periods.
     ///
     /// Without ramps, the velocity jumps from 0 to `A w` at t = 0, like an impact, and back to 0 at
-    /// the end, where the ground keeps its last displacement.
+    /// the end; the ground then keeps its last displacement.
     Sine {
         /// Displacement amplitude `A` (m).
         amplitude: f64,
@@ -122,8 +122,8 @@ pub enum Pulse {
     },
 }
 
-/// Quantity of the amplitude parameter of a pulse; determines how the parameter changes if the pulse
-/// is stretched in time.
+/// Physical quantity in which the amplitude of a pulse is given. It determines how the amplitude
+/// changes when the pulse is stretched in time.
 #[derive(Clone, Copy)]
 enum Amplitude {
     Displacement,
@@ -165,7 +165,8 @@ impl Pulse {
         }
     }
 
-    /// Returns the time (s) over which the pulse changes appreciably: its period or its length.
+    /// Returns the characteristic time of the pulse (s): its period, or its length if it has no
+    /// period.
     pub fn time_scale(&self) -> f64 {
         *self.clone().time_scale_mut()
     }

@@ -31,14 +31,14 @@ pub struct PulseFit {
 /// Trial values of the width `γ`. Below 1 the pulse has no zero crossing; above 3 it is a wave
 /// train.
 const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
-/// Number of trial periods per increase of the period by a factor of e.
+/// Number of trial periods in a range of periods that spans a factor of e.
 const PER_E_FOLD: f64 = 14.0;
 
 /// Finds the pulse that explains most of the squared velocity, with a period from `shortest` to
 /// `longest` (s).
 ///
-/// Every shift, period and width is tried by correlation with the sine and cosine forms of the
-/// pulse. The best trial is refined by coordinate search.
+/// All combinations of shift, period and width on a grid are compared by correlation with the sine
+/// and cosine forms of the pulse. The best combination is refined by coordinate search.
 ///
 /// # Errors
 /// If the range of periods is empty, the shortest period is below eight time steps, or the velocity is
@@ -55,7 +55,7 @@ pub fn dominant_pulse(
     let least = 8.0 * motion.time_step();
     let expected = format!("at least eight steps, {least} s");
     MotionError::require(shortest >= least, "shortest pulse period (s)", expected, shortest)?;
-    // For the correlation, a step of a sixteenth of the shortest period is fine enough.
+    // For the correlation, a time step of 1/16 of the shortest period is fine enough.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
     let every = (shortest / 16.0 / motion.time_step()).floor().max(1.0) as usize;
     let dt = motion.time_step() * every as f64;

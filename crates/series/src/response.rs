@@ -69,8 +69,8 @@ impl Step {
         }
     }
 
-    /// Returns the relative displacement and velocity one step later. `load` is the negative ground
-    /// acceleration.
+    /// Returns the relative displacement and velocity one step later. `load` and `next_load` are
+    /// the negative ground acceleration now and one step later.
     #[inline]
     pub fn advance(&self, u: f64, v: f64, load: f64, next_load: f64) -> (f64, f64) {
         let d = &self.displacement;
@@ -99,7 +99,8 @@ pub fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
     MotionError::require(swings, "damping ratio", "0 to below 1 (5 % is 0.05)", damping)
 }
 
-/// Computes the peak response of one oscillator to accelerations (m/s²) with step `time_step` (s).
+/// Computes the peak response of one oscillator to accelerations (m/s²) at intervals of `time_step`
+/// (s).
 ///
 /// Peaks are taken at the samples; free vibration after the record is ignored. With fewer than ten
 /// steps per period, peaks between the samples are missed.
@@ -228,7 +229,7 @@ pub struct ResponseSpectrum {
 }
 
 impl ResponseSpectrum {
-    /// Computes the response spectrum of accelerations (m/s²) with step `time_step` (s).
+    /// Computes the response spectrum of accelerations (m/s²) at intervals of `time_step` (s).
     ///
     /// # Errors
     /// The same as for [`response`].

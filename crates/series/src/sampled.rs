@@ -15,7 +15,7 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// Returns the state `elapsed` seconds later if there is no acceleration.
+    /// Returns the state `elapsed` seconds later, at constant velocity.
     #[must_use]
     pub fn coast(self, elapsed: f64) -> Self {
         Self {
@@ -55,8 +55,8 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// Integrates `acceleration` (m/s²) with step `time_step` (s), starting from rest at zero
-    /// displacement.
+    /// Integrates `acceleration` (m/s²), sampled at intervals of `time_step` (s), starting from
+    /// rest at zero displacement.
     ///
     /// # Errors
     /// If the step is not above zero, there are fewer than two samples, or a sample is not finite.
@@ -66,7 +66,8 @@ impl Sampled {
 
     /// Integrates like [`Sampled::new`], but from an initial velocity (m/s).
     ///
-    /// Some corrected records state an initial velocity. The velocity then jumps at t = 0.
+    /// Some corrected records state an initial velocity. The velocity then jumps from 0 to this
+    /// value at t = 0.
     ///
     /// # Errors
     /// The same as for [`Sampled::new`], or if the velocity is not finite.
@@ -168,7 +169,7 @@ impl Sampled {
         math::peak(&self.acceleration)
     }
 
-    /// Returns the largest absolute velocity at the samples (m/s), as published with records.
+    /// Returns the largest absolute velocity at the samples (m/s), as it is published with records.
     pub fn pgv(&self) -> f64 {
         math::peak(&self.velocity)
     }
@@ -178,11 +179,12 @@ impl Sampled {
         math::peak(&self.displacement)
     }
 
-    /// Returns the largest absolute displacement (m), integrated from the sampled velocities by the
-    /// trapezoidal rule like published values and the displacement files of PEER.
+    /// Returns the largest absolute displacement (m). The displacement is integrated from the
+    /// sampled velocities by the trapezoidal rule, as for published values and for the displacement
+    /// files of PEER.
     ///
-    /// The peak of the exact displacement, [`Sampled::pgd`], is different: for a record with a step
-    /// of 0.02 s whose period is 0.3 s at the peak, it is 0.4 % larger.
+    /// The peak of the exact displacement, [`Sampled::pgd`], is larger: by 0.4 % for a time step of
+    /// 0.02 s and a motion with a period of 0.3 s at the peak.
     pub fn pgd_by_trapezoid(&self) -> f64 {
         math::peak(&running_trapezoid(self.time_step, &self.velocity))
     }
@@ -206,8 +208,8 @@ impl Sampled {
     }
 }
 
-/// Returns the integral of sampled values from the first sample to every sample, by the trapezoidal
-/// rule.
+/// Returns, for each sample, the integral of the values from the first sample to this sample, by
+/// the trapezoidal rule.
 pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let after = values.windows(2).map(|pair| {

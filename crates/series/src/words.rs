@@ -30,7 +30,7 @@ impl Display for Pulse {
                 )?;
                 match ramp_cycles {
                     0.0 => write!(f, "without ramps"),
-                    _ => write!(f, "the first and last {} of them ramps", Short(ramp_cycles)),
+                    _ => write!(f, "of which the first and last {} are ramps", Short(ramp_cycles)),
                 }
             }
             Self::HalfSine { acceleration, duration } => {

@@ -34,7 +34,8 @@ pub struct Flatfile {
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Names of the columns in the published table and in its abridged forms, one constant per column.
+/// Names of a column in the published table and in its abridged forms; there is one constant per
+/// column.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];
@@ -163,8 +164,8 @@ pub fn record_sequence_number(path: &str) -> Option<u64> {
     digits[..end].parse().ok()
 }
 
-/// Returns the rows of a table (RFC 4180), each with the line on which it begins; empty lines are
-/// skipped.
+/// Returns the rows of a CSV table (RFC 4180), each with the number of the line on which it begins;
+/// empty lines are skipped.
 fn rows(text: &str, mark: char) -> impl Iterator<Item = (usize, Vec<String>)> {
     let mut line = 1;
     let mut rest = text;

@@ -57,7 +57,7 @@ pub struct MeasuredPair {
 /// Intensity measures of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// The first two components that are not vertical, in order.
+    /// The first two components that are not vertical, in file order.
     pub horizontals: Vec<MeasuredComponent>,
     /// The first vertical component, if there is one.
     pub vertical: Option<MeasuredComponent>,

@@ -17,10 +17,11 @@ use smooth::konno_ohmachi;
 const SHORTEST_NOISE: f64 = 1.0;
 /// Shortest shaking (s) from which corners can be determined.
 const SHORTEST_SHAKING: f64 = 5.0;
-/// Length of the taper at each end of the noise and of the shaking, as a fraction of the length of
-/// the noise or of the shaking, respectively.
+/// Length of the taper at each end of a series, as a fraction of the length of the series. The
+/// noise and the shaking are tapered separately.
 const TAPER: f64 = 0.05;
-/// Upper limits of the low-pass corner: as a fraction of the Nyquist frequency, and in Hz.
+/// Upper limits of the low-pass corner. The first is a fraction of the Nyquist frequency, the
+/// second is in Hz.
 const HIGHEST: (f64, f64) = (0.75, 40.0);
 
 /// Criterion on the signal-to-noise ratio, with its frequency range.
@@ -88,17 +89,17 @@ struct Spectra {
 
 /// Returns the filter corners of one channel whose noise ends at `arrival` (s).
 ///
-/// The spectrum of the noise is multiplied by the square root of the length of the shaking divided
-/// by the length of the noise. The product is the spectrum of the noise within the shaking. The
-/// signal is the difference between the spectrum of the shaking and this product. The
-/// signal-to-noise ratio is divided by the same square root, so that the criterion is stricter if
-/// the noise is short.
+/// The spectrum of the noise is multiplied by `r = √(length of the shaking / length of the noise)`.
+/// The product is the spectrum of the noise within the shaking. The signal is the spectrum of the
+/// shaking minus this product. The signal-to-noise ratio is divided by `r`, so that the criterion
+/// is stricter if the noise is short.
 ///
-/// The band between the corners is the first band of sufficient ratio that covers the frequency
-/// range of the criterion. The high-pass corner is raised, if necessary, to one over the duration,
-/// and to the frequency of the smallest ratio below the frequency of the peak ratio. The low-pass
-/// corner is lowered, if necessary, to 0.75 of the Nyquist frequency, and to 40 Hz. This is the rule
-/// of the automatic processing of the USGS (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
+/// The corners are the ends of the first frequency band that has a sufficient ratio and covers the
+/// frequency range of the criterion. The high-pass corner is raised, if necessary, to one over the
+/// duration. It is also raised, if necessary, to the frequency at which the ratio is smallest among
+/// the frequencies below its peak. The low-pass corner is lowered, if necessary, to 0.75 of the
+/// Nyquist frequency or to 40 Hz. The automatic processing of the USGS uses this rule (Hearne et
+/// al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
 /// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.
@@ -148,8 +149,8 @@ pub fn noise_corners(
 impl Record {
     /// Returns the filter corners of every channel, in order.
     ///
-    /// Both horizontals get the frequency band that their two bands have in common, so that they
-    /// can be rotated jointly. All channels use the earliest arrival of any channel.
+    /// Both horizontals get the overlap of their two frequency bands, so that they can be rotated
+    /// together. All channels use the earliest arrival of any channel.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self
             .channels
@@ -223,8 +224,8 @@ impl Spectra {
             .fold(f64::INFINITY, |least, (_, ratio)| least.min(*ratio))
     }
 
-    /// Returns the frequency of the smallest signal-to-noise ratio below the frequency of the peak
-    /// ratio. At even lower frequencies, drift raises the ratio.
+    /// Returns the frequency at which the signal-to-noise ratio is smallest, among the frequencies
+    /// below its peak. At even lower frequencies, drift raises the ratio.
     fn foot(&self) -> f64 {
         let best = |range: std::ops::Range<usize>, sign: f64| {
             range.reduce(

@@ -1,9 +1,10 @@
 //! Reader of Broadband Platform text (SCEC, `.000`, `.090`, `.ver`).
 //!
-//! The first line contains the station and the component. The second line contains the count, the
-//! step and times. Values separated by blanks follow. Accelerations and velocities have the same
-//! layout, and the files state neither quantity nor unit, so the caller must provide the unit.
-//! Files with four columns including time (`.bbp`) are read as plain columns.
+//! The first line contains the station and the component. The second line contains the number of
+//! samples, the time step and times. Values separated by blanks follow. Accelerations and
+//! velocities have the same layout, and the files state neither quantity nor unit, so the caller
+//! must provide the unit. Files with four columns including time (`.bbp`) are read as plain
+//! columns.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Hints};
@@ -17,11 +18,11 @@ use crate::units::{AccelerationUnit, MotionUnit};
 pub(crate) const FORMAT: Format =
     Format { name: "bbp", title: "Broadband Platform text (SCEC)", sniff, read };
 
-/// Number of values on the second line. The values are count, step, hour, minute, second,
-/// epicentral distance, azimuth and back azimuth.
+/// Number of values on the second line. The values are the number of samples, the time step, hour,
+/// minute, second, epicentral distance, azimuth and back azimuth.
 const NUMBERS: usize = 8;
 
-/// Parses the count and the step on the second line.
+/// Parses the number of samples and the time step (s) on the second line.
 fn count_and_step(source: &Source<'_>) -> Option<(usize, f64)> {
     let mut row = Vec::new();
     source.tokens(1, f64::INFINITY, &mut row).ok()?;

@@ -47,7 +47,8 @@ fn read_component(
             )
         })?;
     let count = super::whole(source, count_line, "a number of points", stated.0)?;
-    // The stated duration is the count times the step, which includes a step after the last sample.
+    // The stated duration is the number of samples times the time step: it includes a time step
+    // after the last sample.
     let time_step = stated.1 / stated.0;
     if !source.has(first + 11, "G/10") {
         return Err(source.not_acceleration(

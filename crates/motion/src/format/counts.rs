@@ -1,5 +1,5 @@
-//! Converts the samples of channels with SEED codes, which are counts or have a stated unit, to
-//! accelerations.
+//! Converts the samples of channels with SEED codes to accelerations. The samples are counts or
+//! have a stated unit.
 
 use super::source::Source;
 use super::{Hints, seed};
@@ -58,7 +58,7 @@ pub(super) fn channel(
 ) -> Result<Channel, ReadError> {
     let Samples { codes, start, time_step, values, unit, direction } = samples;
     let name = codes.channel.clone();
-    // Metadata describe counts; samples with a stated unit need none.
+    // The sensitivity in the metadata applies to counts; samples with a stated unit do not need it.
     let known = (unit == Unit::Counts).then(|| hints.instrument(&codes, start)).flatten();
     let factor = match unit {
         Unit::Counts => {

@@ -145,8 +145,8 @@ fn unit(
     })
 }
 
-/// Returns the step on the data line. Real 61 of the header replaces the printed step if both agree
-/// within the printed digits.
+/// Returns the time step (s) on the data line. If the time step in real 61 of the header agrees
+/// with it within the printed digits, returns the value of real 61.
 fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
     let printed = source
         .printed_after(data, "spaced at")

@@ -61,8 +61,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         source.tokens(line, f64::INFINITY, &mut row).map_or(0, |()| row.len())
     };
     let below = peak_line + 1..source.lines.len();
-    // A header line may be a single number, such as the number of the record. Values one per line
-    // are as many as the header states.
+    // A header line may consist of a single number, such as the number of the record. If there is
+    // one value per line, only as many lines as the header states are values.
     let first = below
         .clone()
         .find(|&line| numbers(line) > 1)
@@ -106,8 +106,9 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Checks that count and step agree with the stated duration. A difference of one step and half of
-/// the last digit is allowed, because publishers count samples and round the duration differently.
+/// Checks that the number of samples and the time step agree with the stated duration. A difference
+/// of one time step plus one unit of the last printed digit is allowed, because publishers count
+/// samples and round the duration differently.
 fn check_duration(
     source: &Source<'_>,
     line: usize,

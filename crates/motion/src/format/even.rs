@@ -1,4 +1,4 @@
-//! Derives the time step from a time column; uneven times are interpolated.
+//! Derives a constant time step from a time column; unevenly spaced samples are interpolated.
 
 use super::source::{Columns, Source};
 use crate::error::ReadError;
@@ -32,10 +32,10 @@ impl Timed {
     }
 }
 
-/// Returns the even step of the times (s), and the columns sampled at this step.
+/// Returns the constant time step (s) of the columns, and the columns sampled at this step.
 ///
-/// Times that are even within their printed digits give the step exactly. Other times are
-/// interpolated linearly to a finer even step, with a warning.
+/// If the times are evenly spaced within their printed digits, the step follows exactly from them.
+/// Otherwise, the values are interpolated linearly at a finer step, with a warning.
 pub(crate) fn even_steps(
     source: &Source<'_>,
     record: &mut Record,
@@ -132,8 +132,8 @@ fn slack(time: f64, first: f64) -> f64 {
     1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
 }
 
-/// Returns a round step such that no time deviates from even spacing by more than one unit of its
-/// last printed digit, as is the case for truncated times.
+/// Returns a round step such that all times are evenly spaced within one unit of their last printed
+/// digit; `None` if there is no such step. Truncated times have such deviations.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {
@@ -144,7 +144,8 @@ fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     (fine && !time.iter().enumerate().any(strays)).then_some(step)
 }
 
-/// Returns round steps near the mean, then the mean.
+/// Returns candidates for the time step: round numbers near the mean step, then the mean step
+/// itself.
 fn candidates(mean: f64, relative: f64) -> impl Iterator<Item = f64> {
     let rate = (1.0 / mean).round();
     let decimal = (mean * 1e5).round() / 1e5;

@@ -8,7 +8,7 @@ use crate::record::Quantity;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
-/// Largest relative difference between two sensitivities of one channel that is considered
+/// Largest relative difference between two sensitivities of one channel that is attributed to
 /// rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 

@@ -20,8 +20,8 @@ pub(crate) const FORMAT: Format =
     Format { name: "knet", title: "K-NET and KiK-net (NIED)", sniff, read };
 
 const HEADER_LINES: usize = 17;
-/// Difference (s) between the stated record time and the time of the first sample in UTC: the delay
-/// of the recorder and the nine hours of Japan time.
+/// Time (s) to subtract from the stated record time to obtain the time of the first sample in UTC:
+/// the delay of the recorder (15 s) and the offset of Japan time (9 h).
 const LATE: f64 = 15.0 + 9.0 * 3600.0;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -96,7 +96,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Reads eight integers of nine columns per line; the last line may be shorter.
+/// Reads lines of eight integers, each nine characters wide; the last line may be shorter.
 fn read_counts(source: &Source<'_>, first: usize, limit: f64) -> Result<Vec<f64>, ReadError> {
     let last = source.lines.len();
     let mut values = Vec::with_capacity(8 * last.saturating_sub(first));

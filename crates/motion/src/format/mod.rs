@@ -423,9 +423,9 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
     })
 }
 
-/// Returns the sample that is a placeholder for a missing value, such as -9999 in one of the units
-/// of files. Such a sample differs from its neighbors more than three times as much as any other
-/// sample.
+/// Returns the index of a sample that is a placeholder for a missing value, such as -9999 in any
+/// unit of acceleration. The step to such a sample is more than three times as large as any step
+/// between other samples.
 fn missing_value(values: &[f64]) -> Option<usize> {
     let jump = |row: usize| (values[row] - values[row - 1]).abs();
     let largest = (1..values.len()).max_by(|a, b| jump(*a).total_cmp(&jump(*b)))?;
@@ -439,8 +439,8 @@ fn missing_value(values: &[f64]) -> Option<usize> {
     })
 }
 
-/// Returns `true` if a value, in one of the units of files, consists only of nines (at least three)
-/// or is another common placeholder.
+/// Returns `true` if a value (m/s²), converted to any unit of acceleration, consists only of nines
+/// (at least three) or is another common placeholder.
 fn is_mark(value: f64) -> bool {
     AccelerationUnit::ALL.iter().any(|unit| {
         let number = (value / unit.factor()).abs();
@@ -471,14 +471,14 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
 /// values per line of the widest layout.
 const FILLED: usize = 9;
 
-/// Returns how many values are used if the header states their number.
+/// Returns how many of the `found` values are used if the header states their number.
 ///
-/// All values are used if they are one less or up to two more than stated, because the numbers in
-/// published headers are wrong by this much. The stated number is used if the last line was filled
-/// up.
+/// All values are used if there is one value less than stated, or if there are up to two more,
+/// because the numbers in published headers are wrong by this much. If there are up to [`FILLED`]
+/// more, the last line was filled up, and only the stated number of values is used.
 ///
 /// # Errors
-/// If there are fewer or more values: the file is truncated, or its header belongs to another file.
+/// If the difference is larger: the file is truncated, or its header belongs to another file.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
@@ -496,7 +496,8 @@ fn check_count(
         );
         return Ok(found);
     }
-    // Twice as many values are not a filled line; decimal commas split each number into two.
+    // Twice as many values do not mean a filled line: decimal commas have split each number into
+    // two.
     if found > stated && found <= stated + FILLED && found < 2 * stated {
         record.warn(
             line + 1,
@@ -516,8 +517,8 @@ fn check_count(
     ))
 }
 
-/// Checks the count as [`check_count`], for a header that states the length in whole seconds; a
-/// difference of up to one second is considered rounding.
+/// Checks the number of values like [`check_count`], for a header that states the length of the
+/// record in whole seconds. A difference of up to one second is considered rounding.
 fn check_seconds(
     source: &Source<'_>,
     record: &mut Record,

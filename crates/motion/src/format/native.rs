@@ -43,8 +43,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
 }
 
 /// Builds the record described by the header in the lines before `end`. The function `columns`
-/// returns the samples of the named channels in the stated unit; it gets the limit that no sample
-/// may exceed.
+/// returns the samples of the named channels in the stated unit. Its arguments include the limit
+/// that no sample may exceed.
 pub(super) fn described(
     source: &Source<'_>,
     end: usize,

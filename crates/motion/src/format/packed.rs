@@ -12,9 +12,9 @@ use crate::record::Record;
 
 /// Largest size of an unpacked file (bytes), so that a small archive cannot exhaust the memory.
 ///
-/// While a text is read, lines of one digit need sixteen times their size in memory: 192 MB at this
-/// limit; a limit of 64 MB would need 1 GB. As text, an hour of one component at 100 Hz takes a
-/// quarter of the limit.
+/// The worst case is a text with one digit per line, which needs sixteen times its size in memory
+/// while it is read: 192 MB for a file of this size, and 1 GB for a file of 64 MB. For comparison,
+/// an hour of one component at 100 Hz, written as text, has a quarter of this size.
 pub(crate) const LARGEST: u64 = 12 << 20;
 
 /// Reads the record in a packed file; `None` if the file is not packed.
@@ -23,8 +23,8 @@ pub(super) fn read(
     options: &ReadOptions,
 ) -> Result<Option<Record>, ReadError> {
     let packed = [&b"PK"[..], &[0x1F, 0x8B]].iter().any(|magic| source.bytes.starts_with(magic));
-    // Copy the bytes only if they may be an archive; the check for tar needs the header with name
-    // and checksum.
+    // Copy the bytes only if they may be an archive. The full check for tar, with the checksum,
+    // follows later.
     let tar = source.bytes.get(257..262) == Some(b"ustar");
     if !packed && !tar {
         return Ok(None);

@@ -1,10 +1,10 @@
 //! Reader of the PEER strong-motion database: AT2 accelerations. VT2 velocities and DT2
 //! displacements are refused.
 //!
-//! A file has a few title lines, a line with quantity and unit, a line with count and step, then
-//! values row by row. Spec: header lines of the NGA and NGA-West2 flat files (Chiou et al. 2008,
-//! Earthquake Spectra 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings
-//! surveyed over 2416 files.
+//! A file has a few title lines, a line with quantity and unit, a line with the number of samples
+//! and the time step, then values row by row. Spec: header lines of the NGA and NGA-West2 flat
+//! files (Chiou et al. 2008, Earthquake Spectra 24:23-44; Ancheta et al. 2014, Earthquake Spectra
+//! 30:989-1005); spellings surveyed over 2416 files.
 
 use super::columns::facts;
 use super::source::{LARGEST_ACCELERATION, Source, leading_number, leading_text, quoted};
@@ -18,7 +18,7 @@ use crate::write::{NO_EVENT, NO_STATION};
 pub(crate) const FORMAT: Format =
     Format { name: "peer", title: "PEER AT2 (NGA, NGA-West2, PEER 2000)", sniff, read };
 
-/// Number of lines searched for the count and the step.
+/// Number of lines searched for the number of samples and the time step.
 const HEADER_LINES: usize = 12;
 
 struct Counts {
@@ -28,7 +28,7 @@ struct Counts {
 }
 
 fn sniff(source: &Source<'_>) -> bool {
-    // Other formats state count and step on separate lines.
+    // Other formats state the number of samples and the time step on separate lines.
     (0..HEADER_LINES.min(source.lines.len()))
         .any(|line| source.has(line, "NPTS") && source.has(line, "DT"))
 }
@@ -124,7 +124,8 @@ fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with("***") && source.has(line, "end")
 }
 
-/// Parses count and step from `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
+/// Parses the number of samples and the time step (s) from a line such as
+/// `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
 fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
     let line = (0..HEADER_LINES)
         .find(|&line| source.has(line, "NPTS") && source.has(line, "DT"))

@@ -62,7 +62,7 @@ pub(crate) const SLAMMER: Format = Format {
     title: "USGS SLAMMER record table (refused)",
     sniff: |source| {
         let fields: Vec<&[u8]> = source.raw(0).split(|&b| b == b'\t').collect();
-        // Column 10, counted from 0, is the step.
+        // Column 10, counted from 0, is the time step.
         fields.len() >= 12
             && parse_number(fields[0]).is_none()
             && parse_number(fields[10]).is_some_and(|step| step > 0.0 && step < 1.0)
@@ -135,8 +135,8 @@ pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| marked(line) && marked(line + 1))
 }
 
-/// Returns the last line of a file without rows of numbers, if this line looks like headings: it
-/// names acceleration or time, and is not a sentence.
+/// Returns the last line of a file without rows of numbers, if this line looks like column
+/// headings: it names acceleration or time, and is not a sentence.
 pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
     let text = |line: usize| source.text(line);
     let last = (0..source.lines.len()).rfind(|&line| !text(line).trim().is_empty())?;
@@ -342,8 +342,9 @@ pub(crate) const COSMOS_SPECTRA: Format = Format {
     },
 };
 
-/// Returns `true` for a file that starts with the tag of Kinemetrics: `K`, byte order, version,
-/// instrument, and the kind of frame, a 32-bit number that is 1 for the file header.
+/// Returns `true` for a file that starts with the tag of Kinemetrics. The tag consists of the
+/// letter `K`, byte order, version, instrument, and the kind of frame: a 32-bit number, which is 1
+/// for the file header.
 fn is_evt(source: &Source<'_>) -> bool {
     let Some(&[b'K', order @ 0..=1, version @ 0..=3, _, a, b, c, d]) =
         source.bytes.first_chunk::<8>()

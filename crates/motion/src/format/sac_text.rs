@@ -39,7 +39,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         source.fixed(line, INTEGERS, Columns::new(5, 10), f64::from(i32::MAX))?;
     let points = super::whole(source, REALS / 5 + 1, "a number of points", integers[POINTS])?;
     let data = line + WORD_LINES;
-    // There are five values per line; some programs write the last few values on a line each.
+    // There are five values per line; some programs write each of the last few values on a line of
+    // its own.
     let values = source.all_tokens(data, source.lines.len(), f64::from(f32::MAX))?;
     if values.len() != points {
         let stated = format!("{points} values as the header states");

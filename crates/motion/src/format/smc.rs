@@ -102,7 +102,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     };
     let values: Vec<f64> = values.iter().map(|value| value * GAL).collect();
     let mut channel = Channel::new(name, direction, time_step, values);
-    // If seconds and milliseconds are missing, these integers are the time of the event.
+    // If the seconds and milliseconds are missing, the other integers state the time of the event,
+    // so the start of the record is unknown.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
     let whole = |index: usize| known(index).map(|value| value as i64);
     let clock = known(5).zip(known(6)).map(|(second, milli)| second + 1e-3 * milli);

@@ -106,7 +106,8 @@ impl<'a> Source<'a> {
         Some((at, word.trim_end_matches('.').to_owned()))
     }
 
-    /// Returns the first line before `end` for which `value` returns a value, with that value.
+    /// Returns the first line before `end` whose text `value` accepts, with the value that it
+    /// returns.
     pub(crate) fn field(
         &self,
         end: usize,
@@ -160,8 +161,8 @@ impl<'a> Source<'a> {
     }
 
     /// Returns the line after the end of a channel, which is marked "/&" or "end of data" after
-    /// optional blank lines. The mark may be missing if the line contains `next`, with which the
-    /// next channel begins.
+    /// optional blank lines. The mark may be missing if the line contains `next`, the text with
+    /// which the next channel begins.
     pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
         let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
         let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };

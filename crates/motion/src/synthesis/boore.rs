@@ -103,7 +103,8 @@ impl BooreSource {
         let f0 = self.corner_frequency();
         let w = 2.0 * PI * f;
         // Radiation pattern 0.55, free surface 2, partition 0.7071, reference distance 1 km. The
-        // conversion from km and g/cm³ to cgs gives 1e-20, and that from cm to m the last 1e-2.
+        // factor 1e-20 converts km and g/cm³ to cgs units, and the last factor 1e-2 converts cm to
+        // m.
         let beta = self.velocity;
         let c = 0.55 * 2.0 * std::f64::consts::FRAC_1_SQRT_2 * 1e-20
             / (4.0 * PI * self.density * beta * beta * beta);

@@ -83,7 +83,8 @@ impl Envelope {
 /// ```
 ///
 /// computed as a sum of cosines with random phases and multiplied by an envelope. The second factor
-/// vanishes at w = 0, so that the velocity is bounded, unlike in the spectrum of Kanai and Tajimi.
+/// vanishes at w = 0 and thus keeps the velocity bounded. The first factor alone, the spectrum of
+/// Kanai and Tajimi, does not.
 ///
 /// ```
 /// use barrelstack_motion::{CloughPenzien, Envelope};

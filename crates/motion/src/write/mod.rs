@@ -1,10 +1,10 @@
 //! Writers of ground-motion files: PEER AT2, CSV, NumPy archives and this crate's own text format.
 //!
 //! Every writer takes a [`Record`]. The notes of the record are the provenance and are written into
-//! the header. Channels are written side by side, cut to the shortest. AT2 has no field for the
-//! velocity at the first sample ([`crate::Channel::initial_velocity`]); this velocity is written
-//! into the title, and a record that is read from the file starts from rest. All other formats keep
-//! the velocity.
+//! the header. Channels are written side by side, cut to the length of the shortest channel. AT2
+//! has no field for the velocity at the first sample ([`crate::Channel::initial_velocity`]); this
+//! velocity is written into the title, and a record that is read from the file starts from rest.
+//! All other formats keep the velocity.
 
 mod at2;
 mod csv;

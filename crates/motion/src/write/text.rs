@@ -126,7 +126,8 @@ fn recorded(record: &Record) -> Vec<String> {
     all
 }
 
-/// Splits off the key of a note that a header of this format stores under its own key.
+/// Splits a note such as `source: NAME` into key and text, if a header of this format has a line
+/// for the key.
 fn own_key(note: &str) -> Option<(&'static str, &str)> {
     ["source", "attribution", "licence"]
         .into_iter()

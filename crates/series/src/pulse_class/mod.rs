@@ -10,16 +10,18 @@ use wavelet::{Pair, Wavelet};
 
 /// Shortest and longest period of a pulse (s).
 const PERIODS: (f64, f64) = (0.25, 15.0);
-/// Number of intervals into which the range of scales that corresponds to these periods is divided.
+/// Number of intervals between the smallest and the largest wavelet scale, which correspond to
+/// [`PERIODS`].
 const SCALES: usize = 50;
 /// Number of wavelets that form a pulse.
 const WAVELETS: usize = 10;
-/// Largest distance in time between consecutive wavelets of a pulse, as a multiple of the scale of
-/// the pulse. Later searches exclude the part of the record within the same distance of the pulse.
+/// Largest distance in time between consecutive wavelets of a pulse, as a multiple of the wavelet
+/// scale. Once a pulse has been found, the part of the record within this distance of it is
+/// excluded from later searches.
 const REACH: f64 = 0.4;
 /// Number of candidate pulses examined in a pair of components.
 const PULSES: usize = 5;
-/// Step (s) to which velocities are decimated, a twenty-fifth of the shortest period.
+/// Largest time step (s) to which velocities are decimated: 1/25 of the shortest period.
 const STEP: f64 = 0.01;
 
 /// A velocity pulse, extracted as a sum of wavelets, with its classification.
@@ -152,7 +154,8 @@ fn still() -> MotionError {
     MotionError::parameter("motion", "a velocity other than zero", "zero")
 }
 
-/// Velocities (m/s) of both components, decimated as far as the shortest pulse allows.
+/// Velocities (m/s) of both components, decimated to a time step of at most [`STEP`] where
+/// possible.
 struct Thinned {
     time_step: f64,
     first: Vec<f64>,
@@ -186,10 +189,10 @@ impl Thinned {
     }
 }
 
-/// Position of a wavelet in time and scale, with the coefficients that it has in both components.
+/// A wavelet at one time and scale, with its coefficients in both components.
 #[derive(Clone, Copy)]
 struct WaveletAt {
-    /// Neighboring scales (s) between which the scale of the pulse is refined.
+    /// Lower and upper limit (s) between which the scale of the pulse is refined.
     scales: (f64, f64),
     scale: f64,
     at: usize,
@@ -211,7 +214,7 @@ struct Map {
 }
 
 impl Map {
-    /// Computes the map of the first component, of the second, and of both together.
+    /// Computes three maps: for the first component, for the second, and for both together.
     fn of(thin: &Thinned) -> [Self; 3] {
         let (least, largest) = (wavelet::scale(PERIODS.0), wavelet::scale(PERIODS.1));
         let step = (largest - least) / SCALES as f64;
@@ -249,7 +252,7 @@ impl Map {
     }
 }
 
-/// Returns the number of samples by which a pulse of the given scale (s) extends to each side.
+/// Returns [`REACH`] as a number of samples, for a pulse of the given scale (s).
 fn reach(scale: f64, time_step: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let samples = (REACH * scale / time_step).ceil() as usize;
@@ -263,8 +266,8 @@ struct Extracted {
 }
 
 impl Extracted {
-    /// Extracts ten wavelets of one scale. Each wavelet is the strongest one of the remaining
-    /// motion near the previous wavelet.
+    /// Extracts ten wavelets of one scale, one after the other. Each is the strongest wavelet near
+    /// the previous one, in the motion that remains after the previous wavelets are subtracted.
     fn of(velocity: &[f64], time_step: f64, found: WaveletAt) -> Self {
         let (low, high) = found.scales;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
@@ -284,7 +287,7 @@ impl Extracted {
         let overlap = wavelet.overlap();
         let reach = reach(scale, time_step);
         let mut pulse = vec![0.0; velocity.len()];
-        // Each wavelet is searched around the previous one, as in the authors' program.
+        // Each wavelet is searched for near the previous one, as in the program of the authors.
         let mut at = found.at;
         for _ in 0..WAVELETS {
             let near = at.saturating_sub(reach)..=(at + reach).min(velocity.len() - 1);

@@ -6,7 +6,7 @@ use crate::fourier::{Complex, correlate, forward, inverse};
 
 /// Length of the wavelet's support, in the wavelet's own units.
 const SUPPORT: usize = 7;
-/// Number of times that the spacing of the table of the wavelet is halved.
+/// Number of times that the spacing between the points of the wavelet table is halved, from 1 on.
 const LEVELS: u32 = 8;
 /// Center frequency of the wavelet in its own units: a pulse of scale `s` has the period
 /// `s/0.7143`.
@@ -50,7 +50,7 @@ impl Wavelet {
         self.values.len() / 2
     }
 
-    /// Returns the coefficient that the wavelet, centered on sample `at`, has in a series.
+    /// Returns the coefficient of the wavelet, centered on sample `at`, in `series`.
     pub(super) fn coefficient(&self, series: &[f64], at: usize) -> f64 {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -58,7 +58,7 @@ impl Wavelet {
         self.values[first..].iter().zip(&series[start..]).map(|(w, v)| w * v).sum()
     }
 
-    /// Returns the Fourier transform, of the given length, of the wavelet centered on sample 0.
+    /// Returns the Fourier transform, with `length` values, of the wavelet centered on sample 0.
     fn spectrum(&self, length: usize) -> Vec<Complex> {
         let half = self.half();
         let mut placed = vec![Complex::default(); length];
@@ -145,14 +145,14 @@ const FILTER: [f64; 8] = [
     -0.010_597_401_785_069_032,
 ];
 
-/// Computes the wavelet on a grid that repeatedly halves the spacing between the integers, from the
-/// two-scale relation.
+/// Computes the table of the wavelet from the two-scale relation. The grid begins with the
+/// integers, and its spacing is halved [`LEVELS`] times.
 fn table() -> Vec<f64> {
     let root = std::f64::consts::SQRT_2;
     // At the integers, the scaling function is an eigenvector of the relation with eigenvalue 1.
     let mut scaling = vec![1.0 / SUPPORT as f64; SUPPORT + 1];
     let relation = |values: &[f64], filter: &dyn Fn(usize) -> f64, at: usize, per: usize| -> f64 {
-        // `at` counts the points of the finer result, `per` points per unit of `values`.
+        // `at` is the index of the point in the finer grid; `values` has `per` points per unit.
         (0..8).filter_map(|k| Some(filter(k) * values.get(at.checked_sub(k * per)?)?)).sum::<f64>()
             * root
     };

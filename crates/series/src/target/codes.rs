@@ -121,8 +121,8 @@ pub(super) fn nzs1170(
     fault_distance: Option<f64>,
     t: f64,
 ) -> f64 {
-    // Section 3.1.6: no near-fault factor for annual probabilities of 1/250 and above, which means
-    // R up to 0.75.
+    // Section 3.1.6: there is no near-fault factor for annual probabilities of 1/250 and above,
+    // that is, for R up to 0.75.
     let near_fault = match fault_distance {
         Some(distance) if return_period > 0.75 => nzs_near_fault(distance, t),
         _ => 1.0,

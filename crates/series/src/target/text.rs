@@ -5,13 +5,13 @@ use std::str::FromStr;
 use super::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 use crate::error::MotionError;
 
-/// Parameters of a code; each parameter is removed when it is read.
+/// Parameters of a design code; each parameter is removed when it is read.
 struct Parameters<'a> {
     code: &'a str,
     pairs: Vec<(&'a str, &'a str)>,
 }
 
-/// Names of the codes, with their parameters.
+/// Names of the design codes, with their parameters.
 const KNOWN: [(&str, &str); 6] = [
     ("asce7", "sds (g), sd1 (g), tl (s), damping"),
     ("ec8", "ag (g), site (A to E), type (1 or 2), damping"),
@@ -40,8 +40,8 @@ impl<'a> Parameters<'a> {
         MotionError::parameter(format!("{}: {key}", self.code), expected, format!("\"{found}\""))
     }
 
-    /// Creates an error about a missing or unknown parameter, which lists the parameters of the
-    /// code.
+    /// Creates an error about a missing or unknown parameter. The message lists the parameters of
+    /// the code.
     fn unlike(&self, key: &str, found: &str) -> MotionError {
         let all = KNOWN.iter().find(|(code, _)| *code == self.code).map_or("", |(_, all)| all);
         MotionError::parameter(format!("{}: {key}", self.code), all, found)
@@ -64,7 +64,7 @@ impl<'a> Parameters<'a> {
         value.ok_or_else(|| self.unlike(&format!("{key} is missing"), "nothing"))
     }
 
-    /// Reads a member of a closed set.
+    /// Reads a parameter that must be one of the names in `all`.
     fn choice<T: Copy>(
         &mut self,
         key: &str,

@@ -1,4 +1,5 @@
-//! Finds facts stated in header lines: step, count, duration, unit, peak, component.
+//! Finds facts stated in header lines: time step, number of samples, duration, unit, peak and
+//! component.
 
 use super::factors;
 use super::times::LARGEST_BARE_STEP;
@@ -34,12 +35,12 @@ pub(super) struct Peak {
 pub(super) struct Facts {
     /// Time between samples (s).
     pub(super) step: Option<Stated<f64>>,
-    /// A stated frequency (Hz) that may be the sampling rate, although the header does not call it
-    /// so.
+    /// A stated frequency (Hz) that may be the sampling rate, although the header does not name it
+    /// as such.
     pub(super) possible_rate: Option<Stated<f64>>,
     /// Number of samples.
     pub(super) count: Option<Stated<usize>>,
-    /// Length of the record (s), and one unit of its last printed digit.
+    /// Length of the record (s), and one unit of the last printed digit of this length (s).
     pub(super) duration: Option<Stated<[f64; 2]>>,
     /// Unit of the samples.
     pub(super) unit: Option<Stated<MotionUnit>>,
@@ -50,7 +51,8 @@ pub(super) struct Facts {
     pub(super) component: Option<String>,
 }
 
-/// Largest step (s) and smallest rate (Hz) accepted from lines that do not name the quantity.
+/// Largest time step (s) and smallest sampling rate (Hz) that are accepted from lines that do not
+/// name the quantity.
 const LARGEST_UNNAMED_STEP: f64 = 0.1;
 const SMALLEST_UNNAMED_RATE: f64 = 20.0;
 
@@ -111,7 +113,8 @@ impl Facts {
         Ok(facts)
     }
 
-    /// Returns the step (s) computed from the count and the duration, for the remedy in an error.
+    /// Returns the time step (s) computed from the number of samples and the duration, for the
+    /// remedy in an error.
     pub(super) fn step_by_duration(&self) -> Option<f64> {
         let (count, [duration, _]) = (self.count?.value, self.duration?.value);
         (count > 1).then(|| duration / count as f64)
@@ -165,8 +168,8 @@ pub(super) fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
 }
 
 /// Splits a number off the start of a text and interprets its comma: in `0,005`, it is a decimal
-/// comma; in `3,200`, it is a thousands separator. Also returns the length of the number in the
-/// text, if a comma was interpreted.
+/// comma; in `3,200`, it is a thousands separator. If there is such a comma, also returns the
+/// length of the number in the text.
 fn number_with_comma(text: &str) -> (String, Option<usize>) {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != ',').unwrap_or(text.len());
     let token = text[..end].trim_end_matches(',');
@@ -258,13 +261,13 @@ fn step(text: &str) -> Option<f64> {
     by_step.or_else(by_rate)
 }
 
-/// Returns the count and the step (s), if one line states both.
+/// Returns the number of samples and the time step (s), if one line states both.
 pub(in crate::format) fn count_and_step(text: &str) -> Option<(f64, f64)> {
     Some((count(text)? as f64, step(text)?))
 }
 
-/// Returns the step (s) from a line that does not name this quantity, such as `Sampling: 200 Hz`,
-/// `interval 5 ms`, or `200 Hz` alone.
+/// Returns the time step (s) from a line that does not name this quantity, such as `interval 5 ms`,
+/// `Sampling: 200 Hz`, or `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
     let rate = |value: f64| (value >= SMALLEST_UNNAMED_RATE).then_some(1.0 / value);
@@ -301,8 +304,8 @@ fn unnamed_step(text: &str) -> Option<f64> {
     by_key.or_else(alone).or_else(beside)
 }
 
-/// Returns, from a line in any language, a frequency (Hz) that could be the sampling rate; `None`
-/// if the line names another frequency.
+/// Returns a frequency (Hz) that could be the sampling rate, from a line in any language; `None` if
+/// the line names another frequency, such as that of a filter.
 fn possible_rate(text: &str) -> Option<f64> {
     if OTHER_FREQUENCIES.iter().any(|word| text.contains(word)) {
         return None;

@@ -1,9 +1,9 @@
-//! Reader of plain columns and CSV: values alone, time and values, or a count and a step on the
-//! first line.
+//! Reader of plain columns and CSV. A file contains values alone, times and values, or a first line
+//! with the number of values and the time step.
 //!
 //! Unit and step are never guessed: they come from the header, from a time column, or from the
-//! caller. A header line is taken as column names only if the names are quantities. The stated
-//! step, count and duration must agree with the numbers.
+//! caller. A header line is taken as column names only if the names are quantities. A stated time
+//! step, number of samples and duration must agree with the numbers.
 
 mod factors;
 pub(in crate::format) mod facts;
@@ -342,7 +342,7 @@ fn require_no_mark(
     })
 }
 
-/// Returns the step (s) of columns without a time column.
+/// Returns the time step (s) of columns without a time column.
 fn step(
     source: &Source<'_>,
     first: usize,
@@ -428,8 +428,8 @@ fn require_duration(
     ))
 }
 
-/// Checks the number of samples against the number stated in the header, and cuts the columns to
-/// the number of samples to be used.
+/// Compares the number of samples with the number stated in the header, and cuts the columns to the
+/// number of samples to be used.
 fn counted(
     source: &Source<'_>,
     record: &mut Record,

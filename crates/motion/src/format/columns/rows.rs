@@ -62,8 +62,8 @@ pub(super) fn require_rows(
     ))
 }
 
-/// Refuses a file in which the line directly above the table is a row of the table with an invalid
-/// number.
+/// Refuses a file in which the line directly above the table is itself a row of the table, but
+/// contains an invalid number.
 pub(super) fn require_no_lost_row(
     source: &Source<'_>,
     first: usize,
@@ -91,7 +91,7 @@ fn is_comment(source: &Source<'_>, line: usize) -> bool {
 }
 
 /// Parses a first line such as `11800 0.005` or `0.005 11800` above rows with a different number of
-/// values. Returns the line, the count and the step (s).
+/// values. Returns the line, the number of values and the time step (s).
 pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize, usize, f64)> {
     let (mut row, mut next) = (Vec::new(), Vec::new());
     source.tokens(first, f64::INFINITY, &mut row).ok()?;
@@ -200,8 +200,8 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
 }
 
 /// Interprets rows of several values without times. The columns are channels if the header names
-/// them. All values are one series, read row by row with a warning, if the stated count or the
-/// numbers indicate this.
+/// them. All values are one series, read row by row with a warning, if the stated number of samples
+/// or the values themselves indicate this.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,
@@ -252,7 +252,7 @@ fn without_count(
         record.warn(first + 1, format!("{count} is the number of values below it and was ignored"));
         return column[1..].to_vec();
     }
-    // The count may also stand below the values.
+    // The number of values may also be below the values.
     let (last, above) = column.split_last().unwrap_or((&0.0, &[]));
     let end = source.lines.len() - 1;
     if *last >= 10.0 && *last == above.len() as f64 && !source.text(end).contains('.') {

@@ -30,12 +30,12 @@ pub(super) fn rises(column: &[f64]) -> bool {
     rising as f64 >= RISING * (column.len() - 1) as f64
 }
 
-/// Minimum number of rows of a column that may be recognized as evenly increasing by its values
-/// alone.
+/// Minimum number of rows that a column needs to be recognized as times by its evenly increasing
+/// values alone.
 const EVEN_ROWS: usize = 20;
 
-/// Returns `true` if every value of a column lies within one step of a straight line, like rounded
-/// times.
+/// Returns `true` if every value of a column lies within one step of a straight line, as rounded
+/// times do.
 pub(super) fn is_even(column: &[f64]) -> bool {
     let [from, .., to] = *column else { return false };
     let mean = (to - from) / (column.len() - 1) as f64;
@@ -157,8 +157,8 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
-/// Returns, for each column, whether it is the vector length of all other columns or of three of
-/// them, within 1 %.
+/// Returns, for each column, whether its values are, within 1 %, the lengths of the vectors formed
+/// by all other columns, or by two or three adjacent columns.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];

@@ -11,8 +11,8 @@ pub(super) const LARGEST_BARE_STEP: f64 = 0.5;
 /// Smallest time step (s) of a time column with an unstated unit. Times in minutes, hours or days
 /// have smaller steps.
 const SMALLEST_BARE_STEP: f64 = 4e-4;
-/// Smallest step (s) of a time column in seconds. No recorder is faster, but spreadsheet times in
-/// days have smaller steps.
+/// Smallest step (s) of a time column in seconds. No recorder has smaller steps, but spreadsheet
+/// times in days do.
 const SMALLEST_STEP: f64 = 1e-5;
 
 /// Returns the length (s) of the time unit of the first column, or `None` if the column does not
@@ -43,8 +43,8 @@ pub(super) fn unit_of(
             });
             (true, factor.transpose()?.or(in_label))
         }
-        // Evenly increasing values under the name of a motion, or without a name, are times, as in
-        // a damaged header; no ground acceleration increases evenly.
+        // Values that increase evenly are times, even if the column has no name, or has the name of
+        // a motion because the header is damaged: no ground acceleration increases evenly.
         Some([Name { holds, label, .. }, ..])
             if rises
                 && shape::is_even(&table[0])
