@@ -204,7 +204,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
                 0 => String::new(),
                 some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
-            let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
+            let clear = if pair.is_clear() { "" } else { ", so no difference is proven" };
             format!(
                 "Of the same {} variants{motions}{}, {} collapse in both runs, {} in A only and {} in \
                  {second} only: {difference} (95 % interval {low} to {high} points{clear}).{lost}",
@@ -360,7 +360,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             }
         }
     } else {
-        "Each result is that of one run: small changes of friction or gaps can change what falls when, so judge a difference by many runs."
+        "Each result is that of one run: small changes of friction or gaps can change what falls and when, so judge a difference by many runs."
             .into()
     });
     Verdict { headline: headline(sides) + &cut_short(sides), sentences, fine, ..Verdict::default() }

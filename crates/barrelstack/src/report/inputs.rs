@@ -103,11 +103,11 @@ pub fn inputs(stated: &Scenario) -> Vec<Block> {
 /// Lists what the model of a stack leaves out, in a plane or in space.
 pub fn not_modeled(in_space: bool) -> Block {
     let own = if in_space {
-        vec!["Waves of the wine."]
+        vec!["Sloshing of the wine."]
     } else {
         vec![
             "The third dimension: the stack is judged in one vertical plane at a time, across the barrels or along them.",
-            "Waves of the wine beyond the first, and splashing.",
+            "Sloshing of the wine beyond its first mode, and splashing.",
         ]
     };
     let always = [
@@ -116,7 +116,7 @@ pub fn not_modeled(in_space: bool) -> Block {
         "Neighboring stacks and walls, with which a stack may collide.",
         "Soil and building: the ground motion acts at the floor.",
         "Wear, creep, temperature and air.",
-        "Breakage of a barrel that lands.",
+        "Breakage of barrels when they land.",
     ];
     Block::List(own.into_iter().chain(always).map(str::to_owned).collect())
 }

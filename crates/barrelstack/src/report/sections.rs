@@ -292,7 +292,7 @@ fn stresses(run: &Run) -> Vec<Block> {
             0,
             Block::Paragraph(
                 "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from the \
-                 point at which it acts. It is the force divided by the length of boundary on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at a contact without nodes, 1 cm at full scale. Gray area: stress at rest. Area behind the gray area: largest stress until the first loss of seat."
+                 point at which it acts. The stress is the force divided by the length of boundary on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at a contact without nodes, 1 cm at full scale. Gray area: stress at rest. Area behind the gray area: largest stress until the first loss of seat."
                     .into(),
             ),
         );
@@ -357,8 +357,8 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     }
     let table = interface_table(
         "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
-         Two largest forces are given, each with the largest magnitude of any step: one until the first loss of seat, and one \
-         over the whole run, falls included.",
+         Two forces are given, each the one of largest magnitude over all steps: the first until the first loss of seat, the \
+         second over the whole run, falls included.",
         &summary.interfaces,
     );
     let recording = &run.recording;

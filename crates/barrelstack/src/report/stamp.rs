@@ -23,7 +23,7 @@ pub fn stamp_pages(built: &str) -> Result<(), String> {
 fn date() -> Result<String, String> {
     let seconds = system::clock()?;
     let now = Utc::of_unix(seconds).ok_or_else(|| {
-        format!("SOURCE_DATE_EPOCH: expected seconds before the year 2200, found {seconds}; correct or unset this variable")
+        format!("SOURCE_DATE_EPOCH: expected a time before the year 2200, in seconds since 1970, found {seconds}; correct or unset this variable")
     })?;
     Ok(format!("{} (UTC)", now.date()))
 }

@@ -285,7 +285,7 @@ pub(super) fn details(
     } else if judged && summary.ensemble.is_none() {
         sentences.push(
             "One run is one possible course: small changes of friction or gaps can change what falls \
-             when, so judge a stack by many runs."
+             and when, so judge a stack by many runs."
                 .into(),
         );
     }

@@ -183,7 +183,7 @@ impl Remedy {
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
             "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share that falls after a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
-             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included. The last column is the share of these draws in which fewer stacks fall after the change than without it; a draw has the same constants for all changes. \
+             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included. The last column is the share of draws of the uncertain constants in which fewer stacks fall after the change than without it; each draw applies to all changes. \
              Straps are assumed not to slip on the barrels and racks that they tie.",
             100.0 * self.required_share,
             self.candidates
@@ -208,7 +208,7 @@ impl Remedy {
                 ("range over uncertain constants", "", &|one| {
                     Cell::maybe(one.range.map(|range| range.map(percent).join(" to ")))
                 }),
-                ("draws in which fewer fall than as it is", "", &|one| {
+                ("draws in which fewer fall than without the change", "", &|one| {
                     Cell::maybe(one.better_than_as_it_is.map(percent))
                 }),
             ],

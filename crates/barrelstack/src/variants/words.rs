@@ -612,8 +612,8 @@ mod tests {
         let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left =
-            "On average, the measurement leaves a range of 55 percentage points instead of 83.";
+        let left = "After the measurement, the range is on average 55 percentage points wide \
+             instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];

@@ -48,7 +48,7 @@ pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
     Some(format!(
-        "To narrow the range of the share that falls, measure the {}: {}. On average, the measurement leaves a range of {:.0} percentage points instead of {:.0}.",
+        "To narrow the range of the share that falls, measure the {}: {}. After the measurement, the range is on average {:.0} percentage points wide instead of {:.0}.",
         one.name,
         one.test()?,
         100.0 * left,
