@@ -314,9 +314,8 @@ pub fn files(answer: &Answer, language: Language) -> Result<Vec<(String, Vec<u8>
     Ok(files)
 }
 
-/// Returns the start data of a page that contains the program: the scenario as text, and its
-/// records in base64, under their file names without folders, so that the page does not depend on
-/// paths.
+/// Returns the start data of a page that contains the program: the scenario as text, and its records in base64. Records
+/// are named by their file names without folders, so that the page does not depend on paths.
 fn start_of(scenario: &Scenario) -> Value {
     let mut packed = scenario.clone();
     let mut records = Vec::new();

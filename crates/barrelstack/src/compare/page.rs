@@ -376,7 +376,7 @@ fn players(sides: &[Side]) -> Players {
             ..side.pane.clone()
         })
         .collect();
-    // Drawings of bodies in space change with their rotation, so they have no single outline.
+    // Drawings of three-dimensional bodies change with their rotation, so they have no single outline.
     let overlay = (!sides.iter().any(Side::is_spatial)).then(|| "outlines of A".to_owned());
     let dashed = overlay.as_ref().map_or_else(String::new, |label| {
         format!(

@@ -68,7 +68,8 @@ pub(crate) fn readable(value: &str) -> String {
 /// Significant digits of a printed input; the scenario file beside the report has all digits.
 const DIGITS: usize = 6;
 
-/// Tabulates the inputs that differ from their defaults, with the sources of the dimensions; on screen also all inputs.
+/// Tabulates the inputs that differ from their defaults, with the sources of the dimensions; on screen, also tabulates
+/// all inputs.
 pub fn inputs(stated: &Scenario) -> Vec<Block> {
     let absent = stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
     let mut settings = stated.settings();
@@ -100,7 +101,7 @@ pub fn inputs(stated: &Scenario) -> Vec<Block> {
     blocks
 }
 
-/// Lists what the model of a stack leaves out, in a plane or in space.
+/// Lists what the model of a stack leaves out, in a plane or in three dimensions.
 pub fn not_modeled(in_space: bool) -> Block {
     let own = if in_space {
         vec!["Sloshing of the wine."]

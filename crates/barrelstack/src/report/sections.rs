@@ -132,7 +132,7 @@ fn on_screen(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
     }
 }
 
-/// Returns the player of a run, with a scene of it.
+/// Returns the player of a run, which shows the given scene of this run.
 pub fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
@@ -192,8 +192,8 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 
 /// Returns the range of values to plot, which shows a stack while it stands and as it collapses.
 ///
-/// Falling bodies leave the plot, as in the histories of the paper. Returns `None` if there is no
-/// collapse; all values are then shown.
+/// Falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán (2008). Returns `None` if
+/// there is no collapse; all values are then shown.
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     standing_until(run.fates.collapse_time()?, series)
 }

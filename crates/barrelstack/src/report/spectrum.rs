@@ -21,7 +21,7 @@ struct Rocking {
 }
 
 impl Rocking {
-    /// Returns the rocking of a run; `None` for a free scene, or if the top did not drift.
+    /// Returns the measured rocking of a run; `None` for a free scene, or if the top did not drift.
     fn of(run: &Run) -> Option<Self> {
         let block = RigidBlock::of(&run.assembly, run.scenario.run.gravity)?;
         let mut drift = drift(run).filter(|drift| drift.largest > 0.0)?;
@@ -47,7 +47,7 @@ impl Rocking {
     }
 }
 
-/// Plots the response spectrum and, for a rocking stack, its periods.
+/// Plots the response spectrum and, for a rocking stack, the rocking periods.
 pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
     let rocking = Rocking::of(run);
     let mut blocks = Vec::new();

@@ -6,10 +6,9 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Plot, Series, Table, signifi
 use crate::variants::words::percent;
 use crate::variants::{Spread, Unknown};
 
-/// Returns a table of the uncertain constants for each plane, and a figure of the share of collapses
-/// as a function of the most influential constant. Planes without a known range are omitted. Each
-/// spread is given with the words for its plane, such as "along the barrels", which are empty in
-/// space.
+/// Returns a table of the uncertain constants for each plane, and a figure of the share of collapses as a function of
+/// the most influential constant. Planes without a known range are omitted. Each spread is given with the words for its
+/// plane, such as "along the barrels"; the words are empty for a three-dimensional model.
 pub fn unknowns(planes: &[(&str, &Spread)]) -> Vec<Block> {
     let known: Vec<&(&str, &Spread)> =
         planes.iter().filter(|(_, spread)| spread.range.is_some()).collect();

@@ -226,7 +226,7 @@ fn shown(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// Prefixes a sentence with introductory words, and lowers its first letter.
+/// Puts introductory words before a sentence, and begins the sentence with a lower-case letter.
 fn behind(begin: &str, sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().filter(|_| !begin.is_empty());

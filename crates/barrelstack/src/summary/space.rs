@@ -1,4 +1,4 @@
-//! Summary of a run in space: a JSON document, with directions.
+//! Summary of a three-dimensional run: a JSON document, with directions.
 
 use barrelstack_report::described;
 
@@ -9,8 +9,8 @@ use crate::variants::{Remedy, Spread};
 use crate::verify::Verification;
 
 described! {
-    /// The summary of a run in space. Lengths are in m, times in s, angles in rad; `x` is across the barrels, `y` along
-    /// the barrels, `z` up. A value is null where an event did not happen or does not apply.
+    /// The summary of a three-dimensional run. Lengths are in m, times in s, angles in rad; `x` is across the barrels,
+    /// `y` along the barrels, `z` up. A value is null where an event did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct SummaryInSpace {
         /// Name and version of this layout.
@@ -42,11 +42,11 @@ described! {
         pub devices: Devices,
         /// The energy balance; null where the numbers are no longer finite.
         pub energy: Option<EnergyBalance>,
-        /// The horizontal component of the ground motion that the scenario names, and the vertical component.
+        /// The vertical component of the ground motion, and the horizontal component that the scenario names.
         pub motion: Option<MotionSummary>,
         /// The other horizontal component of the ground motion; null where the motion has only one.
         pub other_component: Option<MotionSummary>,
-        /// Settings and work of the computation.
+        /// Settings of the computation, and the amount of work that it took.
         pub run: RunInSpace,
         /// Warnings.
         pub warnings: Vec<String>,
@@ -79,17 +79,17 @@ described! {
         pub debris_near: u32,
     }
 
-    /// Outcome of a run in space.
+    /// Outcome of a three-dimensional run.
     #[derive(Clone, Debug, Default)]
     pub struct OutcomeInSpace {
-        /// The outcome, as that of a run in a plane.
+        /// The outcome, with the same fields as for a run in a plane.
         #[serde(flatten)]
         pub common: OutcomeSummary,
         /// Direction in which the first body left its seat.
         pub heading: Option<&'static str> ["right", "left", "away", "near"],
     }
 
-    /// One body in space.
+    /// One body of a three-dimensional run.
     #[derive(Clone, Debug)]
     pub struct BodyInSpace {
         /// Name of the body.
@@ -143,7 +143,7 @@ described! {
         pub mean_stress_amplification: Option<f64> as "1",
     }
 
-    /// Settings and work of the computation.
+    /// Settings of the computation, and the amount of work that it took.
     #[derive(Clone, Debug)]
     pub struct RunInSpace {
         /// Integration method.
@@ -168,8 +168,8 @@ described! {
 }
 
 impl Directions {
-    /// Returns the number of variants whose first body leaves its seat across the barrels, and the number of those
-    /// whose first body leaves it along the barrels.
+    /// Returns two numbers of variants: those in which the first body leaves its seat across the barrels, and those in
+    /// which it does so along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }

@@ -9,7 +9,7 @@ use super::words::percent;
 use crate::scenario::title::{counted, number};
 
 impl Remedy {
-    /// Describes the remedy, or states that no change that was tried suffices.
+    /// Describes the remedy, or states that no tried change suffices.
     pub fn sentence(&self) -> String {
         let any = |kind: &str| self.tried.iter().any(|one| one.kind == kind);
         let straps = self.pretensions();
@@ -64,9 +64,9 @@ impl Remedy {
         format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
     }
 
-    /// States, for each sufficient change, the range over the uncertain constants of the share that falls. For two
-    /// changes, also states in which share of the draws of these constants fewer stacks fall with the better change.
-    /// Returns an empty text if a range is unknown.
+    /// States, for each sufficient change, the range of the share that falls as the uncertain constants vary. If two
+    /// changes suffice, also states in which share of the random draws of these constants fewer stacks fall with the
+    /// better change. Returns an empty text if a range is unknown.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
@@ -176,8 +176,8 @@ impl Remedy {
         )
     }
 
-    /// Tabulates every change that was tried; `in_planes` selects the wording for planes rather
-    /// than for space.
+    /// Tabulates every change that was tried; `in_planes` selects the wording for planes instead of that for three
+    /// dimensions.
     pub fn table(&self, in_planes: bool) -> Table {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };

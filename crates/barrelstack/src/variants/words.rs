@@ -21,7 +21,7 @@ const STANDS: f64 = 0.05;
 /// to 35 % of such stacks may still fall.
 pub const ENOUGH: u32 = 8;
 
-/// Verdict on a stack in one plane or in space, ordered from best to worst.
+/// Verdict on a stack in one plane or in three dimensions; verdicts are ordered from best to worst.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Judgment {
     Stands,
@@ -77,7 +77,7 @@ impl Judgment {
     }
 }
 
-/// Statistics of variants, with their plane, which is `None` in space.
+/// Plane and statistics of variants; the plane is `None` for a three-dimensional model.
 type Placed<'a> = (Option<View>, &'a Spread);
 
 /// Returns the answer for one plane or for both; of two planes, the plane across the barrels is
@@ -88,7 +88,7 @@ pub fn headline(planes: &[(View, &Spread)]) -> String {
     answer(&placed)
 }
 
-/// Returns the answer for a stack in space.
+/// Returns the answer for a three-dimensional model of a stack.
 pub fn headline_in_space(spread: &Spread) -> String {
     answer(&[(None, spread)])
 }
@@ -155,15 +155,15 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     )))
 }
 
-/// Returns the outcomes of the variants in each plane, for one dot each on paper; the plane with
-/// the largest share of collapses comes first, as in the headline.
+/// Returns the outcomes of the variants in each plane, to be drawn as one dot for each variant; the plane with the
+/// largest share of collapses comes first, as in the headline.
 pub fn dots(planes: &[(View, &Spread)]) -> Vec<Dots> {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
     worst_first(&placed).into_iter().map(|(view, spread)| dots_of(view, spread)).collect()
 }
 
-/// Returns the outcomes of the variants in one plane, or in space without a plane.
+/// Returns the outcomes of the variants in one plane or, if `view` is `None`, in three dimensions.
 pub fn dots_of(view: Option<View>, spread: &Spread) -> Dots {
     Dots {
         direction: view.map(|view| view.words().to_owned()).unwrap_or_default(),
@@ -364,8 +364,8 @@ fn tenths(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
-/// Formats a share in whole percent; a share near 0 or 100 % gets one significant digit of the
-/// remainder: "0.3 %", "99.7 %".
+/// Formats a share in whole percent; a share near 0 or 100 % has as many decimals as its distance from 0 or 100 % needs
+/// for one significant digit: "0.3 %", "99.7 %".
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rest = percent.min(100.0 - percent);

@@ -6,8 +6,7 @@ use crate::variants::{ShareAt, Spread};
 /// Largest width of the range of shares for which the sentence states that the uncertain constants matter little.
 const NARROW: f64 = 0.1;
 
-/// Smallest amount by which the share at the median lies outside the shares at both ends for the sentence to state it,
-/// too.
+/// Distance beyond the shares at both ends of a constant from which the sentence also states the share at its median.
 const BEYOND: f64 = 0.1;
 
 /// Describes the range of the share over the uncertain constants, and the decisive constant, such as
