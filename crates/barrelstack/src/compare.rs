@@ -55,8 +55,8 @@ pub struct Side {
     /// Results in the plane that is not shown, if the scenario has both planes.
     pub other: Option<OtherPlane>,
     /// Verdicts of the variants in each plane (the shown plane first) or in three dimensions. Each entry has the name
-    /// of the plane and, in the order of the variant numbers, `true` for a variant that collapses; `None` for a variant
-    /// without a verdict.
+    /// of the plane and one verdict per variant, in the order of the variant numbers: `true` if the variant collapses,
+    /// `None` if it has no verdict.
     pub collapsed: Vec<(Option<&'static str>, Vec<Option<bool>>)>,
 }
 

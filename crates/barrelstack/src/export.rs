@@ -37,7 +37,7 @@ const SUMMARY_LIMIT: usize = 256 << 20;
 /// attributed to another program.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
-/// Error of writing output files.
+/// Error while writing output files.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The folder is not empty.

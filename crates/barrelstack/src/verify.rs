@@ -80,7 +80,7 @@ described! {
     }
 }
 
-/// A run that can be repeated, in a plane or in space.
+/// A run that can be repeated, in a plane or in three dimensions.
 pub trait Repeatable: Sized + Send + Sync {
     /// Runs a scenario; the observer receives the progress and may cancel.
     ///

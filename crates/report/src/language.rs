@@ -90,7 +90,7 @@ impl FromStr for Language {
     }
 }
 
-/// Error: a code that is not that of a language of pages.
+/// Error for a code that is not the code of a page language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownLanguage(String);
 

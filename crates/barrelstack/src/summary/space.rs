@@ -59,13 +59,15 @@ described! {
     /// Numbers of variants and barrels that fall in each direction.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Directions {
-        /// Number of variants whose first body leaves its seat to the right (positive x).
+        /// Number of variants in which the first body to leave its seat leaves it to the right (positive x).
         pub first_right: u32,
-        /// Number of variants whose first body leaves its seat to the left (negative x).
+        /// Number of variants in which the first body to leave its seat leaves it to the left (negative x).
         pub first_left: u32,
-        /// Number of variants whose first body leaves its seat along the barrels, away from the viewer (positive y).
+        /// Number of variants in which the first body to leave its seat leaves it along the barrels, away from the
+        /// viewer (positive y).
         pub first_away: u32,
-        /// Number of variants whose first body leaves its seat along the barrels, toward the near side (negative y).
+        /// Number of variants in which the first body to leave its seat leaves it along the barrels, toward the near
+        /// side (negative y).
         pub first_near: u32,
         /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the right.
         pub debris_right: u32,
@@ -168,8 +170,8 @@ described! {
 }
 
 impl Directions {
-    /// Returns two numbers of variants: those in which the first body leaves its seat across the barrels, and those in
-    /// which it does so along the barrels.
+    /// Returns two numbers of variants: those in which the first body to leave its seat leaves it across the barrels,
+    /// and those in which it does so along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }

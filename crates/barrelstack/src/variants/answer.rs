@@ -142,8 +142,7 @@ pub struct Shown {
     pub stopped: Option<Vec<CaseResult>>,
 }
 
-/// Runs all variants of a scenario, then the run to show with all recordings, in one plane or in
-/// both.
+/// Runs all variants of a scenario, and then the run to be shown, with all recordings; in one plane or in both.
 ///
 /// The observer receives the progress and may cancel; a canceled answer has the results obtained so
 /// far.

@@ -307,7 +307,7 @@ pub struct Constant<'a> {
 /// Effect of the uncertain constants on the share of collapses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
-    /// Range of the share over the uncertain constants, with a probability of 95 %.
+    /// Range that contains the share with a probability of 95 % as the uncertain constants vary.
     pub range: [f64; 2],
     /// Share with all constants as stated.
     pub as_stated: f64,

@@ -85,10 +85,10 @@ described! {
         /// correction); the intervals of all changes and planes of the search hold simultaneously
         /// with 95 % confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
-        /// Range of the share of stacks that fail, in the plane in which more do, over the uncertain constants of the
-        /// seats: it contains 95 % of the shares if these constants are drawn from their distributions, sampling error
-        /// included. Null if the share is null, and in all cases in which the range of the unchanged stack would be
-        /// null.
+        /// Range of the share of stacks that fail as the uncertain constants of the seats vary, in the plane in which
+        /// more stacks fail: it contains 95 % of the shares if these constants are drawn from their distributions,
+        /// sampling error included. Null if the share is null, and in all cases in which the range of the unchanged
+        /// stack would be null.
         pub range: Option<[f64; 2]> as "1",
         /// Share of the draws of the uncertain constants in which fewer stacks fail after the change than without it; a
         /// draw with equal shares counts as one half. Each draw applies to all changes. Null if a range is unknown.

@@ -6,8 +6,8 @@ use super::Language;
 const ATTRIBUTES: [&str; 4] = ["aria-label=\"", "title=\"", "placeholder=\"", "alt=\""];
 
 impl Language {
-    /// Translates the texts of markup: those between tags, and labels in attributes. An element with
-    /// `translate="no"` stays.
+    /// Translates the texts of markup: those between tags, and labels in attributes. The texts of an element with
+    /// `translate="no"` stay in English.
     ///
     /// The markup must be well formed, without scripts and style sheets.
     pub fn markup(self, markup: &str) -> String {

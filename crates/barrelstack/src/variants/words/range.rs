@@ -6,7 +6,8 @@ use crate::variants::{ShareAt, Spread};
 /// Largest width of the range of shares for which the sentence states that the uncertain constants matter little.
 const NARROW: f64 = 0.1;
 
-/// Distance beyond the shares at both ends of a constant from which the sentence also states the share at its median.
+/// The sentence also states the share at the median of a constant if this share lies outside the shares at the 5 % and
+/// 95 % fractiles by at least this difference.
 const BEYOND: f64 = 0.1;
 
 /// Describes the range of the share over the uncertain constants, and the decisive constant, such as
