@@ -179,7 +179,7 @@ fn shaking(motion: &MotionSummary) -> String {
 pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     let place =
-        view.map_or_else(|| "The".to_owned(), |view| format!("{} the", capital(view.words())));
+        view.map_or_else(|| "The".to_owned(), |view| format!("{}, the", capital(view.words())));
     let strength = |motion: &MotionSummary| {
         // A run that ends before its motion may miss the peaks of the motion.
         let whole = run.cut().map_or_else(String::new, |_| {
