@@ -135,7 +135,7 @@ impl Folder {
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
                 let theirs = first_in(&self.path);
                 let theirs =
-                    theirs.or((!self.existed).then(|| "what another run writes".to_owned()));
+                    theirs.or((!self.existed).then(|| "the files of another run".to_owned()));
                 match theirs.filter(|_| first) {
                     Some(file) => Err(ExportError::Occupied { folder: self.path.clone(), file }),
                     None => Ok(false),

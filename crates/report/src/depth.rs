@@ -139,7 +139,7 @@ pub struct Depth {
     /// center it follows.
     pub paths: Vec<usize>,
     /// With [`DepthPoses::Free`]: for each frame, contact forces, each as its point (m) and its components (N). A force
-    /// of zero is not drawn. Forces are packed best if a contact keeps its place in the list.
+    /// of zero is not drawn. The packed data are smallest if a contact keeps its place in the list.
     pub forces: Vec<Vec<[Point3; 2]>>,
     /// For each pane of the player, the indices of the axes that point right and up in it; the panes show the forces in
     /// these axes.

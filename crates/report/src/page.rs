@@ -51,7 +51,7 @@ const DEPTH: [&str; 3] = [
 /// Further scripts of a report, which are not part of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
-/// Returns all scripts that may give texts to `t`.
+/// Returns all scripts that may pass texts to the function `t`, which translates them.
 #[cfg(test)]
 pub(crate) fn all_scripts() -> impl Iterator<Item = &'static str> {
     PLAYER.into_iter().chain(DEPTH).chain(REPORT).chain([trial::SCRIPT])

@@ -137,8 +137,8 @@ pub struct Frames {
     pub times: Vec<f64>,
     /// For each frame, the pose of each body in the order of [`Scene::bodies`].
     pub poses: Vec<Vec<Pose2>>,
-    /// For each frame, contact forces; empty if there are no forces. Forces are packed best if a contact has the same
-    /// position in the list of every frame.
+    /// For each frame, contact forces; empty if there are no forces. The packed data are smallest if a contact has the
+    /// same position in the list of every frame.
     pub forces: Vec<Vec<ContactForce>>,
 }
 

@@ -220,7 +220,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     others.iter().enumerate().flat_map(of).collect()
 }
 
-/// Describes the result of the comparison in one sentence or two.
+/// Describes the result of the comparison in one or two sentences.
 fn headline(sides: &[Side]) -> String {
     if let Some(effect) = effect(sides) {
         return by_themselves(sides) + &effect;

@@ -69,7 +69,7 @@ pub struct Rendering {
     pub dpi: f64,
     /// Paper size of the report.
     pub paper: Paper,
-    /// Pictures, and ParaView time steps, per second of the run (1/s).
+    /// Number of pictures, and of ParaView time steps, per second of the run (1/s).
     pub rate: f64,
     /// Time interval (s) to render; `None` for the whole run.
     pub between: Option<[f64; 2]>,

@@ -122,7 +122,7 @@ described! {
         pub orientation: [f64; 4] as "1",
         /// Velocity x, y, z of the center of mass at the end, including the velocity of the ground.
         pub velocity: [f64; 3] as "m/s",
-        /// Spin about x, y, z at the end.
+        /// Angular velocity about x, y, z at the end.
         pub spin: [f64; 3] as "rad/s",
         /// Largest horizontal displacement relative to the ground before the first loss of seat.
         pub peak_displacement: f64 as "m",

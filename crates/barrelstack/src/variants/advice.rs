@@ -165,7 +165,7 @@ impl Remedy {
         let limit = mark(1.0 - self.required_share, "limit");
         Figure::new(
             "remedy",
-            "Share of the variants that fall after each change, in the direction in which more fall. All changes are tried with the same variants.",
+            "Share of the variants that fall after each change, for the direction of shaking in which more fall. All changes are tried with the same variants.",
             Plot {
                 x: Axis { range: Some([-2.0, 102.0]), ..Axis::new("variants that fall", "%") },
                 y: Axis::named(self.tried.iter().map(name).collect()),

@@ -63,7 +63,7 @@ fn tag(tag: &str, new: &mut dyn FnMut(&str) -> String) -> String {
     out
 }
 
-/// Returns the texts that a script gives to its function `t`, as first argument in double quotes.
+/// Returns the texts that a script passes to its function `t`, as first argument in double quotes.
 pub(crate) fn texts_of_script(script: &str) -> impl Iterator<Item = &str> {
     script.match_indices("t(\"").filter_map(|(at, opening)| {
         let before = script[..at].chars().next_back();
