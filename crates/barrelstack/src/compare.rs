@@ -23,7 +23,7 @@ pub use page::document;
 pub use paired::Paired;
 pub use tables::inputs;
 
-/// One run of a comparison, in a plane or in space.
+/// One run of a comparison, in a plane or in three dimensions.
 #[derive(Clone, Debug)]
 pub struct Side {
     /// Name of the run, short enough for a column heading.
@@ -34,7 +34,7 @@ pub struct Side {
     pub stated: Scenario,
     /// The scenario that was run; it may be a variant of the stated scenario.
     pub scenario: Scenario,
-    /// The plane of the run; `None` in space and for a free scene.
+    /// The plane of the run; `None` for a three-dimensional model and for a free scene.
     pub view: Option<View>,
     /// Outcome of the run.
     pub outcome: Outcome,
@@ -54,8 +54,9 @@ pub struct Side {
     pub provenance: Vec<(String, String)>,
     /// Results in the plane that is not shown, if the scenario has both planes.
     pub other: Option<OtherPlane>,
-    /// For each plane (the shown plane first) or for space, by name: `true` for each variant that collapses, in the
-    /// order of the variant numbers; `None` for a variant without a verdict.
+    /// Verdicts of the variants in each plane (the shown plane first) or in three dimensions. Each entry has the name
+    /// of the plane and one verdict per variant, in the order of the variant numbers: `true` if the variant collapses,
+    /// `None` if it has no verdict.
     pub collapsed: Vec<(Option<&'static str>, Vec<Option<bool>>)>,
 }
 
@@ -64,21 +65,21 @@ pub struct Side {
 pub enum Traced {
     /// Displacement (cm) of the top left barrel in the plane of the model, relative to the ground.
     Top,
-    /// Displacement (cm) of the top left barrel in space, across the barrels.
+    /// Displacement (cm) of the top left barrel of a three-dimensional model, across the barrels.
     TopAcross,
-    /// Displacement (cm) of the top left barrel in space, along the barrels.
+    /// Displacement (cm) of the top left barrel of a three-dimensional model, along the barrels.
     TopAlong,
     /// Slip (cm) of the bottom rack in the plane of the model.
     Base,
-    /// Slip (cm) of the bottom rack in space, across the barrels.
+    /// Slip (cm) of the bottom rack of a three-dimensional model, across the barrels.
     BaseAcross,
-    /// Slip (cm) of the bottom rack in space, along the barrels.
+    /// Slip (cm) of the bottom rack of a three-dimensional model, along the barrels.
     BaseAlong,
     /// Vertical force (kN) between the bottom rack and the ground.
     BaseForce,
 }
 
-/// Results of a scenario that can be compared: in planes or in space.
+/// Results of a scenario that can be compared: in planes or in three dimensions.
 pub trait Comparable: Sized {
     /// Returns the scenario.
     fn scenario(&self) -> &Scenario;
@@ -86,7 +87,7 @@ pub trait Comparable: Sized {
     /// Returns the number of the shown variant.
     fn variant(&self) -> u32;
 
-    /// Returns the results of all variants, in each plane or in space; `None` where no variants were run.
+    /// Returns the results of all variants, in each plane or in three dimensions; `None` where no variants were run.
     fn results(&self) -> Vec<Option<Vec<CaseResult>>>;
 
     /// Runs another variant, and returns the results with that variant shown; the observer receives the progress and
@@ -100,11 +101,11 @@ pub trait Comparable: Sized {
         observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<Self, RunFailure>;
 
-    /// Returns the largest share of variants that collapse over all planes (for a single run, 0 or 1), and its plane;
-    /// the plane is `None` in space and for a free scene.
+    /// Returns the share of variants that collapse (for a single run, 0 or 1) in the plane in which it is largest, and
+    /// this plane. The plane is `None` for a three-dimensional model and for a free scene.
     fn worst(&self) -> (f64, Option<View>);
 
-    /// Returns a side of a comparison, shown in a plane if the scenario has it.
+    /// Returns these results as one side of a comparison, shown in the given plane if the scenario has it.
     fn side(self, name: String, plane: Option<View>) -> Side;
 }
 
@@ -242,7 +243,7 @@ impl Side {
         }
     }
 
-    /// `true` for a run in space.
+    /// `true` for a run of a three-dimensional model.
     fn is_spatial(&self) -> bool {
         matches!(self.summary, AnySummary::Spatial(_))
     }
@@ -364,7 +365,7 @@ pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec
     differing(&scenarios.into_iter().map(Scenario::settings).collect::<Vec<_>>())
 }
 
-/// Returns the inputs that differ between runs, each given by all its settings, in the order of the settings.
+/// Returns the inputs that differ between runs, in the order of the settings; `all` holds all settings of each run.
 pub fn differing(all: &[Vec<Setting>]) -> Vec<Difference> {
     let mut list: Vec<Difference> = Vec::new();
     for setting in all.iter().flatten() {

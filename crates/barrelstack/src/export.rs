@@ -37,7 +37,7 @@ const SUMMARY_LIMIT: usize = 256 << 20;
 /// attributed to another program.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
-/// Error of writing output files.
+/// Error while writing output files.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The folder is not empty.
@@ -135,7 +135,7 @@ impl Folder {
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
                 let theirs = first_in(&self.path);
                 let theirs =
-                    theirs.or((!self.existed).then(|| "what another run writes".to_owned()));
+                    theirs.or((!self.existed).then(|| "the files of another run".to_owned()));
                 match theirs.filter(|_| first) {
                     Some(file) => Err(ExportError::Occupied { folder: self.path.clone(), file }),
                     None => Ok(false),
@@ -314,9 +314,8 @@ pub fn files(answer: &Answer, language: Language) -> Result<Vec<(String, Vec<u8>
     Ok(files)
 }
 
-/// Returns the start data of a page that contains the program: the scenario as text, and its
-/// records in base64, under their file names without folders, so that the page does not depend on
-/// paths.
+/// Returns the start data of a page that contains the program: the scenario as text, and its records in base64. Records
+/// are named by their file names without folders, so that the page does not depend on paths.
 fn start_of(scenario: &Scenario) -> Value {
     let mut packed = scenario.clone();
     let mut records = Vec::new();

@@ -27,17 +27,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Scenario`] is read from text, from a file or from the scenarios shipped with the program; it
-//! runs under its own motion ([`Scenario::run`]), under a given [`Record`]
-//! ([`Scenario::with_record`]) or on any [`Ground`] ([`Scenario::run_on`]). Nothing needs a file:
-//! records come as bytes ([`Scenario::with_records`]) or samples ([`Record::of_samples`]).
-//! [`variants::answer`] judges a stack by the share of its variants that falls, as the command
-//! does. Many cases run together as an [`Ensemble`], whose results form one
-//! [table](ensemble::table); the `Study` of `barrelstack-campaign` runs ensembles. `examples/` has
-//! a stack, a record, a free scene and an ensemble in about ten lines each; the examples of
-//! [`dynamics`] include user-defined force elements.
+//! A [`Scenario`] is read from text, from a file or from the scenarios shipped with the program; it runs under its own
+//! motion ([`Scenario::run`]), under a given [`Record`] ([`Scenario::with_record`]) or on any [`Ground`]
+//! ([`Scenario::run_on`]). No file is needed: records can be given as bytes ([`Scenario::with_records`]) or samples
+//! ([`Record::of_samples`]). [`variants::answer`] judges a stack by the share of its variants that falls, as the
+//! command-line program does. Many cases run together as an [`Ensemble`], whose results form one
+//! [table](ensemble::table); the `Study` of `barrelstack-campaign` runs ensembles. `examples/` has a stack, a record, a
+//! free scene and an ensemble in about ten lines each; the examples of [`dynamics`] include user-defined force
+//! elements.
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results have the same bits on every machine, so the transcendental functions are those of this project
+// (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod breakage;

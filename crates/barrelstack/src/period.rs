@@ -11,8 +11,8 @@ use crate::run::Run;
 pub struct RigidBlock {
     /// Distance (m) from the edge about which the block rocks to its center of mass.
     pub radius: f64,
-    /// Angle (rad) between that radius and the vertical at rest; the block overturns if it tilts by
-    /// more than this angle.
+    /// Angle (rad) at rest between the vertical and the line from the edge about which the block rocks to its center of
+    /// mass; the block overturns if it tilts by more than this angle.
     pub slenderness: f64,
     /// Frequency parameter `p` (1/s): `p² = m g R / I`, with `I` about the edge.
     pub frequency: f64,

@@ -22,7 +22,7 @@ const DIGITS: usize = 15;
 
 /// Returns a workbook (ECMA-376) with a sheet for each table, given with its name and its text as CSV.
 ///
-/// The first row of a sheet is the heading of the table, and stays in view when the sheet is scrolled. If a column
+/// The first row of a sheet is the header row of the table, and stays in view when the sheet is scrolled. If a column
 /// contains only numbers, its cells are written as numbers; all other cells are written as text, which keeps
 /// identifiers such as the station `058` or a fingerprint unchanged. No text becomes a formula. A text that is longer
 /// than a cell can hold is cut.

@@ -63,9 +63,9 @@ described! {
         pub period: Option<f64> as "s",
         /// Tilt of the floor at which the stack fails; null if it still stands at 45°.
         pub tilt: Option<f64> as "rad",
-        /// Name of the body that fails first at that tilt.
+        /// Name of the body that fails first at the tilt `tilt`.
         pub body: Option<String>,
-        /// Failure mode of that body.
+        /// Failure mode of the body that fails first.
         pub failure: Option<&'static str> ["slides", "tips", "is displaced"],
     }
 }

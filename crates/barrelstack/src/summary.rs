@@ -70,8 +70,8 @@ described! {
         pub other_plane: Option<Box<Summary>> = None,
     }
 
-    /// Progress of runs that were stopped early, counted over the nominal case and all variants in
-    /// all planes. Runs that collapse end first, so the finished runs are not a fair sample.
+    /// Progress of runs that were stopped early, counted over the nominal case and all variants in all planes. Runs
+    /// that collapse end first, so the finished runs are a biased sample.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct Unfinished {
         /// Number of finished runs.
@@ -159,9 +159,8 @@ described! {
         pub stress_amplification_whole_run: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification_whole_run),
     }
 
-    /// The force between two bodies, as it acts on the upper body, or on the body named first if
-    /// neither rests on the other. Largest forces are those with the largest magnitude in any step;
-    /// in a plane they have a sign.
+    /// The force between two bodies, as it acts on the upper body, or on the body named first if neither rests on the
+    /// other. Largest forces are those of largest magnitude over all steps; those of a planar model are signed.
     #[derive(Clone, Debug)]
     pub struct JointSummary {
         /// Names of the bodies, such as "R1 on ground", or "R1.1 against R1.2" for bodies that
@@ -236,7 +235,8 @@ described! {
         pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"] = run.ending.name(),
         /// True if the user stopped the run early.
         pub interrupted: bool = run.interrupted,
-        /// Basis of the contact constants.
+        /// Unit for which the contact constants are stated: a seat, a contact node or a length of boundary; "mixed" if
+        /// it differs between contacts.
         pub stiffness_basis: &'static str ["seat", "node", "length", "mixed"] = run.stiffness_basis(),
         /// Length scale of similitude.
         pub similitude: f64 as "1" = run.scenario.run.similitude,
@@ -337,13 +337,13 @@ impl OutcomeSummary {
     }
 }
 
-/// The summary of a run in a plane or in space.
+/// The summary of a run in a plane or in three dimensions.
 #[derive(Clone, Debug, serde::Serialize)]
 #[serde(untagged)]
 pub enum AnySummary {
     /// Summary of a run in a plane.
     Planar(Box<Summary>),
-    /// Summary of a run in space.
+    /// Summary of a three-dimensional run.
     Spatial(Box<SummaryInSpace>),
 }
 

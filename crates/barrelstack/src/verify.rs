@@ -23,8 +23,7 @@ use barrelstack_dynamics::Simulation;
 
 pub use robust::Robust;
 
-/// Distance (m at full scale) between the positions of a body in two runs above which the two runs
-/// count as diverged.
+/// Distance (m at full scale) beyond which the positions of a body in two runs count as diverged.
 pub const APART: f64 = 0.01;
 
 /// Largest initial displacement (m at full scale) of a body in a perturbed repeat.
@@ -38,8 +37,7 @@ described! {
     /// run.
     #[derive(Clone, Debug)]
     pub struct Verification {
-        /// Distance between the positions of a body in two runs above which the two runs count as
-        /// diverged.
+        /// Distance beyond which the positions of a body in two runs count as diverged.
         pub apart: f64 as "m",
         /// Time until which every body in every repeat stays within the distance `apart` of its
         /// position in the run; null if this holds to the end.
@@ -82,7 +80,7 @@ described! {
     }
 }
 
-/// A run that can be repeated, in a plane or in space.
+/// A run that can be repeated, in a plane or in three dimensions.
 pub trait Repeatable: Sized + Send + Sync {
     /// Runs a scenario; the observer receives the progress and may cancel.
     ///

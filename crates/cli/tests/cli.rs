@@ -345,7 +345,7 @@ fn a_free_scene_is_not_judged() {
 #[test]
 fn variants_are_listed_counted_and_shown_by_their_number() {
     let text = stdout(&barrelstack(SHORT));
-    let headline = "  Falls. Shaken across the barrels all 4 variants fall (at least 51 %). The first seat is lost between ";
+    let headline = "  Falls. Shaken across the barrels, all 4 variants fall (at least 51 %). The first seat is lost between ";
     assert!(text.contains("; no barrel falls within 0.1 s of that.\n"), "{text}");
     assert!(text.contains(headline), "{text}");
     assert!(text.contains("variants                4 of 4 collapse, 95 % interval "), "{text}");

@@ -8,7 +8,7 @@ use crate::{
     player_data::events,
 };
 
-/// Quantum of the points of forces (m): two millimeters, which is too little to be visible.
+/// Quantum of the points of action of forces (m): two millimeters, which is too little to be visible.
 const POINT_QUANTUM: f64 = 1.0 / 512.0;
 
 /// Quantum of forces as a multiple of 2⁻¹⁶ of the largest component.
@@ -139,7 +139,7 @@ pub struct Depth {
     /// center it follows.
     pub paths: Vec<usize>,
     /// With [`DepthPoses::Free`]: for each frame, contact forces, each as its point (m) and its components (N). A force
-    /// of zero is not drawn. Forces pack best if a contact keeps its place in the list.
+    /// of zero is not drawn. The packed data are smallest if a contact keeps its place in the list.
     pub forces: Vec<Vec<[Point3; 2]>>,
     /// For each pane of the player, the indices of the axes that point right and up in it; the panes show the forces in
     /// these axes.

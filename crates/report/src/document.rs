@@ -44,7 +44,7 @@ impl Document {
 pub(crate) const SCOPE: &str = "This page states what a model computes from the inputs that it lists. It does not replace the \
                          judgment of an engineer who has inspected the stack, its racks and its floor.";
 
-/// Lines to fill in by hand after the provenance.
+/// Labels of the lines after the provenance that are filled in by hand.
 pub(crate) const SIGNATURE: [&str; 4] = ["project", "prepared by", "checked by", "date"];
 
 /// A technical term.

@@ -5,10 +5,10 @@ use crate::{
     drawing::{Drawing, Item},
 };
 
-/// Outcomes of the variants in one plane or in space, drawn below the headline as one dot for each variant.
+/// Outcomes of the variants in one plane or in three dimensions, drawn below the headline as one dot for each variant.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dots {
-    /// Direction of the shaking, such as "along the barrels"; empty in space.
+    /// Direction of the shaking, such as "along the barrels"; empty for a three-dimensional model.
     pub direction: String,
     /// Number of variants that fall.
     pub fell: u32,

@@ -1,4 +1,4 @@
-//! A floor plan: regions from above, with labels, and shares by cell as shades.
+//! A floor plan: labeled regions viewed from above, and the share of each cell as a shade.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ pub struct FloorPlan {
     pub size: [f64; 2],
     /// Regions, drawn in this order.
     pub regions: Vec<Region>,
-    /// Shades under the regions that stand on the floor.
+    /// Shares of the cells of the floor, drawn as shades under the regions.
     pub heat: Option<Heat>,
     /// Points with their names.
     pub marks: Vec<(Point, String)>,
@@ -32,7 +32,7 @@ pub struct Region {
     pub label: String,
 }
 
-/// Shares of square cells.
+/// A share for each square cell of a floor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heat {
     /// Side (m) of a cell; the first cell is at the origin.
@@ -60,7 +60,7 @@ macro_rules! kinds {
                 match self { $(Self::$kind => concat!("plan ", $class)),* }
             }
 
-            /// Letter of the region in a terminal of plain characters.
+            /// Character that fills the region in a terminal with ASCII characters only.
             fn letter(self) -> char {
                 match self { $(Self::$kind => $letter),* }
             }
@@ -78,17 +78,17 @@ kinds! {
     Zone "zone" '.' "aisle";
     /// An opening in the edge of the floor.
     Door "door" 'D' "door";
-    /// Something solid.
+    /// A solid obstacle, such as a wall or a column.
     Solid "solid" 'X' "wall or column";
-    /// Something that stands.
+    /// An object that stands.
     Stands "stands" '#' "stack";
-    /// Something that falls by itself.
+    /// An object that falls by itself.
     Falls "falls" 'F' "falls by itself";
-    /// Something that is knocked over.
+    /// An object that is knocked over.
     Knocked "knocked" 'K' "is knocked over";
-    /// Something that lies on the floor from the start.
+    /// An object that lies on the floor from the start.
     Down "floor" 'O' "had fallen before";
-    /// Something that is wrongly placed.
+    /// An object in a wrong place.
     Wrong "wrong" '!' "wrongly placed";
 }
 
@@ -159,7 +159,7 @@ impl FloorPlan {
         drawing
     }
 
-    /// Draws the cells with a share, in steps.
+    /// Draws each cell that has a nonzero share, in the shade of this share.
     fn shades(&self, drawing: &mut Drawing, at: &dyn Fn(Point) -> [f64; 2], scale: f64) {
         let Some(heat) = self.heat.as_ref().filter(|heat| heat.columns > 0) else { return };
         let side = heat.cell * scale;

@@ -90,7 +90,8 @@ pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Largest length (bytes) of the end of a word, with its punctuation, that is kept on the line of a marked term.
+/// Maximum length (bytes) of a word ending with its punctuation that is kept on the same line as the marked term before
+/// it.
 const MOST_JOINED: usize = 4;
 
 /// Finds the first occurrence of `word` or its plural, as a whole word, in `text`; the parts of a key such as

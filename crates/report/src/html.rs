@@ -141,7 +141,7 @@ impl<'a> Writer<'a> {
         self.document.language.fixed(english)
     }
 
-    /// Returns the word before a number with the number, such as "Figure 3".
+    /// Returns a word and a number, such as "Figure 3".
     fn numbered(&self, word: &'static str, number: usize) -> String {
         format!("{} {number}", self.t(word))
     }

@@ -72,7 +72,7 @@ impl Language {
         self.catalog().and_then(|catalog| catalog.entry(english)).unwrap_or(english)
     }
 
-    /// Returns the entries for the texts that scripts give to their function `t`.
+    /// Returns the entries for the texts that scripts pass to their function `t`.
     pub(crate) fn entries(self, scripts: &[&str]) -> HashMap<String, String> {
         let Some(catalog) = self.catalog() else { return HashMap::new() };
         let translator = Translator::new(catalog);
@@ -90,7 +90,7 @@ impl FromStr for Language {
     }
 }
 
-/// Error: a code that is not that of a language of pages.
+/// Error for a code that is not the code of a page language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownLanguage(String);
 
@@ -127,7 +127,7 @@ struct Translator {
     known: RefCell<HashMap<String, Translated>>,
 }
 
-/// Deepest nesting of phrases.
+/// Maximum depth of nested phrases.
 const DEEPEST: usize = 8;
 
 /// Largest number of matches of a text with one template that are compared.
@@ -336,7 +336,7 @@ fn flipped(text: &str) -> Option<String> {
     Some(other + rest.as_str())
 }
 
-/// Gives a translation the case of the original.
+/// Gives a translation the letter case of the original.
 fn flipped_back(translation: &str, original: &str) -> String {
     let upper = original.starts_with(char::is_uppercase);
     let mut rest = translation.chars();

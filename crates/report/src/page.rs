@@ -51,7 +51,7 @@ const DEPTH: [&str; 3] = [
 /// Further scripts of a report, which are not part of the player.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
-/// Returns all scripts that may give texts to `t`.
+/// Returns all scripts that may pass texts to the function `t`, which translates them.
 #[cfg(test)]
 pub(crate) fn all_scripts() -> impl Iterator<Item = &'static str> {
     PLAYER.into_iter().chain(DEPTH).chain(REPORT).chain([trial::SCRIPT])
@@ -77,7 +77,7 @@ pub(crate) struct Payload {
 }
 
 impl Payload {
-    /// Adds a live plot and returns its index.
+    /// Adds an interactive plot and returns its index.
     pub(crate) fn add_plot(&mut self, id: &str, plot: &Plot) -> usize {
         let series: Vec<Value> = plot
             .series
@@ -297,7 +297,7 @@ impl Shell<'_> {
     }
 }
 
-/// Holds the translations of the texts of scripts; none for English.
+/// Writes the translations of the texts of scripts into the page; nothing for English.
 fn hold_entries(out: &mut String, language: Language, scripts: &[&str]) {
     let entries = language.entries(scripts);
     if !entries.is_empty() {

@@ -448,7 +448,7 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));
     }
 
-    /// Writes the rows of a table, repeating the heading row on every page.
+    /// Writes the rows of a table, repeating the header row on every page.
     fn rows(&mut self, sheet: &Sheet) {
         self.tagged(StructRole::Table, None, |flow| flow.tagged_rows(sheet));
         self.y += GAP + 2.0;

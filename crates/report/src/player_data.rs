@@ -53,7 +53,7 @@ fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
         .map(|(at, _)| at)
 }
 
-/// Lead time (s) before strong ground motion at which the player starts.
+/// Time (s) by which the start of the player precedes the strong ground motion.
 const LEAD_IN: f64 = 1.0;
 
 /// Fraction of the peak of a history above which the ground motion counts as strong.

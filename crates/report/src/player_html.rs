@@ -11,8 +11,8 @@ use crate::{
 /// Number of events that are shown while the list is collapsed.
 const OPEN_EVENTS: usize = 4;
 
-/// Length (bytes) of a verdict that is shown whole above its pane; the sentences that follow the
-/// opening of a longer verdict are shown below the player.
+/// Maximum length (bytes) of a verdict that is shown whole above its pane. Of a longer verdict, only the opening is
+/// shown there; the remaining sentences follow below the player.
 const PANE_VERDICT: usize = 120;
 
 /// Markup of the controls, with a placeholder for the stages.

@@ -137,8 +137,8 @@ pub struct Frames {
     pub times: Vec<f64>,
     /// For each frame, the pose of each body in the order of [`Scene::bodies`].
     pub poses: Vec<Vec<Pose2>>,
-    /// For each frame, contact forces; empty if there are no forces. Forces pack best if a contact
-    /// has the same position in the list of every frame.
+    /// For each frame, contact forces; empty if there are no forces. The packed data are smallest if a contact has the
+    /// same position in the list of every frame.
     pub forces: Vec<Vec<ContactForce>>,
 }
 
@@ -216,7 +216,7 @@ impl EventKind {
 pub struct Event {
     /// Time (s).
     pub time: f64,
-    /// Index in [`Scene::bodies`] of the body to which it applies.
+    /// Index in [`Scene::bodies`] of the body that the event concerns.
     pub body: Option<usize>,
     /// Kind.
     pub kind: EventKind,
@@ -253,7 +253,7 @@ pub struct Tie {
 pub struct Moment {
     /// Time (s).
     pub time: f64,
-    /// Index in [`Scene::bodies`] of the body to which it applies.
+    /// Index in [`Scene::bodies`] of the body that the description names.
     pub body: usize,
     /// Description, such as "here rack R3 leaves its seat".
     pub text: String,

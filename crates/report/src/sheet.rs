@@ -50,7 +50,7 @@ impl Sheet {
         self.rows.len()
     }
 
-    /// Returns the lines of every cell of the heading row; `None` if there is no heading.
+    /// Returns the lines of every cell of the header row; `None` if there is no header row.
     pub(crate) fn head(&self) -> Option<Vec<Vec<String>>> {
         (!self.head.is_empty()).then(|| self.broken(true, &self.head))
     }

@@ -9,7 +9,8 @@ use crate::{Document, Language};
 /// Neither belongs to a document, so that equal results give equal documents and fingerprints.
 #[derive(Clone, Debug)]
 pub struct Stamp {
-    /// Returns the date of a page that is written now, such as "2026-11-27 (UTC)"; not stated if empty.
+    /// Returns the date of a page that is written now, such as "2026-11-27 (UTC)"; if the result is empty, no date is
+    /// stated.
     pub date: fn() -> String,
     /// Commit of the program; not stated if empty.
     pub commit: String,
@@ -31,7 +32,7 @@ pub(crate) fn provenance(document: &Document) -> Vec<(String, String)> {
     stamped(&document.provenance, STAMP.get(), document.language)
 }
 
-/// Adds the stamp to pairs in a language.
+/// Adds the stamp to the pairs of the provenance, in a language.
 fn stamped(
     pairs: &[(String, String)],
     stamp: Option<&Stamp>,

@@ -133,7 +133,7 @@ impl Table {
         Self { rows: things.into_iter().map(row).collect(), ..Self::new(caption, &heads) }
     }
 
-    /// Writes the table as lines of text: a heading line with units, then every row, with aligned columns.
+    /// Writes the table as lines of text: a header row with units, then every row, with aligned columns.
     pub fn to_lines(&self) -> Vec<String> {
         let heads = self.columns.iter().map(Column::heading).collect();
         let row = |row: &Vec<Cell>| {
@@ -152,7 +152,7 @@ impl Table {
         rows.iter().map(line).collect()
     }
 
-    /// Writes the table as CSV: a heading line with units, then every row at full precision.
+    /// Writes the table as CSV: a header row with units, then every row at full precision.
     pub fn to_csv(&self) -> String {
         let mut out = String::new();
         let header: Vec<_> = self.columns.iter().map(|c| csv_field(&c.heading())).collect();

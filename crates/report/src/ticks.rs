@@ -11,7 +11,7 @@ pub struct Ticks {
     pub labels: Vec<String>,
 }
 
-/// Returns about `target` linear ticks at most, inside `[low, high]`.
+/// Returns linear ticks inside `[low, high]`, with at most `target` intervals.
 ///
 /// The step is the smallest of 1, 2, 5 × 10ⁿ that gives no more than `target` intervals.
 /// An empty, reversed or infinite range gives no ticks.

@@ -164,7 +164,7 @@ impl Mesh {
     }
 }
 
-/// Returns a point of the plane of the scene in space.
+/// Returns the three coordinates of a point of the plane of the scene.
 fn in_space([x, z]: &Point) -> [f64; 3] {
     [*x, 0.0, *z]
 }

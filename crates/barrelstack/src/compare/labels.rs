@@ -93,7 +93,7 @@ fn topic(path: &str) -> Topic {
     }
 }
 
-/// Describes the straps of a run by those of their properties that differ between the runs.
+/// Describes the straps of a run, with only those properties that differ between the runs.
 fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {

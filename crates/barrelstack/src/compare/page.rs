@@ -204,7 +204,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
                 0 => String::new(),
                 some => format!(" In {some} further variants, one of the two runs has no verdict."),
             };
-            let clear = if pair.is_clear() { "" } else { ", which does not prove a difference" };
+            let clear = if pair.is_clear() { "" } else { ", so no difference is proven" };
             format!(
                 "Of the same {} variants{motions}{}, {} collapse in both runs, {} in A only and {} in \
                  {second} only: {difference} (95 % interval {low} to {high} points{clear}).{lost}",
@@ -220,7 +220,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     others.iter().enumerate().flat_map(of).collect()
 }
 
-/// Describes the result of the comparison in one sentence or two.
+/// Describes the result of the comparison in one or two sentences.
 fn headline(sides: &[Side]) -> String {
     if let Some(effect) = effect(sides) {
         return by_themselves(sides) + &effect;
@@ -360,7 +360,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
             }
         }
     } else {
-        "Each result is that of one run: small changes of friction or gaps can change what falls when, so judge a difference by many runs."
+        "Each result is that of one run: small changes of friction or gaps can change what falls and when, so judge a difference by many runs."
             .into()
     });
     Verdict { headline: headline(sides) + &cut_short(sides), sentences, fine, ..Verdict::default() }
@@ -376,7 +376,7 @@ fn players(sides: &[Side]) -> Players {
             ..side.pane.clone()
         })
         .collect();
-    // Drawings of bodies in space change with their rotation, so they have no single outline.
+    // Drawings of three-dimensional bodies change with their rotation, so they have no single outline.
     let overlay = (!sides.iter().any(Side::is_spatial)).then(|| "outlines of A".to_owned());
     let dashed = overlay.as_ref().map_or_else(String::new, |label| {
         format!(

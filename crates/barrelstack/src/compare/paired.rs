@@ -7,10 +7,10 @@ use super::Side;
 use crate::variants::LEVEL;
 
 described! {
-    /// Paired comparison of two runs in one plane, or in space: the same variants under the same motions.
+    /// Paired comparison of two runs in one plane or in three dimensions: the same variants under the same motions.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Paired {
-        /// The plane of the model, or space; null for a free scene.
+        /// The plane of the model, or "spatial" for a three-dimensional model; null for a free scene.
         pub view: Option<&'static str> ["transverse", "longitudinal", "spatial"],
         /// Name of the first run.
         pub first: String,
@@ -24,7 +24,7 @@ described! {
         pub only_second: u32,
         /// Number of variants that collapse in neither run.
         pub neither: u32,
-        /// Number of further variants that have no verdict in one of the two runs.
+        /// Number of further variants that have no verdict in at least one of the two runs.
         pub without_verdict: u32,
         /// Share that collapses in the first run minus the share that collapses in the second.
         pub reduction: f64 as "1",
@@ -34,7 +34,7 @@ described! {
 }
 
 impl Paired {
-    /// Compares two runs in every plane that both have, or in space.
+    /// Compares two runs in every plane that both have, or in three dimensions.
     pub(super) fn of(first: &Side, second: &Side) -> Vec<Self> {
         let pair = |(view, own): &(Option<&'static str>, Vec<Option<bool>>)| {
             let (_, other) = second.collapsed.iter().find(|(known, _)| known == view)?;

@@ -19,7 +19,7 @@ fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &
 
 /// Tabulates the inputs that differ between runs with these names.
 pub fn inputs(names: &[String], differing: &[Difference]) -> Table {
-    let mut table = Table::new("Inputs that differ. All others are equal.", &[("input", "")]);
+    let mut table = Table::new("Inputs that differ. All other inputs are equal.", &[("input", "")]);
     table.columns.extend(names.iter().map(|name| Column::new(name, "")));
     table.columns.push(Column::new("meaning", ""));
     for one in differing {

@@ -69,7 +69,7 @@ pub struct Rendering {
     pub dpi: f64,
     /// Paper size of the report.
     pub paper: Paper,
-    /// Pictures, and ParaView time steps, per second of the run (1/s).
+    /// Number of pictures, and of ParaView time steps, per second of the run (1/s).
     pub rate: f64,
     /// Time interval (s) to render; `None` for the whole run.
     pub between: Option<[f64; 2]>,
@@ -94,8 +94,8 @@ impl Default for Rendering {
 }
 
 impl Rendering {
-    /// Checks that a run that ends at a time (s) can be rendered with these options; the error is a
-    /// sentence for the user.
+    /// Checks that a run that ends at `end_time` (s) can be rendered with these options; the error is a sentence for
+    /// the user.
     ///
     /// # Errors
     /// When a number is out of range, or when the run ends before the interval begins.
@@ -133,7 +133,7 @@ const FASTEST: f64 = 50.0;
 /// Function that writes one file of a series.
 pub type Put<'a> = &'a mut dyn FnMut(Attachment) -> Result<(), ExportError>;
 
-/// A folder that has been checked for rendered parts.
+/// A folder for rendered parts, which was checked before the computation.
 #[derive(Clone, Debug)]
 pub struct RenderFolder {
     path: PathBuf,

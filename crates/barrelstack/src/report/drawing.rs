@@ -294,7 +294,7 @@ pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end:
     ground_history(label, "g", (component.natural_step(), end), &value)
 }
 
-/// Returns the samples of a quantity of the ground motion, until `end` (s), that a picture shows.
+/// Returns the samples that a picture shows of a quantity of the ground motion, until `end` (s).
 ///
 /// The samples of the motion are `step` (s) apart. In every fiftieth of a second, the sample with
 /// the largest magnitude is kept at its own time, so that the picture shows the true peaks.

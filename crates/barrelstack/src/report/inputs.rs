@@ -68,7 +68,8 @@ pub(crate) fn readable(value: &str) -> String {
 /// Significant digits of a printed input; the scenario file beside the report has all digits.
 const DIGITS: usize = 6;
 
-/// Tabulates the inputs that differ from their defaults, with the sources of the dimensions; on screen also all inputs.
+/// Tabulates the inputs that differ from their defaults, with the sources of the dimensions; on screen, also tabulates
+/// all inputs.
 pub fn inputs(stated: &Scenario) -> Vec<Block> {
     let absent = stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
     let mut settings = stated.settings();
@@ -100,14 +101,14 @@ pub fn inputs(stated: &Scenario) -> Vec<Block> {
     blocks
 }
 
-/// Lists what the model of a stack leaves out, in a plane or in space.
+/// Lists what the model of a stack leaves out, in a plane or in three dimensions.
 pub fn not_modeled(in_space: bool) -> Block {
     let own = if in_space {
-        vec!["Waves of the wine."]
+        vec!["Sloshing of the wine."]
     } else {
         vec![
             "The third dimension: the stack is judged in one vertical plane at a time, across the barrels or along them.",
-            "Waves of the wine beyond the first, and splashing.",
+            "Sloshing of the wine beyond its first mode, and splashing.",
         ]
     };
     let always = [
@@ -116,7 +117,7 @@ pub fn not_modeled(in_space: bool) -> Block {
         "Neighboring stacks and walls, with which a stack may collide.",
         "Soil and building: the ground motion acts at the floor.",
         "Wear, creep, temperature and air.",
-        "Breakage of a barrel that lands.",
+        "Breakage of barrels when they land.",
     ];
     Block::List(own.into_iter().chain(always).map(str::to_owned).collect())
 }

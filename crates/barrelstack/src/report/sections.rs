@@ -132,7 +132,7 @@ fn on_screen(blocks: &mut Vec<Block>, title: &str, content: Vec<Block>) {
     }
 }
 
-/// Returns the player of a run, with a scene of it.
+/// Returns the player of a run, which shows the given scene of this run.
 pub fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     Player {
         id: "player".into(),
@@ -192,8 +192,8 @@ fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> 
 
 /// Returns the range of values to plot, which shows a stack while it stands and as it collapses.
 ///
-/// Falling bodies leave the plot, as in the histories of the paper. Returns `None` if there is no
-/// collapse; all values are then shown.
+/// Falling bodies leave the plot, as in the histories of Candia, de la Llera and Almazán (2008). Returns `None` if
+/// there is no collapse; all values are then shown.
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     standing_until(run.fates.collapse_time()?, series)
 }
@@ -292,7 +292,7 @@ fn stresses(run: &Run) -> Vec<Block> {
             0,
             Block::Paragraph(
                 "Stress is the contact force per meter of boundary in the plane of the model, drawn outward from the \
-                 point at which it acts. It is the force divided by the length of boundary on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at a contact without nodes, 1 cm at full scale. Gray area: stress at rest. Area behind the gray area: largest stress until the first loss of seat."
+                 point at which it acts. The stress is the force divided by the length of boundary on which a contact is assumed to bear: at a node, half of the distance to each neighboring node; at a contact without nodes, 1 cm at full scale. Gray area: stress at rest. Area behind the gray area: largest stress until the first loss of seat."
                     .into(),
             ),
         );
@@ -357,8 +357,8 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     }
     let table = interface_table(
         "Force on the upper body, or on the body named first if neither rests on the other; positive up and to the right. \
-         Two largest forces are given, each with the largest magnitude of any step: one until the first loss of seat, and one \
-         over the whole run, falls included.",
+         Two forces are given, each the one of largest magnitude over all steps: the first until the first loss of seat, the \
+         second over the whole run, falls included.",
         &summary.interfaces,
     );
     let recording = &run.recording;

@@ -21,7 +21,7 @@ struct Rocking {
 }
 
 impl Rocking {
-    /// Returns the rocking of a run; `None` for a free scene, or if the top did not drift.
+    /// Returns the measured rocking of a run; `None` for a free scene, or if the top did not drift.
     fn of(run: &Run) -> Option<Self> {
         let block = RigidBlock::of(&run.assembly, run.scenario.run.gravity)?;
         let mut drift = drift(run).filter(|drift| drift.largest > 0.0)?;
@@ -47,7 +47,7 @@ impl Rocking {
     }
 }
 
-/// Plots the response spectrum and, for a rocking stack, its periods.
+/// Plots the response spectrum and, for a rocking stack, the rocking periods.
 pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
     let rocking = Rocking::of(run);
     let mut blocks = Vec::new();
@@ -68,9 +68,9 @@ fn words(rocking: &Rocking) -> String {
     let reached = centimeters(drift.largest);
     let period = rocking.rigid(drift.largest);
     let rigid = if period.is_finite() {
-        format!("would rock with a period of {} s at that amplitude", significant(period, 2))
+        format!("would rock with a period of {} s at the largest drift", significant(period, 2))
     } else {
-        "would not return from that amplitude".to_owned()
+        "would not return from the largest drift".to_owned()
     };
     let measured = match (&drift.swings[..], rocking.widest()) {
         (_, None) => "it made no full swing".to_owned(),
@@ -93,8 +93,8 @@ fn words(rocking: &Rocking) -> String {
     };
     format!(
         "A stack has no fixed natural period: the farther it rocks, the longer its period, so the shaking \
-         to which it responds changes as it sways. While it stood, its top drifted by up to {reached} \
-         relative to its foot, and {measured}. A rigid block with the same mass and the same width of its foot {rigid} (Housner \
+         to which it responds changes as it sways. While the stack stood, its top drifted by up to {reached} \
+         relative to its foot, and {measured}. A rigid block with the mass and the foot width of the stack {rigid} (Housner \
          1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts yields at every level and rocks more slowly.",
         significant(block.frequency, 3),
         significant(block.slenderness, 3),
@@ -172,6 +172,6 @@ fn periods(rocking: &Rocking) -> Figure {
         interactive: true,
         ..Plot::default()
     };
-    let caption = "Rocking period against amplitude at the top, for a rigid block with the same mass and the same width of its foot, and for the swings of the stack while it stood. The period of a swing is twice the time between two zero crossings of the drift.";
+    let caption = "Rocking period as a function of the amplitude at the top: of a rigid block with the mass and the foot width of the stack, and of the swings of the stack while it stood. The period of a swing is twice the time between two zero crossings of the drift.";
     Figure::new("periods", caption, plot)
 }

@@ -4,8 +4,8 @@ use barrelstack_input::system;
 use barrelstack_motion::Utc;
 use barrelstack_report::Stamp;
 
-/// Makes all pages that the process writes from now on state the date, and the commit from which the
-/// program was built. The date is that of `SOURCE_DATE_EPOCH`, if this variable is set, or of the clock.
+/// Adds the date, and the commit from which the program was built, to all pages that the process writes from now on.
+/// The date is that of `SOURCE_DATE_EPOCH`, if this variable is set, or of the clock.
 ///
 /// The variable `BARRELSTACK_COMMIT` replaces the commit. It is read when the program runs, not only
 /// when it is built, so that the pages of two builds can be compared bit for bit, as the tests do.
@@ -23,7 +23,7 @@ pub fn stamp_pages(built: &str) -> Result<(), String> {
 fn date() -> Result<String, String> {
     let seconds = system::clock()?;
     let now = Utc::of_unix(seconds).ok_or_else(|| {
-        format!("SOURCE_DATE_EPOCH: expected seconds before the year 2200, found {seconds}; correct or unset this variable")
+        format!("SOURCE_DATE_EPOCH: expected a time before the year 2200, in seconds since 1970, found {seconds}; correct or unset this variable")
     })?;
     Ok(format!("{} (UTC)", now.date()))
 }

@@ -6,10 +6,9 @@ use barrelstack_report::{Axis, Block, Cell, Figure, Plot, Series, Table, signifi
 use crate::variants::words::percent;
 use crate::variants::{Spread, Unknown};
 
-/// Returns a table of the uncertain constants for each plane, and a figure of the share of collapses
-/// as a function of the most influential constant. Planes without a known range are omitted. Each
-/// spread is given with the words for its plane, such as "along the barrels", which are empty in
-/// space.
+/// Returns a table of the uncertain constants for each plane, and a figure of the share of collapses as a function of
+/// the most influential constant. Planes without a known range are omitted. Each spread is given with the words for its
+/// plane, such as "along the barrels"; the words are empty for a three-dimensional model.
 pub fn unknowns(planes: &[(&str, &Spread)]) -> Vec<Block> {
     let known: Vec<&(&str, &Spread)> =
         planes.iter().filter(|(_, spread)| spread.range.is_some()).collect();
@@ -35,7 +34,7 @@ fn table(place: &str, spread: &Spread) -> Table {
     let share = |one: &Unknown, place| Cell::maybe(at(one, place).map(|at| percent(at.share)));
     Table::of(
         format!(
-            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} collapse with all of these constants at their medians. Each constant is given at its 5 % fractile, median and 95 % fractile, with the share of collapses averaged over the other constants. Change: 95 % interval of the difference between the largest and the smallest share as the constant varies. Variance: fraction of the variance of the share that would remain if all other constants were known. Range left: average width of the range of the share if the constant were measured exactly.",
+            "{shaken}{} to {} of stacks collapse, depending on the uncertain constants of the seats; {stated} collapse with all of these constants at their medians. Each constant is given at its 5 % fractile, median and 95 % fractile, with the share of collapses averaged over the other constants. Change: 95 % interval of the difference between the largest and the smallest share as the constant varies. Variance: fraction of the variance of the share that would remain if all other constants were known. Range left: average width of the range that would remain if the constant were measured exactly.",
             range[0], range[1]
         ),
         &spread.decides,

@@ -179,7 +179,7 @@ fn shaking(motion: &MotionSummary) -> String {
 pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     let place =
-        view.map_or_else(|| "The".to_owned(), |view| format!("{} the", capital(view.words())));
+        view.map_or_else(|| "The".to_owned(), |view| format!("{}, the", capital(view.words())));
     let strength = |motion: &MotionSummary| {
         // A run that ends before its motion may miss the peaks of the motion.
         let whole = run.cut().map_or_else(String::new, |_| {
@@ -226,7 +226,7 @@ fn shown(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// Prefixes a sentence with introductory words, and lowers its first letter.
+/// Puts introductory words before a sentence, and begins the sentence with a lower-case letter.
 fn behind(begin: &str, sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().filter(|_| !begin.is_empty());
@@ -285,7 +285,7 @@ pub(super) fn details(
     } else if judged && summary.ensemble.is_none() {
         sentences.push(
             "One run is one possible course: small changes of friction or gaps can change what falls \
-             when, so judge a stack by many runs."
+             and when, so judge a stack by many runs."
                 .into(),
         );
     }

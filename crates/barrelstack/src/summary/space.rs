@@ -1,4 +1,4 @@
-//! Summary of a run in space: a JSON document, with directions.
+//! Summary of a three-dimensional run: a JSON document, with directions.
 
 use barrelstack_report::described;
 
@@ -9,8 +9,8 @@ use crate::variants::{Remedy, Spread};
 use crate::verify::Verification;
 
 described! {
-    /// The summary of a run in space. Lengths are in m, times in s, angles in rad; `x` is across the barrels, `y` along
-    /// the barrels, `z` up. A value is null where an event did not happen or does not apply.
+    /// The summary of a three-dimensional run. Lengths are in m, times in s, angles in rad; `x` is across the barrels,
+    /// `y` along the barrels, `z` up. A value is null where an event did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct SummaryInSpace {
         /// Name and version of this layout.
@@ -42,11 +42,11 @@ described! {
         pub devices: Devices,
         /// The energy balance; null where the numbers are no longer finite.
         pub energy: Option<EnergyBalance>,
-        /// The horizontal component of the ground motion that the scenario names, and the vertical component.
+        /// The vertical component of the ground motion, and the horizontal component that the scenario names.
         pub motion: Option<MotionSummary>,
         /// The other horizontal component of the ground motion; null where the motion has only one.
         pub other_component: Option<MotionSummary>,
-        /// Settings and work of the computation.
+        /// Settings of the computation, and the amount of work that it took.
         pub run: RunInSpace,
         /// Warnings.
         pub warnings: Vec<String>,
@@ -59,13 +59,15 @@ described! {
     /// Numbers of variants and barrels that fall in each direction.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Directions {
-        /// Number of variants whose first body leaves its seat to the right (positive x).
+        /// Number of variants in which the first body to leave its seat leaves it to the right (positive x).
         pub first_right: u32,
-        /// Number of variants whose first body leaves its seat to the left (negative x).
+        /// Number of variants in which the first body to leave its seat leaves it to the left (negative x).
         pub first_left: u32,
-        /// Number of variants whose first body leaves its seat along the barrels, away from the viewer (positive y).
+        /// Number of variants in which the first body to leave its seat leaves it along the barrels, away from the
+        /// viewer (positive y).
         pub first_away: u32,
-        /// Number of variants whose first body leaves its seat along the barrels, toward the near side (negative y).
+        /// Number of variants in which the first body to leave its seat leaves it along the barrels, toward the near
+        /// side (negative y).
         pub first_near: u32,
         /// Number of fallen barrels, in all variants, whose displacement from rest is mainly to the right.
         pub debris_right: u32,
@@ -79,17 +81,17 @@ described! {
         pub debris_near: u32,
     }
 
-    /// Outcome of a run in space.
+    /// Outcome of a three-dimensional run.
     #[derive(Clone, Debug, Default)]
     pub struct OutcomeInSpace {
-        /// The outcome, as that of a run in a plane.
+        /// The outcome, with the same fields as for a run in a plane.
         #[serde(flatten)]
         pub common: OutcomeSummary,
         /// Direction in which the first body left its seat.
         pub heading: Option<&'static str> ["right", "left", "away", "near"],
     }
 
-    /// One body in space.
+    /// One body of a three-dimensional run.
     #[derive(Clone, Debug)]
     pub struct BodyInSpace {
         /// Name of the body.
@@ -120,7 +122,7 @@ described! {
         pub orientation: [f64; 4] as "1",
         /// Velocity x, y, z of the center of mass at the end, including the velocity of the ground.
         pub velocity: [f64; 3] as "m/s",
-        /// Spin about x, y, z at the end.
+        /// Angular velocity about x, y, z at the end.
         pub spin: [f64; 3] as "rad/s",
         /// Largest horizontal displacement relative to the ground before the first loss of seat.
         pub peak_displacement: f64 as "m",
@@ -143,7 +145,7 @@ described! {
         pub mean_stress_amplification: Option<f64> as "1",
     }
 
-    /// Settings and work of the computation.
+    /// Settings of the computation, and the amount of work that it took.
     #[derive(Clone, Debug)]
     pub struct RunInSpace {
         /// Integration method.
@@ -168,8 +170,8 @@ described! {
 }
 
 impl Directions {
-    /// Returns the number of variants whose first body leaves its seat across the barrels, and the number of those
-    /// whose first body leaves it along the barrels.
+    /// Returns two numbers of variants: those in which the first body to leave its seat leaves it across the barrels,
+    /// and those in which it does so along the barrels.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }

@@ -9,7 +9,7 @@ use super::words::percent;
 use crate::scenario::title::{counted, number};
 
 impl Remedy {
-    /// Describes the remedy, or states that no change that was tried suffices.
+    /// Describes the remedy, or states that no tried change suffices.
     pub fn sentence(&self) -> String {
         let any = |kind: &str| self.tried.iter().any(|one| one.kind == kind);
         let straps = self.pretensions();
@@ -64,9 +64,9 @@ impl Remedy {
         format!("{}.{}{}{stopped}", capital(&sentence), self.confidence(), self.over_constants())
     }
 
-    /// States, for each sufficient change, the range over the uncertain constants of the share that falls. For two
-    /// changes, also states in which share of the draws of these constants fewer stacks fall with the better change.
-    /// Returns an empty text if a range is unknown.
+    /// States, for each sufficient change, the range of the share that falls as the uncertain constants vary. If two
+    /// changes suffice, also states in which share of the random draws of these constants fewer stacks fall with the
+    /// better change. Returns an empty text if a range is unknown.
     fn over_constants(&self) -> String {
         let range = |one: &Tried| {
             one.range.map(|[low, high]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high))
@@ -165,7 +165,7 @@ impl Remedy {
         let limit = mark(1.0 - self.required_share, "limit");
         Figure::new(
             "remedy",
-            "Share of the variants that fall after each change, in the direction in which more fall. All changes are tried with the same variants.",
+            "Share of the variants that fall after each change, for the direction of shaking in which more fall. All changes are tried with the same variants.",
             Plot {
                 x: Axis { range: Some([-2.0, 102.0]), ..Axis::new("variants that fall", "%") },
                 y: Axis::named(self.tried.iter().map(name).collect()),
@@ -176,14 +176,14 @@ impl Remedy {
         )
     }
 
-    /// Tabulates every change that was tried; `in_planes` selects the wording for planes rather
-    /// than for space.
+    /// Tabulates every change that was tried; `in_planes` selects the wording for planes instead of that for three
+    /// dimensions.
     pub fn table(&self, in_planes: bool) -> Table {
         let [stand, tried] =
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
             "Changes that were tried, with the same variants. A change suffices if at least {:.0} % of the variants stand{stand}. A change is rejected at the end of a block of variants once too many variants have failed, so the share that falls after a rejected change is not known. The intervals hold simultaneously, with 95 % confidence, for all {} changes that may be tried{tried}. \
-             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included. The last column is the share of these draws in which fewer stacks fall after the change than without it; a draw has the same constants for all changes. \
+             The range over the uncertain constants contains 95 % of the shares if friction, stiffness and damping of the seats are drawn from their distributions, sampling error included. The last column is the share of draws of the uncertain constants in which fewer stacks fall after the change than without it; each draw applies to all changes. \
              Straps are assumed not to slip on the barrels and racks that they tie.",
             100.0 * self.required_share,
             self.candidates
@@ -208,7 +208,7 @@ impl Remedy {
                 ("range over uncertain constants", "", &|one| {
                     Cell::maybe(one.range.map(|range| range.map(percent).join(" to ")))
                 }),
-                ("draws in which fewer fall than as it is", "", &|one| {
+                ("draws in which fewer fall than without the change", "", &|one| {
                     Cell::maybe(one.better_than_as_it_is.map(percent))
                 }),
             ],

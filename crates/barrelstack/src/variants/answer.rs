@@ -97,8 +97,7 @@ impl Answer {
     }
 }
 
-/// Returns the number of the medoid of the variants over all answers and planes; `None` if an
-/// answer has no variants.
+/// Returns the number of the medoid variant over all answers and planes; `None` if an answer has no variants.
 ///
 /// Only variants that have the same component of the motion in all answers are eligible.
 pub(crate) fn common_number<A: Comparable>(answers: &[&A]) -> Result<Option<u32>, GroundError> {
@@ -143,8 +142,7 @@ pub struct Shown {
     pub stopped: Option<Vec<CaseResult>>,
 }
 
-/// Runs all variants of a scenario, then the run to show with all recordings, in one plane or in
-/// both.
+/// Runs all variants of a scenario, and then the run to be shown, with all recordings; in one plane or in both.
 ///
 /// The observer receives the progress and may cancel; a canceled answer has the results obtained so
 /// far.
@@ -308,7 +306,8 @@ fn run_selected(
 /// Observer of a run: receives the progress and may cancel.
 type Watching<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// Runs scenarios by `run` on all cores and maps each result by `finish`, which receives its index.
+/// Calls `run` for each scenario, on all cores, and maps each result with `finish`, which also receives the index of
+/// the scenario.
 ///
 /// The observer receives the combined progress; a run that has not begun is expected to end at
 /// `end_time` (s).

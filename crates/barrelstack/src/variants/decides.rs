@@ -11,7 +11,7 @@ use super::{Plane, Spread};
 use crate::ensemble::CaseResult;
 use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw, StackInterfaces, Unknowns};
 
-/// Smallest change of the share of collapses over a decisive constant.
+/// Smallest change of the share of collapses, over the range of a constant, for which the constant is decisive.
 const DECISIVE: f64 = 0.2;
 
 /// Fractiles of a constant at which the share of collapses is given.
@@ -68,7 +68,7 @@ impl Unknown {
         shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
     }
 
-    /// Returns `true` if the share changes by at least a fifth over the constant, and the 95 % interval of
+    /// Returns `true` if the share changes by at least a fifth over the range of the constant, and the 95 % interval of
     /// this change excludes zero.
     pub fn is_decisive(&self) -> bool {
         self.effect() >= DECISIVE && self.difference[0] > 0.0
@@ -130,11 +130,11 @@ struct Drawn {
     field: &'static str,
     unit: &'static str,
     dispersion: f64,
-    /// Returns the factor of the constant for its dispersion and a standard normal deviate.
+    /// Returns the factor by which a constant is multiplied, from its dispersion and a standard normal deviate.
     factor: fn(f64, f64) -> f64,
-    /// Multiplies the constant in a law by a factor.
+    /// Multiplies the constant in a contact law by a factor.
     change: fn(&mut Interface, f64),
-    /// Returns the constant from a law.
+    /// Returns the constant of a contact law; `None` if the law has no such constant.
     value: fn(&Interface) -> Option<f64>,
     law: Interface,
 }
@@ -155,8 +155,9 @@ impl Drawn {
 
 /// Returns the constants that may decide whether a seat is lost: friction, stiffness and damping of seats.
 ///
-/// The variation of all other drawn quantities counts as sampling error: of the constants of impacts and of fallen
-/// bodies, of the tangential stiffness, and of the positions of rails, racks and barrels and their masses.
+/// The variation of all other drawn quantities counts as sampling error. These quantities are the constants of impacts
+/// and of fallen bodies, the tangential stiffness, the positions of rails, racks and barrels, and the masses of racks
+/// and barrels.
 fn drawn(laws: &StackInterfaces, spread: &Unknowns, posts: bool) -> Vec<Drawn> {
     let seat = laws.barrel_rack;
     let lognormal = |dispersion: f64, deviate: f64| libm::exp(dispersion * deviate);
@@ -289,7 +290,7 @@ fn unit(law: &Interface) -> &'static str {
     }
 }
 
-/// Uncertain constant of the regression of the share of collapses.
+/// An uncertain constant that is a predictor in the regression of the share of collapses.
 pub struct Constant<'a> {
     /// Name of the constant.
     pub name: &'static str,
@@ -306,7 +307,7 @@ pub struct Constant<'a> {
 /// Effect of the uncertain constants on the share of collapses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
-    /// Range of the share over the uncertain constants, with a probability of 95 %.
+    /// Range that contains the share with a probability of 95 % as the uncertain constants vary.
     pub range: [f64; 2],
     /// Share with all constants as stated.
     pub as_stated: f64,
@@ -315,7 +316,7 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// Evaluates a regression on constants, which are in the order of their deviates.
+    /// Evaluates a fitted regression; `constants` are in the order of the deviates in the regression.
     pub fn of(fitted: &Conditional, constants: &[Constant<'_>]) -> Self {
         let whole = fitted.range(LEVEL);
         let unknown = |(at, (one, influence)): (usize, (&Constant<'_>, Influence))| {
@@ -379,9 +380,9 @@ pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
     Some(Fitted::of(&fitted, &constants))
 }
 
-/// Returns the share of collapses in every draw of the uncertain constants and of the regression, in the plane in which
-/// it is larger. A draw has the same constants for all stacks with the same planes. `verdicts` has the variants of every
-/// plane; `None` as in [`range`].
+/// Returns the share of collapses in every draw, in the plane in which the share is larger; `None` as in [`range`].
+/// Each draw samples the uncertain constants and the error of the regression, and has the same constants for all stacks
+/// with the same planes. `verdicts` holds the verdicts of the variants in every plane.
 pub(super) fn draws(planes: &[Plane], verdicts: &[Vec<Option<bool>>]) -> Option<Vec<f64>> {
     let of = |(plane, verdicts): (&Plane, &Vec<_>)| Some(fit(plane, verdicts)?.0.shares());
     let shares = planes.iter().zip(verdicts).map(of).collect::<Option<Vec<Vec<f64>>>>()?;
@@ -418,9 +419,8 @@ fn fit(plane: &Plane, verdicts: &[Option<bool>]) -> Option<(Conditional, Vec<Dra
 }
 
 impl Spread {
-    /// Returns, of the constants with a simple test, the one whose measurement narrows the range
-    /// most, and the average width that remains; `None` if no measurement narrows the range by more
-    /// than a tenth.
+    /// Returns the constant whose measurement by a simple test narrows the range most, and the average width of the
+    /// remaining range; `None` if no measurement narrows the range by more than a tenth.
     pub fn worth_measuring(&self) -> Option<(&Unknown, f64)> {
         let [low, high] = self.range?;
         let tested = self.decides.iter().filter(|one| one.test().is_some());

@@ -68,7 +68,7 @@ impl Point {
         normal_quantile(self.uniform(axis)).clamp(-FARTHEST, FARTHEST)
     }
 
-    /// Returns the deviate of a constant; those of all friction coefficients have a common part.
+    /// Returns the deviate of a constant; the deviates of all friction coefficients have a common part.
     fn constant(&self, axis: Shared, unknowns: &Unknowns) -> f64 {
         let own = self.normal(axis as usize);
         if !axis.is_friction() {
@@ -85,8 +85,7 @@ impl Point {
     }
 }
 
-/// Returns a factor that is uniformly distributed from 1 to 1 plus the given excess, for a standard
-/// normal deviate.
+/// Converts a standard normal deviate to a factor that is uniformly distributed from 1 to `1 + largest`.
 pub(super) fn excess(largest: f64, deviate: f64) -> f64 {
     1.0 + largest * normal(deviate)
 }

@@ -30,11 +30,11 @@ pub use self::search::{ENOUGH, Judged, Verdicts};
 /// ratchets state about 500 daN (STF, standard tension force, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Number of variants that a thread takes at a time; this many fill one bundle of lanes.
+/// Number of variants that a thread takes at a time: as many as one bundle of SIMD lanes computes side by side.
 const BATCH: usize = 8;
 
 described! {
-    /// Changes, of those that the search tried, that would have kept the stack up.
+    /// The tried changes that would have kept the stack up.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that must stand in every plane.
@@ -43,9 +43,9 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null if no tried straps do.
         pub straps: Option<Tried>,
-        /// Share of the draws of the uncertain constants in which fewer stacks fail with the height that suffices than
-        /// with the straps that suffice; equal shares count by half. Null if only one of them suffices, or if its range
-        /// is null.
+        /// Share of the draws of the uncertain constants in which fewer stacks fail with the sufficient height than
+        /// with the sufficient straps; a draw with equal shares counts as one half. Null unless a height and straps
+        /// both suffice, each with a range that is not null.
         pub height_before_straps: Option<f64> as "1",
         /// Number of changes that may be tried, each in every plane; the intervals hold
         /// simultaneously for all these changes.
@@ -85,12 +85,13 @@ described! {
         /// correction); the intervals of all changes and planes of the search hold simultaneously
         /// with 95 % confidence. Null if the share is null.
         pub interval: Option<[f64; 2]> as "1",
-        /// Range of the share of stacks that fail, in the plane in which more do, over the uncertain constants of the
-        /// seats: it contains 95 % of the shares if these constants are drawn from their distributions, sampling error
-        /// included. Null if the share is null, and wherever the range of the stack as it is would be null.
+        /// Range of the share of stacks that fail as the uncertain constants of the seats vary, in the plane in which
+        /// more stacks fail: it contains 95 % of the shares if these constants are drawn from their distributions,
+        /// sampling error included. Null if the share is null, and in all cases in which the range of the unchanged
+        /// stack would be null.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of the draws of these constants in which fewer stacks fail than as it is; equal shares count by half.
-        /// A draw has the same constants for all changes. Null if a range is unknown.
+        /// Share of the draws of the uncertain constants in which fewer stacks fail after the change than without it; a
+        /// draw with equal shares counts as one half. Each draw applies to all changes. Null if a range is unknown.
         pub better_than_as_it_is: Option<f64> as "1",
     }
 }
@@ -231,7 +232,7 @@ fn look(
     Ok(())
 }
 
-/// Returns the range of draws of a share, rounded outward to hundredths.
+/// Returns the range that contains 95 % of the draws of a share, rounded outward to hundredths.
 fn range(draws: &[f64]) -> [f64; 2] {
     let found = interval_of(draws, LEVEL);
     [(100.0 * found.low).floor() / 100.0, (100.0 * found.high).ceil() / 100.0]

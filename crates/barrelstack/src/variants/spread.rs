@@ -38,8 +38,8 @@ described! {
         /// sampling error included. Null if there are fewer than 16 variants, if one of them has no
         /// verdict, or if they differ only in positions and masses.
         pub range: Option<[f64; 2]> as "1",
-        /// Share of stacks that collapse if all uncertain constants are at their medians, which are
-        /// the stated values, except for static friction if it is drawn; null if `range` is null.
+        /// Share of stacks that collapse if all uncertain constants are at their medians; null if `range` is null. The
+        /// medians are the stated values, except for a static friction that is drawn.
         pub share_as_stated: Option<f64> as "1",
         /// The uncertain constants of the seats, the most influential first; empty if `range` is
         /// null.
@@ -116,8 +116,8 @@ impl Range {
         Some(Self { p05, p50, p95, least, most })
     }
 
-    /// Returns the range that a sentence states for a number of values: the 5 and 95 % fractiles, or the extremes of
-    /// fewer than [`FEW`] values, between which fractiles would be interpolated.
+    /// Returns the range that a sentence states for a number of values: the 5 and 95 % fractiles or, for fewer than
+    /// [`FEW`] values, the smallest and the largest value, since fractiles of so few values would be interpolated.
     pub fn stated(&self, values: u32) -> [f64; 2] {
         if values < FEW { [self.least, self.most] } else { [self.p05, self.p95] }
     }

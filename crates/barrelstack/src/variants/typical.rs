@@ -15,8 +15,8 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Selects among results, of which the first is the nominal case; selects the nominal case if
-    /// no case was shaken with a verdict.
+    /// Selects among results, of which the first is the nominal case; selects the nominal case if no case both has a
+    /// verdict and was shaken.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);

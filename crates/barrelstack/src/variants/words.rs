@@ -21,7 +21,7 @@ const STANDS: f64 = 0.05;
 /// to 35 % of such stacks may still fall.
 pub const ENOUGH: u32 = 8;
 
-/// Verdict on a stack in one plane or in space, ordered from best to worst.
+/// Verdict on a stack in one plane or in three dimensions; verdicts are ordered from best to worst.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Judgment {
     Stands,
@@ -77,7 +77,7 @@ impl Judgment {
     }
 }
 
-/// Statistics of variants, with their plane, which is `None` in space.
+/// Plane and statistics of variants; the plane is `None` for a three-dimensional model.
 type Placed<'a> = (Option<View>, &'a Spread);
 
 /// Returns the answer for one plane or for both; of two planes, the plane across the barrels is
@@ -88,7 +88,7 @@ pub fn headline(planes: &[(View, &Spread)]) -> String {
     answer(&placed)
 }
 
-/// Returns the answer for a stack in space.
+/// Returns the answer for a three-dimensional model of a stack.
 pub fn headline_in_space(spread: &Spread) -> String {
     answer(&[(None, spread)])
 }
@@ -133,13 +133,13 @@ fn verdict(planes: &[Placed<'_>]) -> Option<String> {
         let counts =
             counts(spread, noun).unwrap_or_else(|| "no variant could be judged".to_owned());
         match view.map(|view| view.words().replace("the barrels", barrels)) {
-            Some(place) if number == 0 && shaken => format!("shaken {place} {counts}"),
-            Some(place) => format!("{place} {counts}"),
+            Some(place) if number == 0 && shaken => format!("shaken {place}, {counts}"),
+            Some(place) => format!("{place}, {counts}"),
             None => counts,
         }
     };
     let clauses: Vec<String> = worst_first.iter().enumerate().map(clause).collect();
-    Some(format!("{} {}.", judgment.words(), capital(&clauses.join(", "))))
+    Some(format!("{} {}.", judgment.words(), capital(&clauses.join("; "))))
 }
 
 /// Describes stave overload; `None` if there is none.
@@ -147,7 +147,7 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     let load = spread.stave_utilization.filter(|_| spread.staves_overloaded > 0)?;
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     Some(capital(&format!(
-        "{place}in {} of {} variants staves are crushed before any seat is lost: they carry up to {:.0} % of \
+        "{place}in {} of {} variants, staves are crushed before any seat is lost: they carry up to {:.0} % of \
          their stated capacity.",
         spread.staves_overloaded,
         spread.variants,
@@ -155,15 +155,15 @@ fn overloaded((view, spread): Placed<'_>) -> Option<String> {
     )))
 }
 
-/// Returns the outcomes of the variants in each plane, for one dot each on paper; the plane with
-/// the largest share of collapses comes first, as in the headline.
+/// Returns the outcomes of the variants in each plane, to be drawn as one dot for each variant; the plane with the
+/// largest share of collapses comes first, as in the headline.
 pub fn dots(planes: &[(View, &Spread)]) -> Vec<Dots> {
     let placed: Vec<Placed<'_>> =
         planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
     worst_first(&placed).into_iter().map(|(view, spread)| dots_of(view, spread)).collect()
 }
 
-/// Returns the outcomes of the variants in one plane, or in space without a plane.
+/// Returns the outcomes of the variants in one plane or, if `view` is `None`, in three dimensions.
 pub fn dots_of(view: Option<View>, spread: &Spread) -> Dots {
     Dots {
         direction: view.map(|view| view.words().to_owned()).unwrap_or_default(),
@@ -364,8 +364,8 @@ fn tenths(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
-/// Formats a share in whole percent; a share near 0 or 100 % gets one significant digit of the
-/// remainder: "0.3 %", "99.7 %".
+/// Formats a share in whole percent; a share near 0 or 100 % has as many decimals as its distance from 0 or 100 % needs
+/// for one significant digit: "0.3 %", "99.7 %".
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rest = percent.min(100.0 - percent);
@@ -431,11 +431,11 @@ mod tests {
     fn one_plane_has_its_counts_and_its_course() {
         let course = "The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.";
         let cases = [
-            (64, "Falls. Shaken across the barrels all 64 variants fall (at least 94 %)."),
-            (61, "Falls. Shaken across the barrels 61 of 64 variants fall (87–98 %)."),
-            (50, "Not safe. Shaken across the barrels 50 of 64 variants fall (67–86 %)."),
-            (10, "Not safe. Shaken across the barrels 10 of 64 variants fall (9–26 %)."),
-            (1, "Stands. Shaken across the barrels 1 of 64 variants falls (0.3–8 %)."),
+            (64, "Falls. Shaken across the barrels, all 64 variants fall (at least 94 %)."),
+            (61, "Falls. Shaken across the barrels, 61 of 64 variants fall (87–98 %)."),
+            (50, "Not safe. Shaken across the barrels, 50 of 64 variants fall (67–86 %)."),
+            (10, "Not safe. Shaken across the barrels, 10 of 64 variants fall (9–26 %)."),
+            (1, "Stands. Shaken across the barrels, 1 of 64 variants falls (0.3–8 %)."),
         ];
         for (collapsed, sentences) in cases {
             // For few falls, the sentence states the first and the last time instead of fractiles.
@@ -443,17 +443,17 @@ mod tests {
                 if collapsed < 20 { &course.replace("5.6 and 6.4", "5.0 and 7.0") } else { course };
             assert_eq!(of(64, collapsed), format!("{sentences} {course}"));
         }
-        let none = "Shaken across the barrels none of";
+        let none = "Shaken across the barrels, none of";
         assert_eq!(of(64, 0), format!("Stands. {none} 64 variants falls (at most 6 %)."));
         assert_eq!(of(8, 0), format!("Stands. {none} 8 variants falls (at most 32 %)."));
         let few = format!(
             "Too few variants to conclude that the stack stands. {none} 7 variants falls (at most 35 %)."
         );
         assert_eq!(of(7, 0), few);
-        let one = "Shaken across the barrels the one variant";
+        let one = "Shaken across the barrels, the one variant";
         assert!(of(1, 0).ends_with(&format!("{one} stands (at most 79 % fall).")), "{}", of(1, 0));
         assert!(of(1, 1).contains(&format!("{one} falls (at least 21 % fall).")), "{}", of(1, 1));
-        let unknown = "No verdict. Shaken across the barrels no variant could be judged.";
+        let unknown = "No verdict. Shaken across the barrels, no variant could be judged.";
         assert_eq!(of(0, 0), unknown);
         let in_space = headline_in_space(&spread(64, 64));
         assert_eq!(in_space, format!("Falls. All 64 variants fall (at least 94 %). {course}"));
@@ -494,12 +494,12 @@ mod tests {
             "{both}"
         );
         // Variants that fall before they are shaken are not reported as falling when shaken.
-        assert!(both.contains("Not safe. Along the barrels 2 of 61 variants fall"), "{both}");
+        assert!(both.contains("Not safe. Along the barrels, 2 of 61 variants fall"), "{both}");
         // Variants without a verdict do not count as standing.
         (one.cannot_stand, one.collapsed, one.share) = (0, 0, Some(0.0));
         let said = headline(&[(View::Transverse, &one)]);
         assert!(
-            said.contains("Not safe. Shaken across the barrels none of 61 variants falls"),
+            said.contains("Not safe. Shaken across the barrels, none of 61 variants falls"),
             "{said}"
         );
     }
@@ -540,30 +540,30 @@ mod tests {
         };
         assert_eq!(
             both(25, 62),
-            "Falls. Shaken along the barrels 62 of 64 variants fall (89–99 %), across them 25 of 64 fall (28–51 %)."
+            "Falls. Shaken along the barrels, 62 of 64 variants fall (89–99 %); across them, 25 of 64 fall (28–51 %)."
         );
         assert_eq!(
             both(0, 0),
-            "Stands. Shaken across the barrels none of 64 variants falls (at most 6 %), along them none of 64 falls (at \
+            "Stands. Shaken across the barrels, none of 64 variants falls (at most 6 %); along them, none of 64 falls (at \
              most 6 %)."
         );
         assert_eq!(
             both(64, 1),
-            "Falls. Shaken across the barrels all 64 variants fall (at least 94 %), along them 1 of 64 falls (0.3–8 %)."
+            "Falls. Shaken across the barrels, all 64 variants fall (at least 94 %); along them, 1 of 64 falls (0.3–8 %)."
         );
         assert!(
             both(3, 20)
-                .starts_with("Not safe. Shaken along the barrels 20 of 64 variants fall (21–43 %)")
+                .starts_with("Not safe. Shaken along the barrels, 20 of 64 variants fall (21–43 %)")
         );
         let none =
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 64))]);
         assert_eq!(
             none,
-            "Falls. Shaken along the barrels all 64 variants fall (at least 94 %), across them no variant could be judged."
+            "Falls. Shaken along the barrels, all 64 variants fall (at least 94 %); across them, no variant could be judged."
         );
         let none =
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 0))]);
-        assert!(none.starts_with("No verdict. Shaken along the barrels none of 64"), "{none}");
+        assert!(none.starts_with("No verdict. Shaken along the barrels, none of 64"), "{none}");
     }
 
     #[test]
@@ -572,7 +572,7 @@ mod tests {
         one.stave_utilization = Some(0.97);
         assert!(!headline(&[(View::Transverse, &one)]).contains("staves"));
         (one.staves_overloaded, one.stave_utilization) = (5, Some(1.308));
-        let crushed = "5 of 64 variants staves are crushed before any seat is lost: they carry up to 131 % of \
+        let crushed = "5 of 64 variants, staves are crushed before any seat is lost: they carry up to 131 % of \
                        their stated capacity.";
         let said = headline(&[(View::Transverse, &one)]);
         assert!(
@@ -612,8 +612,8 @@ mod tests {
         let decides = "the stiffness of seats decides the outcome: 96 % fall at 1.1 MN/m, 59 % fall at 8.0 MN/m.";
         assert!(said.contains(&format!("(2–13 %). {range}{decides}")), "{said}");
         let measured = measure(&one).unwrap();
-        let left =
-            "On average, the measurement leaves a range of 55 percentage points instead of 83.";
+        let left = "After the measurement, the range is on average 55 percentage points wide \
+             instead of 83.";
         assert!(measured.contains("read how far it sinks. ") && measured.ends_with(left));
         // A constant whose effect may be zero does not decide; nor does one whose effect is certain but small.
         one.decides = vec![unknown([-0.1, 0.6])];

@@ -82,7 +82,7 @@ impl Document {
 struct Visit<F> {
     text: F,
     language: Language,
-    /// Scenes by the address of their originals: figures share scenes with players.
+    /// Translated scenes by the address of the original scene, since figures share scenes with players.
     scenes: HashMap<*const Scene, Arc<Scene>>,
 }
 

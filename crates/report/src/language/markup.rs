@@ -6,8 +6,8 @@ use super::Language;
 const ATTRIBUTES: [&str; 4] = ["aria-label=\"", "title=\"", "placeholder=\"", "alt=\""];
 
 impl Language {
-    /// Translates the texts of markup: those between tags, and labels in attributes. An element with
-    /// `translate="no"` stays.
+    /// Translates the texts of markup: those between tags, and labels in attributes. The texts of an element with
+    /// `translate="no"` stay in English.
     ///
     /// The markup must be well formed, without scripts and style sheets.
     pub fn markup(self, markup: &str) -> String {
@@ -63,7 +63,7 @@ fn tag(tag: &str, new: &mut dyn FnMut(&str) -> String) -> String {
     out
 }
 
-/// Returns the texts that a script gives to its function `t`, as first argument in double quotes.
+/// Returns the texts that a script passes to its function `t`, as first argument in double quotes.
 pub(crate) fn texts_of_script(script: &str) -> impl Iterator<Item = &str> {
     script.match_indices("t(\"").filter_map(|(at, opening)| {
         let before = script[..at].chars().next_back();

@@ -1,4 +1,4 @@
-//! Bodies in space as time series for ParaView.
+//! Three-dimensional bodies as time series for ParaView.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use super::{closed_index, index_entry, opened_index};
 use crate::film::sampled_times;
 use crate::{Attachment, Role, csv_field};
 
-/// The surface of a body in space, in the frame of the body.
+/// The surface of a three-dimensional body, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidBody {
     /// Name.
@@ -35,7 +35,7 @@ pub struct SolidTie {
     pub torn_at: Option<f64>,
 }
 
-/// Bodies in space and their motion.
+/// Three-dimensional bodies and their motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solids {
     /// The bodies.
@@ -50,8 +50,7 @@ pub struct Solids {
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
-/// Writes the files of bodies in space for ParaView, one after the other, to be placed into a
-/// separate folder.
+/// Writes the files of three-dimensional bodies for ParaView, one after the other, to be placed into a separate folder.
 ///
 /// `stack.pvd` is the file to open. There is a `bodies-*.vtp` for each time, and `bodies.csv` lists
 /// the names of the bodies by number.

@@ -19,7 +19,7 @@ use super::super::spread::LEVEL;
 /// Share (%) of variants that must stand in every plane.
 pub const ENOUGH: u32 = 95;
 
-/// Number of variants in the first block of a change; this many fill one bundle of lanes.
+/// Number of variants in the first block of a change: as many as one bundle of SIMD lanes computes side by side.
 const FIRST: u32 = 8;
 
 /// Number of variants in every later block.

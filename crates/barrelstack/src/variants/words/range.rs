@@ -6,8 +6,8 @@ use crate::variants::{ShareAt, Spread};
 /// Largest width of the range of shares for which the sentence states that the uncertain constants matter little.
 const NARROW: f64 = 0.1;
 
-/// Smallest amount by which the share at the median lies outside the shares at both ends for the sentence to state it,
-/// too.
+/// The sentence also states the share at the median of a constant if this share lies outside the shares at the 5 % and
+/// 95 % fractiles by at least this difference.
 const BEYOND: f64 = 0.1;
 
 /// Describes the range of the share over the uncertain constants, and the decisive constant, such as
@@ -48,7 +48,7 @@ pub fn measure(spread: &Spread) -> Option<String> {
     let [low, high] = spread.range?;
     let (one, left) = spread.worth_measuring()?;
     Some(format!(
-        "To narrow the range of the share that falls, measure the {}: {}. On average, the measurement leaves a range of {:.0} percentage points instead of {:.0}.",
+        "To narrow the range of the share that falls, measure the {}: {}. After the measurement, the range is on average {:.0} percentage points wide instead of {:.0}.",
         one.name,
         one.test()?,
         100.0 * left,
