@@ -27,7 +27,7 @@ section! {
     /// A shift of a stack or of one of its bodies.
     #[derive(Clone, Debug, PartialEq)]
     pub struct ShiftSpec;
-    /// A shift before the first shock, from the place at rest as built.
+    /// A shift before the first shock, relative to the place at rest as built.
     pub static SHIFT = "shift";
     /// Stack: row and number in the row, such as "1-2".
     stack: String = Kind::Text, Default::Required;
@@ -117,7 +117,7 @@ pub(crate) struct StackStart {
     pub(crate) line: Option<usize>,
 }
 
-/// Returns, by the name of the stack, where each stack starts that does not start as built.
+/// Returns the starts of all stacks that do not start as built, by the name of the stack.
 ///
 /// # Errors
 /// If the file cannot be read, or a stack or a body is unknown.

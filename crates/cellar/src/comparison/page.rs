@@ -57,14 +57,13 @@ impl Row<'_> {
     }
 }
 
-/// Returns the layouts in the order of the share of their barrels that falls, followed by the changes that were not
-/// run.
+/// Returns the layouts, sorted by the share of barrels that fall, followed by the changes that were not run.
 fn rows(found: &CellarComparison) -> Vec<Row<'_>> {
     let run = found.ranked().into_iter().map(|(one, pair)| Row::Run(one, pair));
     run.chain(found.left_out.iter().map(Row::LeftOut)).collect()
 }
 
-/// Returns a change with its sign and its interval.
+/// Formats the difference between two layouts, with its sign and its interval.
 fn change(change: &Change, scale: f64) -> Cell {
     let signed = |value: f64| match amount(value.abs()) {
         none if none == "0" => none,
@@ -77,7 +76,7 @@ fn change(change: &Change, scale: f64) -> Cell {
     ))
 }
 
-/// Returns the table of losses against capacity, in the order of the share of the barrels that falls.
+/// Returns the table of losses against capacity. The layouts are sorted by the share of barrels that fall.
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
         "Loss against capacity, in the order of the share of the barrels that falls. Means over the variants, with their 95 % \
@@ -242,7 +241,7 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
     }
 }
 
-/// Returns the names of the layouts, followed by the title if all cellars have the same.
+/// Returns the names of the layouts, followed by the title if all cellars have the same title.
 fn title(layouts: &[Layout]) -> String {
     let names = format!("Comparison of {}", listed(layouts.iter().map(|one| one.name.clone())));
     let first = layouts.first().map(|one| &one.cellar.title);

@@ -137,7 +137,7 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     }
 }
 
-/// Returns the interval of a change with the number of pairs, and whether it proves a difference.
+/// Describes the interval of a change and the number of pairs, and states whether they prove a difference.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
