@@ -201,9 +201,9 @@ pub fn collapse(
     let mut facts = vec![
         ("tests".to_owned(), tests.len().to_string()),
         ("simulations".to_owned(), courses.len().to_string()),
-        ("draws in effect".to_owned(), short(posterior.effective())),
+        ("effective number of draws".to_owned(), short(posterior.effective())),
         ("power of the likelihood".to_owned(), short(posterior.power)),
-        ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        ("prior range".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
         ("seed".to_owned(), settings.seed.to_string()),
     ];
     for (at, test) in tests.iter().enumerate() {

@@ -192,7 +192,7 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
     | NormalLaw::KelvinVoigt { stiffness, damping }) = interface.normal
     else {
         return refuse(
-            "k and c are constants of a linear law: set law = \"speed-gap\" or law = \"kelvin-voigt\"",
+            "k and c are constants of a linear contact law: set law = \"speed-gap\" or law = \"kelvin-voigt\"",
         );
     };
     // The fit varies k and c separately, so a restitution is first converted to a damping c.

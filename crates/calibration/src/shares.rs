@@ -30,7 +30,7 @@ pub use statements::{
 
 /// What the intervals cover.
 const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements, of the motion in the cellar and of the \
-                      proportions of the heights, and an error of 10 % of the model in each share. They do not cover values \
+                      proportions of stacks of each height, and a model error of 10 % in each share. They do not cover values \
                       of the scenario that were not fitted.";
 
 /// Number of parameter sets that are weighted by the likelihood of the statements.
@@ -106,7 +106,7 @@ pub fn shares(
     for levels in levels(statements) {
         if at(levels).is_none() {
             return Err(CalibrateError::Scenario(format!(
-                "a statement is about stacks of {levels} levels, of which there is no scenario"
+                "a statement is about stacks of {levels} levels, but there is no scenario of such a stack"
             )));
         }
     }
@@ -157,8 +157,8 @@ pub fn shares(
         ("scenario".to_owned(), first.scenario.title.clone()),
         ("statements".to_owned(), statements.len().to_string()),
         ("simulations".to_owned(), shaken.len().to_string()),
-        ("draws in effect".to_owned(), short(posterior.effective())),
-        ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        ("effective number of draws".to_owned(), short(posterior.effective())),
+        ("prior range".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
         (
             "motion in the cellar, relative to that of the scenario".to_owned(),
             format!("{:.2} ({:.2} to {:.2})", motion[0], motion[1], motion[2]),
@@ -397,9 +397,9 @@ impl Weighed {
             rows.bar(format!("{}: given the statements", one.id), after);
             stated.extend([one.value.unwrap_or(f64::NAN); 2]);
         }
-        let caption = "Shares that the model predicts, before the statements are used and given all of them. Bars show \
-                       the central 90 % over the parameters, the motion and the mixture of heights; marks show the \
-                       stated shares.";
+        let caption = "Shares that the model predicts: before the statements are used, and given all statements. Bars \
+                       show the central 90 % of the predictions, over the parameters, the motion and the mixture of \
+                       heights; marks show the stated shares.";
         let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share", "") };
         rows.figure("collapse-shares", caption, x, Some(stated))
     }

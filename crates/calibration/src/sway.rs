@@ -53,7 +53,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let own = seats.iter().map(|(name, law)| {
         stiffness(law).ok_or_else(|| {
             refuse(&format!(
-                "a tap test needs linear laws with constants per seat or per node; the law of interface.{name} \
+                "a tap test needs linear contact laws with constants per seat or per node; the law of interface.{name} \
                  is of another kind"
             ))
         })

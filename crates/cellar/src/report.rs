@@ -358,7 +358,7 @@ pub fn stacks(summary: &CellarSummary) -> Table {
 
 fn rows(summary: &CellarSummary) -> Table {
     Table::of(
-        "Rows: the share of variants in which the first stack that falls is in the row, and the mean numbers of \
+        "For each row: share of the variants in which the first stack to fall is in this row, and mean numbers of its \
          stacks that fall by themselves and that are knocked over.",
         &summary.rows,
         &[

@@ -195,7 +195,7 @@ described! {
     pub struct AisleAnswer {
         /// Name of the aisle.
         pub name: String,
-        /// Variants in which a barrel comes into the aisle.
+        /// Variants in which a barrel enters the aisle.
         pub entered: Count,
         /// Distribution of the time of the first barrel in the aisle.
         pub first_barrel: Option<Range> as "s",

@@ -391,11 +391,11 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     if let Some(motion) = summary.motion.as_ref().filter(|_| summary.shocks.is_empty()) {
         let other = summary.other_component.as_ref();
         let other = other
-            .map(|other| format!("; along y as {}, {}", other.name, peaks(other.pga, other.pgv)));
+            .map(|other| format!("; along y it is {}, {}", other.name, peaks(other.pga, other.pgv)));
         let vertical = summary.vertical_component.as_ref();
-        let vertical = vertical.map(|up| format!("; vertically {}", peaks(up.pga, up.pgv)));
+        let vertical = vertical.map(|up| format!("; vertically it is {}", peaks(up.pga, up.pgv)));
         all.push(format!(
-            "Along x the ground moves as {}, {}{}{}.",
+            "The ground motion along x is {}, {}{}{}.",
             motion.name,
             peaks(motion.pga, motion.pgv),
             other.unwrap_or_default(),
@@ -423,7 +423,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             all.push(format!(
-                "A path 0.6 m wide leads from the place \"{}\" to a door in {}.",
+                "A path 0.6 m wide from the place \"{}\" to a door is left in {}.",
                 place.name,
                 share(count, *of)
             ));
@@ -503,12 +503,12 @@ fn peaks(acceleration: f64, velocity: f64) -> String {
 /// Returns the sentence on an aisle over a number of variants.
 fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     let Some(first) = &aisle.first_barrel else {
-        return format!("No barrel comes into the aisle \"{}\".", aisle.name);
+        return format!("No barrel enters the aisle \"{}\".", aisle.name);
     };
     let fast =
-        aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
+        aisle.fastest.map_or(String::new(), |fast| format!("; barrels in the aisle move at up to {:.1} m/s", fast.most));
     format!(
-        "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end, {} of the area of \
+        "The first barrel enters the aisle \"{}\" {} after the shaking starts{fast}. At the end, {} of the area of \
          the aisle is covered, and the aisle is blocked in {}.",
         aisle.name,
         span(first, aisle.entered.of_variants, 1, "s"),

@@ -79,7 +79,7 @@ fn change(change: &Change, scale: f64) -> Cell {
 /// Returns the table of losses against capacity. The layouts are sorted by the share of barrels that fall.
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
-        "Loss against capacity, in the order of the share of the barrels that falls. Means over the variants, with their 95 % \
+        "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, with their 95 % \
          intervals; differences from the first layout are taken variant by variant. Wine and cost are expected \
          losses under the central assumption on how many of the fallen barrels burst.",
         rows(found),
@@ -115,9 +115,9 @@ fn courses(found: &CellarComparison) -> Table {
         format!(
             "How the stacks fall: means over the variants with their 95 % intervals. Spread: number of stacks that \
              fall, divided by the number that fall by themselves. Aisles: share of the variants in which an aisle \
-             is blocked at the end. The time of the first \
-             barrel in an aisle is counted from the start of the shaking, over 5 to 95 % of the variants in which a \
-             barrel enters an aisle, or over all of them if they are fewer than {FEW}. Impact forces last a few \
+             is blocked at the end. The time at which the first \
+             barrel enters an aisle is counted from the start of the shaking; its range covers 5 to 95 % of the \
+             variants in which a barrel enters an aisle, or all of them if they are fewer than {FEW}. Impact forces last a few \
              milliseconds and grow with the assumed stiffness of the contact."
         ),
         rows(found),

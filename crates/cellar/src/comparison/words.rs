@@ -51,7 +51,7 @@ fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
             clause(first, one, pair)
         ),
         Some(_) => format!(
-            "None of {} other layouts loses fewer barrels for its capacity than \"{}\", of whose {} barrels {} fall{}.",
+            "None of {} other layouts loses fewer barrels for its capacity than \"{}\"; of the {} barrels of that layout, {} fall{}.",
             many - 1,
             first.name,
             first.capacity,
@@ -96,7 +96,7 @@ fn compared(second: &str, first: &str) -> String {
 fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> String {
     let Change { first: from, second: to, difference, .. } = pair.barrels_fallen;
     if from == 0.0 && to == 0.0 {
-        return format!("no barrel falls in either, in {}", variants(pair));
+        return format!("no barrel falls in either layout, in {}", variants(pair));
     }
     let average = on_average(pair.variants);
     if first.capacity == second.capacity {
@@ -203,7 +203,7 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
             }));
             if pairs().any(|(_, pair)| pair.barrels_fallen.interval.is_some()) {
                 all.push(
-                    "The level of 95 % holds for the intervals of all these differences together."
+                    "The confidence level of 95 % applies to the intervals of all these differences jointly."
                         .to_owned(),
                 );
             }
