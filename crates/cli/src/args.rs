@@ -78,7 +78,7 @@ pub(crate) enum Command {
     Man(crate::commands::shell::ManArgs),
 }
 
-/// A scenario, and changes to be made to the scenario.
+/// A scenario, and changes to be made to its values.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ScenarioArgs {
     /// A scenario file (TOML), the name of a built-in scenario, or - for standard input.
@@ -120,8 +120,8 @@ pub(crate) struct RunArgs {
     pub(crate) overwrite: bool,
     #[command(flatten)]
     pub(crate) tables: crate::tables::TableArgs,
-    /// Repeat the run with half the step, with finer nodes and with disturbances of a nanometer,
-    /// and report until when the run is predictable and whether its outcome is robust.
+    /// Repeat the run with half the time step, with finer contact nodes and with disturbances of a nanometer, and
+    /// report how long the run is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
     /// Do not search for changes that would have kept a fallen stack up; the search may take as
@@ -148,8 +148,8 @@ pub(crate) struct RunArgs {
     /// again, so work that was stopped can be continued.
     #[arg(long, value_name = "DIR")]
     pub(crate) keep: Option<PathBuf>,
-    /// Run only this part of the variants of a cellar, such as 1/8 to 8/8, and keep their results;
-    /// a run without this option then gathers them.
+    /// Run only this part of the variants of a cellar, such as 3/8 for the third of eight parts, and keep their
+    /// results; a run without this option then gathers the results of all parts.
     #[arg(long, requires = "keep", value_name = "PART/PARTS", conflicts_with_all = ["out", "state", "json"])]
     pub(crate) part: Option<PartName>,
     /// Draw the stack in the summary with ASCII characters only.

@@ -131,7 +131,7 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// Returns the scenario of a name, with the changes.
+    /// Returns the arguments that select the scenario with the name `name`, with the changes.
     fn of(&self, name: &str) -> ScenarioArgs {
         let (set, record) = (self.set.clone(), self.record.clone());
         ScenarioArgs { scenario: name.to_owned(), set, record }

@@ -107,7 +107,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Replaces the first names of runs by those that are given.
+/// Replaces the names of the first runs by the given names.
 pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<()> {
     if given.len() > names.len() {
         bail!("--label: there are {} names for {} runs", given.len(), names.len());
@@ -184,8 +184,8 @@ fn stacks(
     Ok(super::status(broken))
 }
 
-/// Writes the report of the only run that was finished, or at least started, when the comparison
-/// was stopped.
+/// Writes the report of a single run, which is all that the comparison had finished, or at least started, when it was
+/// stopped.
 fn alone(
     args: &CompareArgs,
     folder: &Folder,
