@@ -203,7 +203,10 @@ pub fn collapse(
         ("simulations".to_owned(), courses.len().to_string()),
         ("effective number of draws".to_owned(), short(posterior.effective())),
         ("power of the likelihood".to_owned(), short(posterior.power)),
-        ("prior range".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        (
+            "prior range".to_owned(),
+            format!("within a factor of {} of the scenario", settings.within),
+        ),
         ("seed".to_owned(), settings.seed.to_string()),
     ];
     for (at, test) in tests.iter().enumerate() {

@@ -158,7 +158,10 @@ pub fn shares(
         ("statements".to_owned(), statements.len().to_string()),
         ("simulations".to_owned(), shaken.len().to_string()),
         ("effective number of draws".to_owned(), short(posterior.effective())),
-        ("prior range".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        (
+            "prior range".to_owned(),
+            format!("within a factor of {} of the scenario", settings.within),
+        ),
         (
             "motion in the cellar, relative to that of the scenario".to_owned(),
             format!("{:.2} ({:.2} to {:.2})", motion[0], motion[1], motion[2]),

@@ -204,7 +204,9 @@ impl Plan {
             ));
         }
         if cellar.doors.is_empty() && !cellar.places.is_empty() {
-            findings.push("there are places where people work, but no door by which to leave".to_owned());
+            findings.push(
+                "there are places where people work, but no door by which to leave".to_owned(),
+            );
         }
         let wine: f64 = stacks.iter().map(|one| models[one.model].wine).sum();
         let barrels = cellar.barrels();

@@ -60,7 +60,7 @@ section! {
     /// Stiffness k of walls and columns where a body strikes them.
     stiffness: Option<f64> = Kind::Quantity(&[Dimension::HERTZ_STIFFNESS], Range::POSITIVE),
         Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
-    /// Ratio of the speeds after and before a strike on a wall or column.
+    /// Coefficient of restitution: ratio of the speeds after and before a body strikes a wall or column.
     restitution: Option<f64> = Kind::Number(Range::up_to(1.0)),
         Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
     /// Friction coefficient of bodies on walls and columns.

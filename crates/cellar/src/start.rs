@@ -43,9 +43,9 @@ section! {
 table! {
     /// Places from which bodies start, such as those surveyed after an earthquake. All other bodies start as built.
     pub static START = "start";
-    /// CSV file, relative to this file, with a row for each stack or body: columns `stack` and `body` (empty: the whole
-    /// stack), and shifts `dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`; or poses in the frame of the stack `x (m)`,
-    /// `y (m)`, `z (m)`, `qw`, `qx`, `qy`, `qz`, of all bodies of a stack.
+    /// CSV file with one row for each stack or body; its path is relative to this file. It has the columns `stack` and
+    /// `body` (empty for the whole stack), and either shifts (`dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`) or, for all
+    /// bodies of a stack, poses in the frame of the stack (`x (m)`, `y (m)`, `z (m)`, `qw`, `qx`, `qy`, `qz`).
     file = Kind::Text, Default::Nothing;
     /// Shifts, in this order, after those of the file.
     shift = Kind::Tables(&SHIFT), Default::Nothing;

@@ -390,8 +390,9 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     all.extend(shocks.map(|(number, shock)| of_shock(shock, *of, number == last)));
     if let Some(motion) = summary.motion.as_ref().filter(|_| summary.shocks.is_empty()) {
         let other = summary.other_component.as_ref();
-        let other = other
-            .map(|other| format!("; along y it is {}, {}", other.name, peaks(other.pga, other.pgv)));
+        let other = other.map(|other| {
+            format!("; along y it is {}, {}", other.name, peaks(other.pga, other.pgv))
+        });
         let vertical = summary.vertical_component.as_ref();
         let vertical = vertical.map(|up| format!("; vertically it is {}", peaks(up.pga, up.pgv)));
         all.push(format!(
@@ -505,8 +506,9 @@ fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     let Some(first) = &aisle.first_barrel else {
         return format!("No barrel enters the aisle \"{}\".", aisle.name);
     };
-    let fast =
-        aisle.fastest.map_or(String::new(), |fast| format!("; barrels in the aisle move at up to {:.1} m/s", fast.most));
+    let fast = aisle.fastest.map_or(String::new(), |fast| {
+        format!("; barrels in the aisle move at up to {:.1} m/s", fast.most)
+    });
     format!(
         "The first barrel enters the aisle \"{}\" {} after the shaking starts{fast}. At the end, {} of the area of \
          the aisle is covered, and the aisle is blocked in {}.",

@@ -8,7 +8,7 @@ use clap::{Parser, Subcommand};
 
 use crate::language::LanguageArgs;
 
-/// End of the first page of help.
+/// Text at the end of the help of the program.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack demo                                       a first run, and a report to open in a browser
@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Stop at a point of the work, WORK:THINGS:DONE, as Ctrl-C does; for tests.
+    /// Stop the program at a point of its work, given as WORK:THINGS:DONE, as Ctrl-C would; for tests.
     #[arg(long, global = true, hide = true, value_name = "POINT")]
     pub(crate) stop_at: Option<crate::interrupt::StopPoint>,
 }
@@ -48,7 +48,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Protection with the best benefit for its cost: levels, racks, devices, or pairs of these.
+    /// Protection with the best benefit for its cost: fewer levels, other racks, devices, or pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),

@@ -79,8 +79,8 @@ fn change(change: &Change, scale: f64) -> Cell {
 /// Returns the table of losses against capacity. The layouts are sorted by the share of barrels that fall.
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
-        "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, with their 95 % \
-         intervals; differences from the first layout are taken variant by variant. Wine and cost are expected \
+        "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, with \
+         their 95 % intervals; differences from the first layout are taken variant by variant. Wine and cost are expected \
          losses under the central assumption on how many of the fallen barrels burst.",
         rows(found),
         &[
@@ -117,8 +117,8 @@ fn courses(found: &CellarComparison) -> Table {
              fall, divided by the number that fall by themselves. Aisles: share of the variants in which an aisle \
              is blocked at the end. The time at which the first \
              barrel enters an aisle is counted from the start of the shaking; its range covers 5 to 95 % of the \
-             variants in which a barrel enters an aisle, or all of them if they are fewer than {FEW}. Impact forces last a few \
-             milliseconds and grow with the assumed stiffness of the contact."
+             variants in which a barrel enters an aisle, or all of them if they are fewer than {FEW}. Impact forces \
+             last a few milliseconds and grow with the assumed stiffness of the contact."
         ),
         rows(found),
         &[

@@ -24,7 +24,7 @@ use crate::printer;
 use crate::progress::Progress;
 use crate::typed::{typed, word};
 
-/// End of the help.
+/// Text at the end of the help.
 const AFTER_HELP: &str = "\
 Files are CSV with a header whose columns carry their unit, such as
   penetration (mm),force (kN)

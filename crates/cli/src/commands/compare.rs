@@ -18,7 +18,7 @@ use crate::interrupt::{Interrupt, Stopped};
 use crate::language::LanguageArgs;
 use crate::printer;
 
-/// End of the help of `compare`.
+/// Examples at the end of the help of `compare`.
 const EXAMPLES: &str = "\
 Examples:
   barrelstack compare demo-napa --against stack.levels=4
@@ -38,8 +38,8 @@ pub(crate) struct CompareArgs {
     /// Add a run of the first scenario with this value changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
-    /// Add the usual changes of the first cellar, as far as they fit: wider spacing, all levels strapped together,
-    /// stops under every rack, one level less, every stack turned by 90°.
+    /// Add runs of the first cellar with the usual changes, as far as they fit: wider spacing, all levels strapped
+    /// together, stops under every rack, one level less, every stack turned by 90°.
     #[arg(long)]
     pub(super) usual: bool,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.

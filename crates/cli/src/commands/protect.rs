@@ -37,8 +37,8 @@ pub(crate) struct ProtectArgs {
     /// Number of motions per round, if no folder of motions is given.
     #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
     count: u32,
-    /// Number of rounds: the first round tries all protections, and each further round the better
-    /// half of the protections of the previous round.
+    /// Number of rounds: the first round evaluates all protections, and each further round evaluates the better half of
+    /// those in the previous round.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
     /// Seed of motions and friction.
@@ -51,7 +51,7 @@ pub(crate) struct ProtectArgs {
     page: PageArgs,
 }
 
-/// Tries all protections, writes the page, and prints the table.
+/// Evaluates all protections, writes the page, and prints the table.
 pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     let request = request(args)?;
     let (options, progress) = args.page.begin(&args.out)?;

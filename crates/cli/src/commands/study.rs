@@ -27,7 +27,7 @@ use crate::language::LanguageArgs;
 use crate::printer;
 use crate::tables::TableArgs;
 
-/// End of the help.
+/// Text at the end of the help.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack study example > mine.toml           a commented study to change

@@ -88,7 +88,7 @@ pub(super) struct Batch<'a> {
     /// Extension of the output file of each record; a record whose output file is missing is
     /// processed again.
     pub(super) ending: Option<String>,
-    /// Further forms of the tables.
+    /// Further file formats of the tables.
     pub(super) tables: TableArgs,
 }
 
