@@ -30,8 +30,8 @@ pub use statements::{
 
 /// What the intervals cover.
 const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements, of the motion in the cellar and of the \
-                      proportions of stacks of each height, and a model error of 10 % in each share. They do not cover values \
-                      of the scenario that were not fitted.";
+                      proportions of stacks of each height, and a model error of 10 % in each share. They do not cover \
+                      values of the scenario that were not fitted.";
 
 /// Number of parameter sets that are weighted by the likelihood of the statements.
 const DRAWS: usize = 20_000;

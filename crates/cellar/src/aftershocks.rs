@@ -324,8 +324,8 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     let columns: Vec<_> = columns.iter().map(|(name, unit, of)| (*name, *unit, &**of)).collect();
     let stacks = Table::of(
         "Stacks in the order in which to inspect them. Shares are given with their 95 % intervals: the share of all \
-         variants in which a stack stands after the main shock, and the share of these variants in which it falls under an \
-         aftershock. Movement is the median over these variants in the main shock.",
+         variants in which a stack stands after the main shock, and the share of these variants in which it falls \
+         under an aftershock. Movement is the median over these variants in the main shock.",
         summary.inspection.iter().cloned(),
         &columns,
     );

@@ -114,8 +114,8 @@ pub enum RoomFailure {
     Empty,
     /// There are too many bodies.
     #[error(
-        "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed (a run of that size \
-         needs about 3 GB): divide it into rooms such that nothing can fall from one into another"
+        "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed (a run of that \
+         size needs about 3 GB): divide it into rooms such that nothing can fall from one into another"
     )]
     Large {
         /// Number of bodies.
@@ -123,7 +123,8 @@ pub enum RoomFailure {
     },
     /// Stacks have different gravity or integration methods.
     #[error(
-        "stacks \"{first}\" and \"{second}\" differ in run.gravity or run.method: give all stacks of a room the same values"
+        "stacks \"{first}\" and \"{second}\" differ in run.gravity or run.method: give all stacks of a room the \
+         same values"
     )]
     Differ {
         /// Name of the first stack.

@@ -537,8 +537,8 @@ fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
     let Some(mut law) = stated else { return Ok(Vec::new()) };
     if room.stiffness.is_some() || room.restitution.is_some() {
         let NormalLaw::Rebound { stiffness, restitution, .. } = &mut law.normal else {
-            let message = "the stiffness and restitution of walls need a rebound contact law: set `law = \"rebound\"` in \
-                           interface.barrel-ground, or leave them out"
+            let message = "the stiffness and restitution of walls need a rebound contact law: set `law = \"rebound\"` \
+                           in interface.barrel-ground, or leave them out"
                 .to_owned();
             return Err(cellar.host.error(&["room.stiffness", "room.restitution"], message).into());
         };

@@ -733,7 +733,8 @@ fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     }
     if stated.run.until != Until::Rest {
         let message =
-            "a room is simulated until its bodies rest, because a stack may fall on another late in the run: leave `run.until` out"
+            "a room is simulated until its bodies rest, because a stack may fall on another late in the run: leave \
+             `run.until` out"
                 .to_owned();
         return Err(host.error(&["run.until"], message));
     }

@@ -79,9 +79,9 @@ fn change(change: &Change, scale: f64) -> Cell {
 /// Returns the table of losses against capacity. The layouts are sorted by the share of barrels that fall.
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
-        "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, with \
-         their 95 % intervals; differences from the first layout are taken variant by variant. Wine and cost are expected \
-         losses under the central assumption on how many of the fallen barrels burst.",
+        "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, \
+         with their 95 % intervals; differences from the first layout are taken variant by variant. Wine and cost are \
+         expected losses under the central assumption on how many of the fallen barrels burst.",
         rows(found),
         &[
             ("layout", "", &Row::name),

@@ -51,7 +51,8 @@ fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
             clause(first, one, pair)
         ),
         Some(_) => format!(
-            "None of {} other layouts loses fewer barrels for its capacity than \"{}\"; of the {} barrels of that layout, {} fall{}.",
+            "None of {} other layouts loses fewer barrels for its capacity than \"{}\"; of the {} barrels of \
+             that layout, {} fall{}.",
             many - 1,
             first.name,
             first.capacity,
