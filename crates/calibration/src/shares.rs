@@ -48,7 +48,7 @@ pub struct Height {
     pub scenario: Scenario,
 }
 
-/// Returns the numbers of levels that statements name, for each of which [`shares`] needs a [`Height`].
+/// Returns the numbers of levels that statements name. For each of them, [`shares`] needs a [`Height`].
 pub fn levels(statements: &[&Statement]) -> BTreeSet<usize> {
     statements.iter().flat_map(|one| one.levels.iter().copied()).collect()
 }

@@ -1,4 +1,4 @@
-//! Survival of aftershocks of several strengths, each of which follows the same main shock.
+//! Survival of aftershocks of several strengths that follow the same main shock.
 
 use std::ops::ControlFlow;
 use std::path::Path;

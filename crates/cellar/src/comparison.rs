@@ -113,16 +113,16 @@ described! {
         pub share_lost: Estimate as "1",
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
-        /// Lower and upper estimate of the cost of the barrels that burst and of their wine, under the central
-        /// assumption on how many burst.
+        /// Lower and upper estimate of the cost (barrels that burst, and their wine), under the central assumption on
+        /// how many burst.
         pub cost: [f64; 2] as "US$",
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
-        /// Variants in which at least one aisle is blocked at the end; null without aisles.
+        /// Variants in which at least one aisle is blocked at the end; null if there are no aisles.
         pub some_blocked: Option<Count>,
         /// Distribution of the time from the start of the shaking to the first barrel in any aisle.
         pub first_barrel: Option<Range> as "s",
-        /// Largest force on a wall or column in any variant; null without walls and columns.
+        /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
         /// Time from the end of the run that is shown to the end of its motion, or the longest such time in a sequence
         /// of shocks; null if the run covers its motion.
@@ -165,11 +165,11 @@ described! {
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
         /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
-        /// Lower estimate of the cost of the barrels that burst and of their wine, under the central assumption; no
-        /// interval is given.
+        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
+        /// is given.
         pub cost_low: Change as "US$",
-        /// Upper estimate of the cost of the barrels that burst and of their wine, under the central assumption; no
-        /// interval is given.
+        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
+        /// is given.
         pub cost_high: Change as "US$",
     }
 

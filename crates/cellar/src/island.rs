@@ -282,7 +282,7 @@ impl Island {
         }
     }
 
-    /// Advances to the last step that ends by a time (s), or until a body would leave its tube.
+    /// Advances until the next time step would end after a time (s), or until a body would leave its tube.
     pub(crate) fn advance(&mut self, world: &World<'_>, until: f64) {
         let Simulation { time_step: step, end_time, .. } = self.fixed.simulation;
         let latest = until + 1e-9 * step;
@@ -297,7 +297,7 @@ impl Island {
         let _ = self.update_travels(world, 0.0);
     }
 
-    /// Advances to a time (s) exactly; the last step is cut short.
+    /// Advances to a time (s) exactly; the last time step is shortened.
     pub(crate) fn advance_to(&mut self, world: &World<'_>, time: f64) {
         let sliver = 1e-9 * self.fixed.simulation.time_step;
         self.live.stopped_by = None;
@@ -504,7 +504,7 @@ impl Island {
         plus(self.live.running.stepper.energy.summary(0), &self.energy_before)
     }
 
-    /// Returns the numbers of steps and evaluations since the start.
+    /// Returns the numbers of time steps and force evaluations since the start.
     pub(crate) fn work(&self) -> Work {
         let Running { scratch, stepper, .. } = &self.live.running;
         Work {

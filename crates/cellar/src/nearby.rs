@@ -31,7 +31,7 @@ const LEAST: f64 = 1e-3;
 /// Gap (m) up to which gaps are measured exactly; for larger gaps, a lower bound suffices.
 const EXACT: f64 = 0.1;
 
-/// Two bodies of different parties, the second of which may be an obstacle.
+/// Two bodies of different stacks, or a body and an obstacle.
 struct Couple {
     bodies: [Owner; 2],
     /// Gap (m) at the last measurement, or a lower bound of it.
@@ -53,7 +53,7 @@ pub(crate) struct Nearby {
     made_for: Vec<Vec3>,
 }
 
-/// Island of every stack, and the number of the first body of the stack in the model of the island.
+/// For every stack: index of its island, and number of its first body in the model of the island.
 pub(crate) type Places = Vec<(usize, BodyId)>;
 
 impl Nearby {

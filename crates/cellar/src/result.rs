@@ -147,7 +147,7 @@ pub struct RoomRun {
     pub frames: Vec<RoomFrames>,
     /// Energy balance of all islands; `None` if numbers are no longer finite.
     pub energy: Option<EnergySummary>,
-    /// Sums of steps and evaluations over all islands.
+    /// Numbers of time steps and force evaluations, summed over all islands.
     pub work: Work,
     /// Number of times that islands were merged.
     pub merges: usize,

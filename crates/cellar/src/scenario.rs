@@ -270,7 +270,7 @@ pub const MOST_BARRELS: u64 = 10_000;
 /// Maximum number of columns; also of doors, of aisles and of places.
 const MOST_ITEMS: usize = 1000;
 
-/// Maximum number of shocks of a sequence, each of which takes the time of a run.
+/// Maximum number of shocks of a sequence. Each shock takes as long as a run.
 pub const MOST_SHOCKS: usize = 20;
 
 /// A stack in its place.
@@ -683,7 +683,7 @@ impl Cellar {
     }
 }
 
-/// Returns the number of barrels of the stack of a scenario.
+/// Returns the number of barrels of the stack that a scenario describes.
 pub(crate) fn barrels(scenario: &Scenario) -> u64 {
     scenario.stack().map_or(0, |stack| {
         let along = stack.space.map_or(1, |space| space.columns_along);

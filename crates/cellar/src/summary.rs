@@ -124,10 +124,10 @@ described! {
         pub burst: [f64; 3] as "1",
         /// Expected loss of wine, under the three assumptions of `burst`.
         pub wine_lost: [f64; 3] as "m3",
-        /// Lower and upper estimate of the cost of the barrels that burst and of their wine, under the central
-        /// assumption on how many burst.
+        /// Lower and upper estimate of the cost (barrels that burst, and their wine), under the central assumption on
+        /// how many burst.
         pub cost: [f64; 2] as "US$",
-        /// Largest force on a wall or column in any variant; null without walls and columns.
+        /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
     }
 
@@ -172,7 +172,7 @@ described! {
         pub by_itself: Count,
         /// Variants in which the stack is knocked over.
         pub knocked_over: Count,
-        /// Distribution of the time of the first loss of seat of the stack.
+        /// Distribution of the time at which the stack first loses a seat.
         pub falls_at: Option<Range> as "s",
         /// Name of the other stack that most often touches this stack first; null if none touches it.
         pub touched_by: Option<String>,
@@ -214,7 +214,7 @@ described! {
     pub struct PlaceAnswer {
         /// Name of the place.
         pub name: String,
-        /// Variants in which a path 0.6 m wide leads from the place to a door at the end; null without doors.
+        /// Variants in which a path 0.6 m wide leads from the place to a door at the end; null if there are no doors.
         pub leads_out: Option<Count>,
     }
 

@@ -286,8 +286,9 @@ fn still_moving(shock: &ShockAnswer, of: u32, last: bool) -> String {
     format!(" In {}, a body still moves when the shock ends{next}.", share(&shock.still_moving, of))
 }
 
-/// Returns a sentence that states how many of the stacks that stand after the first shock survive the second, whose
-/// strength `strength` describes; `None` if the summary has no second shock or the work was stopped.
+/// Returns a sentence that states how many of the stacks that stand after the first shock survive the second;
+/// `strength` describes the strength of the second shock. `None` if the summary has no second shock or the work was
+/// stopped.
 pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
     let (shock, of) = (summary.shocks.get(1)?, summary.counted);
     if summary.unfinished.is_some() || of == 0 {

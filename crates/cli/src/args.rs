@@ -140,8 +140,8 @@ pub(crate) struct RunArgs {
     /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
     pub(crate) with_engine: Option<PathBuf>,
-    /// Write the places of all bodies at the end of the run of a cellar into this file, which must not exist;
-    /// start.file of another cellar can name it.
+    /// Write the final places of all bodies of a cellar into this file, which must not exist. Another cellar can start
+    /// from these places: its start.file names this file.
     #[arg(long, value_name = "FILE")]
     pub(crate) state: Option<PathBuf>,
     /// Keep the result of every variant of a cellar in this folder. Variants whose results are there are not run

@@ -141,7 +141,7 @@ impl Progress {
 pub(crate) enum Of {
     /// One run, whose simulated time advances steadily.
     One,
-    /// Many runs side by side, the shortest of which end first.
+    /// Many runs side by side; the shortest runs end first.
     Many,
 }
 

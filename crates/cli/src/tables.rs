@@ -13,7 +13,7 @@ const WORKBOOK: &str = "tables.xlsx";
 /// Error message of a build that cannot write workbooks.
 const WITHOUT: &str = "this build of the command writes no workbooks; install it with `cargo install barrelstack --features xlsx`, \
                        or open the CSV files";
-/// Maximum size (bytes) of a file of which a workbook is made.
+/// Maximum size (bytes) of a file from which a workbook is made.
 const LIMIT: usize = 4 << 30;
 
 /// Options of the commands that write tables into a folder.

@@ -81,7 +81,7 @@ pub struct Statement {
     pub high: Option<f64>,
     /// Standard error of `value`, for the kinds [`Kind::Most`] and [`Kind::Few`].
     pub error: Option<f64>,
-    /// Number of stacks of which at least one fell.
+    /// Number of stacks; at least one of them fell.
     pub stacks: Option<f64>,
 }
 

@@ -27,8 +27,7 @@ pub(crate) struct ProtectArgs {
     /// Peak ground velocity to which motions are scaled, such as "50 cm/s"; may be repeated.
     #[arg(long, value_name = "VELOCITY")]
     pgv: Vec<String>,
-    /// Folder of recorded motions, all of which are used, in place of the bundled record and
-    /// synthetic motions.
+    /// Folder of recorded motions. All of them are used, in place of the bundled record and synthetic motions.
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
     /// Maximum cost of a protection for a stack (US$).

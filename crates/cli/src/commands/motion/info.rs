@@ -381,7 +381,7 @@ described! {
         peak_velocity: f64 as "m/s" = fit.peak_velocity,
         /// Time at which the pulse starts.
         start: f64 as "s" = fit.start,
-        /// Share that the pulse contains of the energy of the record (integral of the squared velocity).
+        /// Energy of the pulse divided by the energy of the record; energy is the integral of the squared velocity.
         energy_share: f64 as "1" = fit.energy_share,
     }
 

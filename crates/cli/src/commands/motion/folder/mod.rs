@@ -277,8 +277,7 @@ impl Measurements {
     }
 }
 
-/// Returns the fingerprint of the bytes of the files of a record; an unreadable file counts as
-/// empty.
+/// Returns a fingerprint of the contents of all files of a record; an unreadable file counts as empty.
 fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
     for path in source.paths() {
