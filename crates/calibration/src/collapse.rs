@@ -36,7 +36,7 @@ pub struct Settings {
     /// Standard deviation (m) of the position at which each rack and each barrel is placed when a stack is
     /// built.
     pub placement: f64,
-    /// Assumed errors of the observations, compared with a correct simulation.
+    /// Assumed differences between the observations and a correct simulation.
     pub errors: Errors,
     /// Number of parameter sets. Each set is used to simulate every test once.
     pub simulations: usize,
@@ -60,8 +60,8 @@ impl Default for Settings {
     }
 }
 
-/// Minimum relative narrowing, from the prior interval to the posterior interval of a parameter, for the test
-/// to count as informative.
+/// Minimum relative reduction of the width of a parameter's interval, from the prior to the posterior, for the test to
+/// count as informative.
 const INFORMATIVE: f64 = 0.15;
 
 /// Correlation above which two parameters are reported as inseparable.
@@ -75,7 +75,7 @@ const UNSEEN: f64 = 0.2;
 /// | column | content |
 /// |---|---|
 /// | `mode` | `ejection`, `rocking`, `rack-sliding`, `overturning`, or `stands` |
-/// | `B4.1 fell (s)` | time at which barrel `B4.1` had fallen, or `stands`; one column per barrel |
+/// | `B4.1 fell (s)` | time at which barrel `B4.1` fell, or `stands`; one column per barrel |
 /// | `first fall (s)`, `first barrel` | time of the first fall and name of the barrel, if the other falls were not observed |
 /// | `loss of seat (s)` | time at which the first body left its seat |
 /// | `until (s)` | duration of the observation; required if a barrel or the stack still stood |
@@ -111,7 +111,7 @@ struct PreparedTest<'a> {
     tunable: Tunable,
     /// Scenario of the test; its run lasts as long as the observation.
     scenario: Scenario,
-    /// Ground motion, in a plane or in space.
+    /// Ground motion, in a plane or in three dimensions.
     ground: Shaking,
     /// Standard deviation (m at full scale) of the positions of racks and barrels.
     scatter: f64,
@@ -132,7 +132,7 @@ struct PreparedTest<'a> {
 /// cancel the calibration.
 ///
 /// # Errors
-/// If a scenario is not a stack of linear laws, cannot be simulated or does not match the observations,
+/// If a scenario is not a stack whose contact laws are linear, cannot be simulated or does not match the observations,
 /// or if no simulation within the range runs to its end; [`CalibrateError::Stopped`] if `report` canceled it.
 pub fn collapse(
     observations: &Observations,
@@ -201,9 +201,12 @@ pub fn collapse(
     let mut facts = vec![
         ("tests".to_owned(), tests.len().to_string()),
         ("simulations".to_owned(), courses.len().to_string()),
-        ("draws in effect".to_owned(), short(posterior.effective())),
+        ("effective number of draws".to_owned(), short(posterior.effective())),
         ("power of the likelihood".to_owned(), short(posterior.power)),
-        ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        (
+            "prior range".to_owned(),
+            format!("within a factor of {} of the scenario", settings.within),
+        ),
         ("seed".to_owned(), settings.seed.to_string()),
     ];
     for (at, test) in tests.iter().enumerate() {

@@ -36,13 +36,13 @@ fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
 
 /// Estimates the restitution from a drop test, and the damping if the striker is given.
 ///
-/// The table has the columns `drop height` and `rebound height`, or the column `time` with the impacts of one bounce
-/// sequence.
+/// The table has the columns `drop height` and `rebound height`, or the column `time` with the times of the impacts of
+/// one bounce sequence.
 ///
-/// With a striker, the impact is solved with gravity and takes a finite time, and the damping ratio ζ is
-/// fitted to the rebounds or the times. Gravity presses the mass into the contact and so reduces the rebound
-/// of slow impacts. Without a striker, the impact is assumed to be instantaneous. For heights, the scatter is
-/// attributed to the restitution, which differs from drop to drop; for times, it is attributed to the times.
+/// With a striker, the impact is solved with gravity and takes a finite time, and the damping ratio ζ is fitted to the
+/// rebounds or the times. Gravity presses the mass into the contact and so reduces the rebound of slow impacts. Without
+/// a striker, the impact is assumed to be instantaneous. For heights, the scatter is attributed to the restitution,
+/// which differs from drop to drop; for times, it is attributed to errors of measurement.
 ///
 /// # Errors
 /// If the table lacks columns or rows, or a rebound is not lower than its drop.
@@ -106,7 +106,7 @@ pub fn drop(
 /// Result of a drop test, whether from heights or from times.
 struct DropResult {
     restitution: Estimate,
-    /// ln ζ, where ζ is the damping ratio, and half the width of its 95 % interval.
+    /// ln ζ and half the width of its 95 % interval; ζ is the damping ratio.
     log_ratio: Option<(f64, f64)>,
     impacts: usize,
     /// Figure of the measured and the fitted rebounds.
@@ -273,7 +273,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<DropResult, Cal
     Ok(DropResult { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// Returns ln ζ that gives a restitution without gravity. The fit with gravity starts from this value.
+/// Returns the logarithm of the damping ratio ζ that gives the restitution `e` without gravity. The fit with gravity
+/// starts from this value.
 fn start_ratio(e: f64) -> f64 {
     let ratio = restitution::speed_gap_damping_ratio(e).unwrap_or(0.1);
     math::log(ratio.clamp(1e-3, 1e3))

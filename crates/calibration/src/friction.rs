@@ -132,8 +132,8 @@ fn picture(
     Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
 }
 
-/// Returns the standard deviation of ln μ in a further test: the scatter of the tests, with the uncertainty
-/// of their mean included.
+/// Returns the standard deviation of ln μ that is expected for a further test: it includes the scatter of the tests and
+/// the uncertainty of their mean.
 fn dispersion(values: &[f64]) -> f64 {
     let logs: Vec<f64> = values.iter().map(|value| libm::log(*value)).collect();
     let count = logs.len() as f64;

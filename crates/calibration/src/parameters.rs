@@ -71,7 +71,7 @@ impl Tunable {
     /// Reads the values of parameters from a scenario.
     ///
     /// # Errors
-    /// If the scenario is not a stack of linear laws with friction.
+    /// If the scenario is not a stack whose contact laws are linear and have friction.
     pub(super) fn new(
         scenario: &Scenario,
         parameters: &[Parameter],
@@ -183,8 +183,8 @@ impl Tunable {
     }
 }
 
-/// Returns the constants of an interface, or an error if one of them is not positive, since no factor could
-/// then change it.
+/// Returns the constants of an interface, or an error if a constant is not positive: the fit multiplies the constants
+/// by factors, which cannot change zero.
 fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
     let refuse =
         |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
@@ -192,10 +192,10 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
     | NormalLaw::KelvinVoigt { stiffness, damping }) = interface.normal
     else {
         return refuse(
-            "k and c are constants of a linear law: set law = \"speed-gap\" or law = \"kelvin-voigt\"",
+            "k and c are constants of a linear contact law: set law = \"speed-gap\" or law = \"kelvin-voigt\"",
         );
     };
-    // The fit varies k and c separately, so a restitution is first converted to a c.
+    // The fit varies k and c separately, so a restitution is first converted to a damping c.
     let damping = match damping {
         Damping::Coefficient(damping) => damping,
         Damping::Restitution { restitution: ratio, reference: mass } => {

@@ -18,8 +18,8 @@ use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 /// single nodes coming into contact average out.
 const WIDTH: f64 = 0.01;
 
-/// Maximum length of the last step of a fit, relative to the standard error. A step of this length adds 0.3 %
-/// to an interval.
+/// Maximum length of the last step of a fit, relative to the standard error. A step of this length adds 0.3 % to the
+/// width of an interval.
 const SHARE: f64 = 0.05;
 
 /// Maximum length of the last step of the first fit, relative to the standard error. This fit only estimates
@@ -41,12 +41,12 @@ const ILL: f64 = 1e3;
 /// are named as in `histories.csv`, such as `R1 rotation (rad)` or `B1.1 displacement x (m)`. Displacements
 /// are relative to the ground and to the position at rest. Rows after `until` (s) are ignored.
 ///
-/// The differences between simulated and recorded values are divided by the scatter of their channel, which a
-/// first fit estimates. The sum of their squares is minimized; the variables are the logarithms of the
-/// parameters. The covariance follows from the sensitivities and residuals at the end of the fit. If
-/// residuals are correlated in time (lag-one correlation ρ), the covariance is multiplied by (1 + ρ)/(1 − ρ).
-/// The nominal 95 % intervals covered the true values in about 90 of 100 simulated records (89 to 94). The
-/// reason is not known, so the result contains a warning.
+/// The differences between simulated and recorded values are divided by the scatter of their channel, which a first fit
+/// estimates. The sum of their squares is minimized; the variables are the logarithms of the parameters. The covariance
+/// follows from the sensitivities and residuals at the end of the fit. If residuals are correlated in time (lag-one
+/// correlation ρ), the covariance is multiplied by (1 + ρ)/(1 − ρ). The nominal 95 % intervals covered the true values
+/// in about 90 of 100 simulated records (89 to 94, depending on the parameter). The reason is not known, so the result
+/// contains a warning.
 ///
 /// `report` is called from several threads with the number of simulations started, and may cancel the calibration.
 ///
@@ -55,7 +55,7 @@ const ILL: f64 = 1e3;
 /// short windows of mild shaking with little sliding.
 ///
 /// # Errors
-/// If the scenario is not a stack of linear laws, the table does not match the scenario, or the first
+/// If the scenario is not a stack whose contact laws are linear, the table does not match the scenario, or the first
 /// simulation fails; [`CalibrateError::Stopped`] if `report` canceled it.
 pub fn response(
     scenario: &Scenario,

@@ -25,10 +25,10 @@ pub struct Estimate {
 pub struct ModelShare {
     /// Name of the statement.
     pub statement: String,
-    /// Central 90 % of the predicted share over the ranges of the parameters, the motion and the proportions of the
-    /// heights, before the statements are used.
+    /// Interval that holds the central 90 % of the predicted shares before the statements are used. The shares are
+    /// predicted for random parameters, motions and proportions of stacks of each height.
     pub before: [f64; 2],
-    /// Central 90 % of the predicted share, given all statements.
+    /// Interval that holds the central 90 % of the predicted shares, given all statements.
     pub given: [f64; 2],
 }
 
@@ -67,7 +67,8 @@ impl Estimate {
         Self { name: name.to_owned(), value, low, high, dimension }
     }
 
-    /// Creates an estimate from its logarithm, for which the interval is symmetric.
+    /// Creates an estimate from its logarithm and half the width of the interval, which is symmetric in the logarithm.
+    /// `of` converts a logarithm to the value.
     pub(super) fn of_log(
         name: &str,
         log: f64,
@@ -182,9 +183,9 @@ described! {
     pub struct ShareRow of share: &ModelShare {
         /// Name of the statement.
         pub statement: String = share.statement.clone(),
-        /// Central 90 % of the predicted share, before the statements are used.
+        /// Interval that holds the central 90 % of the predicted shares, before the statements are used.
         pub before: [f64; 2] as "1" = share.before,
-        /// Central 90 % of the predicted share, given all statements.
+        /// Interval that holds the central 90 % of the predicted shares, given all statements.
         pub given: [f64; 2] as "1" = share.given,
     }
 

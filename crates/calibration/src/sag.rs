@@ -37,7 +37,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
             .unsuited("one row does not show the scatter: repeat the test at least once")
             .into());
     }
-    // Vertical force (N) on one seat that gives the same sag.
+    // Vertical force (N) on a single seat with a vertical normal that gives the same sag.
     let press: Vec<f64> = load
         .iter()
         .zip(&angle)
@@ -66,7 +66,7 @@ pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, Ca
     };
     let mut warnings = table.unused(&COLUMNS);
     if let Some(found) = line(&press, &sag) {
-        // Sag (m) at zero load of the line that need not pass through the origin.
+        // Sag (m) at zero load, by a regression line that need not pass through the origin.
         let hollow = found.intercept;
         let variance = found.center_variance + found.center * found.center * found.slope_variance;
         if hollow.abs() > student_quantile(0.95, found.freedom) * variance.sqrt() {

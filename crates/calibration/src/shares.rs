@@ -30,8 +30,8 @@ pub use statements::{
 
 /// What the intervals cover.
 const COVERS: &str = "The 95 % intervals cover the uncertainty of the statements, of the motion in the cellar and of the \
-                      proportions of the heights, and an error of 10 % of the model in each share. They do not cover values \
-                      of the scenario that were not fitted.";
+                      proportions of stacks of each height, and a model error of 10 % in each share. They do not cover \
+                      values of the scenario that were not fitted.";
 
 /// Number of parameter sets that are weighted by the likelihood of the statements.
 const DRAWS: usize = 20_000;
@@ -48,16 +48,16 @@ pub struct Height {
     pub scenario: Scenario,
 }
 
-/// Returns the numbers of levels that statements name, for each of which [`shares`] needs a [`Height`].
+/// Returns the numbers of levels that statements name. For each of them, [`shares`] needs a [`Height`].
 pub fn levels(statements: &[&Statement]) -> BTreeSet<usize> {
     statements.iter().flat_map(|one| one.levels.iter().copied()).collect()
 }
 
 /// Result of one simulated stack.
 struct Shaken {
-    /// Parameters, each within −1 and 1; the ends are the ends of the range.
+    /// Parameters, each between −1 and 1, which stand for the ends of the prior range.
     point: Vec<f64>,
-    /// Logarithm of the factor on the motion, as a standard normal deviate.
+    /// Logarithm of the factor by which the motion is multiplied, in standard deviations.
     motion: f64,
     /// Index of the height.
     height: usize,
@@ -71,20 +71,21 @@ struct Fit {
     /// For every height, the mean share of the barrels that fall in a stack that falls; at a height at which no stack
     /// fell, the mean over all heights.
     fallen: Vec<f64>,
-    /// Heights as standard deviates; empty for one height, which needs none.
+    /// Numbers of levels, standardized to mean 0 and variance 1; empty if there is only one height.
     heights: Vec<f64>,
 }
 
 /// Estimates parameters of a stack from statements on how many stacks fell in an earthquake.
 ///
-/// `heights` holds the scenario at every height that a statement names. Each of `settings.simulations` parameter sets is
-/// drawn from the prior ranges and used to simulate one stack at one of the heights, with random offsets of its bodies,
-/// and with a motion that differs from that of the scenario by a factor, as a cellar differs from the station
-/// ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that fall as a function of
-/// the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the likelihood of the
-/// statements. Each set has a factor that is common to all statements, proportions of the heights (all mixtures are
-/// equally probable) and one sample of the regression; the likelihood includes an error of the model itself
-/// ([`MODEL_ERROR`]). The intervals hold the central 95 % of the weight.
+/// `heights` holds the scenario at every height that a statement names. Each of `settings.simulations` parameter sets
+/// is drawn from the prior ranges and used to simulate one stack at one of the heights, with random offsets of its
+/// bodies. The motion of the scenario is multiplied by a random factor, because the shaking in a cellar differs from
+/// that at the station ([`Earthquake::motion`]). A probit regression of second degree gives the share of stacks that
+/// fall as a function of the parameters, the factor and the height. Then 20 000 parameter sets are weighted by the
+/// likelihood of the statements. Each set has one factor of the motion that is common to all statements, one sample of
+/// the regression, and random proportions of stacks of each height, for which all mixtures are equally probable; the
+/// likelihood includes an error of the model itself ([`MODEL_ERROR`]). The intervals hold the central 95 % of the
+/// weight.
 ///
 /// The result is a function of the statements, the scenarios and the settings, independent of the number of threads.
 /// `report` is called from several threads with the number of completed simulations and the total, and may
@@ -105,7 +106,7 @@ pub fn shares(
     for levels in levels(statements) {
         if at(levels).is_none() {
             return Err(CalibrateError::Scenario(format!(
-                "a statement is about stacks of {levels} levels, of which there is no scenario"
+                "a statement is about stacks of {levels} levels, but there is no scenario of such a stack"
             )));
         }
     }
@@ -156,8 +157,11 @@ pub fn shares(
         ("scenario".to_owned(), first.scenario.title.clone()),
         ("statements".to_owned(), statements.len().to_string()),
         ("simulations".to_owned(), shaken.len().to_string()),
-        ("draws in effect".to_owned(), short(posterior.effective())),
-        ("tried".to_owned(), format!("within a factor of {} of the scenario", settings.within)),
+        ("effective number of draws".to_owned(), short(posterior.effective())),
+        (
+            "prior range".to_owned(),
+            format!("within a factor of {} of the scenario", settings.within),
+        ),
         (
             "motion in the cellar, relative to that of the scenario".to_owned(),
             format!("{:.2} ({:.2} to {:.2})", motion[0], motion[1], motion[2]),
@@ -184,7 +188,8 @@ pub fn shares(
     })
 }
 
-/// Returns a statement as facts: its text, source and uncertainty, how it is used, and the shares by the model.
+/// Returns a statement as facts: its text, source and uncertainty, how it is used, and the shares that the model
+/// predicts.
 fn stated(one: &Statement, before: [f64; 2], given: [f64; 2]) -> Vec<(String, String)> {
     let range = |[low, high]: [f64; 2]| format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high);
     let error = match (one.low.zip(one.high), one.error) {
@@ -362,8 +367,8 @@ impl Weighed {
         Some(Self { posterior: Posterior::of(draws, &logs)?, shares, likelihoods: sums })
     }
 
-    /// Returns the central 90 % of the predicted share for a statement, before the statements are used and given all
-    /// statements.
+    /// Returns two intervals that hold the central 90 % of the predicted shares for a statement: before the statements
+    /// are used, and given all statements.
     fn predicted(&self, at: usize) -> [[f64; 2]; 2] {
         let even = vec![1.0; DRAWS];
         [&even, &self.posterior.weights].map(|weights| {
@@ -371,7 +376,7 @@ impl Weighed {
         })
     }
 
-    /// Returns a warning for each statement that the model contradicts within the range.
+    /// Returns a warning for each statement whose mean likelihood over the prior ranges is below [`UNLIKELY`].
     fn unlikely<'a>(&'a self, statements: &'a [&Statement]) -> impl Iterator<Item = String> + 'a {
         let pairs = statements.iter().zip(&self.likelihoods);
         pairs.filter(|(_, likelihood)| **likelihood < UNLIKELY).map(|(one, likelihood)| {
@@ -395,9 +400,9 @@ impl Weighed {
             rows.bar(format!("{}: given the statements", one.id), after);
             stated.extend([one.value.unwrap_or(f64::NAN); 2]);
         }
-        let caption = "Shares that the model predicts, before the statements are used and given all of them. Bars show \
-                       the central 90 % over the parameters, the motion and the mixture of heights; marks show the \
-                       stated shares.";
+        let caption = "Shares that the model predicts: before the statements are used, and given all statements. Bars \
+                       show the central 90 % of the predictions, over the parameters, the motion and the mixture of \
+                       heights; marks show the stated shares.";
         let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share", "") };
         rows.figure("collapse-shares", caption, x, Some(stated))
     }

@@ -27,8 +27,8 @@ const HALVINGS: u32 = 24;
 /// period, by Student's t distribution.
 ///
 /// # Errors
-/// If the table lacks its column or has fewer than two rows, the scenario is not a stack of linear laws in one plane, or
-/// no stiffness gives the period.
+/// If the table lacks its column or has fewer than two rows, the scenario is not a stack in one plane whose contact
+/// laws are linear, or no stiffness gives the period.
 pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, CalibrateError> {
     let refuse = |reason: &str| CalibrateError::Scenario(reason.to_owned());
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).ok_or_else(|| {
@@ -53,7 +53,7 @@ pub fn sway(table: &Table, scenario: &Scenario) -> Result<Calibration, Calibrate
     let own = seats.iter().map(|(name, law)| {
         stiffness(law).ok_or_else(|| {
             refuse(&format!(
-                "a tap test needs linear laws with constants per seat or per node; the law of interface.{name} \
+                "a tap test needs linear contact laws with constants per seat or per node; the law of interface.{name} \
                  is of another kind"
             ))
         })
@@ -142,8 +142,8 @@ fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateErro
     Ok(Some(math::exp(0.5 * (soft + stiff))))
 }
 
-/// Returns the stiffness (N/m) of a linear law whose constants are per seat or per node; `None` for other
-/// laws.
+/// Returns the stiffness (N/m) of a linear contact law whose constants are per seat or per node; `None` for other
+/// contact laws.
 fn stiffness(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { stiffness, .. } | NormalLaw::KelvinVoigt { stiffness, .. }) =
         law.normal
@@ -153,12 +153,12 @@ fn stiffness(law: &Interface) -> Option<f64> {
     (law.basis != Basis::Length).then_some(stiffness)
 }
 
-/// Returns the name of the basis of a law, which is per seat or per node.
+/// Returns the name of the unit to which the constants of a contact law apply: a seat or a node.
 fn basis(law: &Interface) -> &'static str {
     if law.basis == Basis::Seat { "seat" } else { "node" }
 }
 
-/// Returns the damping (N·s/m) of a linear law; `None` for a law that states a restitution instead.
+/// Returns the damping (N·s/m) of a linear contact law; `None` if the law states a restitution instead.
 fn damping(law: &Interface) -> Option<f64> {
     let (NormalLaw::SpeedGap { damping, .. } | NormalLaw::KelvinVoigt { damping, .. }) = law.normal
     else {

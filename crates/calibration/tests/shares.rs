@@ -60,5 +60,8 @@ fn a_share_that_fell_is_set_beside_that_of_simulated_stacks() {
     let single = found("most", 0.95, &[3, 4], Some(Width::Scalar)).unwrap();
     assert_eq!(format!("{most:?}"), format!("{single:?}"));
     let error = found("most", 0.95, &[5], None).unwrap_err().to_string();
-    assert!(error.contains("stacks of 5 levels, of which there is no scenario"), "{error}");
+    assert!(
+        error.contains("stacks of 5 levels, but there is no scenario of such a stack"),
+        "{error}"
+    );
 }

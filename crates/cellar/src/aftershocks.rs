@@ -1,4 +1,4 @@
-//! Survival of aftershocks of several strengths, each of which follows the same main shock.
+//! Survival of aftershocks of several strengths that follow the same main shock.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -19,7 +19,7 @@ use crate::words::{failed, followed, longest_cut, mean_share, span, survival};
 
 described! {
     /// Survival of aftershocks of several strengths. The main shock of every variant is run once; each aftershock
-    /// starts from the poses in which the main shock has left the bodies, at rest.
+    /// starts with the bodies at rest in the poses in which the main shock left them.
     #[derive(Clone, Debug)]
     pub struct AftershockSummary {
         /// Name and version of this layout.
@@ -32,7 +32,7 @@ described! {
         pub cellar_hash: String,
         /// Number of stacks.
         pub stacks: usize,
-        /// Motion of which the strengths are factors: the main shock, or the record of the aftershock.
+        /// Motion that the strengths multiply: the main shock, or the record of the aftershock.
         pub factor_of: &'static str ["main-shock", "record"],
         /// Number of variants that the statistics count; 1 if only the room as stated was run.
         pub counted: u32,
@@ -45,8 +45,8 @@ described! {
         /// The aftershocks, the weakest first; empty if no run is counted.
         pub aftershocks: Vec<Strength>,
         /// Stacks that stand after the main shock in at least one variant, in the order in which to inspect them:
-        /// those that fall most often under the weakest aftershock come first; among equals, those that fall more
-        /// often under the next one, and finally those that moved farthest.
+        /// sorted by how often they fall under the weakest aftershock, then under each stronger aftershock, and finally
+        /// by how far they moved; the largest values come first.
         pub inspection: Vec<Margin>,
         /// Warnings, one sentence each.
         pub warnings: Vec<String>,
@@ -90,8 +90,9 @@ type OfVariant = Vec<Case>;
 
 /// Runs the main shock of all variants of a cellar, and each of several aftershocks after it.
 ///
-/// Each strength is a factor by which the motion of the cellar is multiplied, or `record` if it is given. The
-/// observer receives the progress and may stop the work; the results obtained until then are returned.
+/// Each strength is a factor by which the motion of the aftershock is multiplied: `record` if it is given, otherwise
+/// the motion of the cellar. The observer receives the progress and may stop the work; the results obtained until then
+/// are returned.
 ///
 /// # Errors
 /// If `strengths` is empty, the cellar already has a sequence of shocks, the scale of its motion cannot be multiplied
@@ -322,8 +323,9 @@ pub fn tables(summary: &AftershockSummary) -> [Table; 2] {
     ));
     let columns: Vec<_> = columns.iter().map(|(name, unit, of)| (*name, *unit, &**of)).collect();
     let stacks = Table::of(
-        "Stacks in the order in which to inspect them: shares of the variants in which the stack stands after the main shock, with \
-         their 95 % intervals, and the median of its movement in the main shock.",
+        "Stacks in the order in which to inspect them. Shares are given with their 95 % intervals: the share of all \
+         variants in which a stack stands after the main shock, and the share of these variants in which it falls \
+         under an aftershock. Movement is the median over these variants in the main shock.",
         summary.inspection.iter().cloned(),
         &columns,
     );

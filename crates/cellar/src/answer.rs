@@ -93,9 +93,9 @@ pub fn answer_with(
     Ok(Answer { prepared, cases, case, shown, summary })
 }
 
-/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns three numbers for the
-/// part: results in the folder at the end, variants whose computation failed (their results are not kept), and all
-/// variants.
+/// Runs one part of the variants of a cellar, and keeps their results in a folder. Returns, for the part, the number of
+/// results in the folder at the end, the number of variants whose computation failed (their results are not kept), and
+/// the number of all variants.
 ///
 /// # Errors
 /// As for [`answer_with`].

@@ -41,7 +41,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Keeps what a comparison shows of an answer; the frames of its run are dropped.
+    /// Keeps the parts of an answer that a comparison shows, and drops the frames of its run.
     pub fn of(name: String, answer: &Answer) -> Self {
         Self {
             name,
@@ -66,8 +66,8 @@ described! {
         pub layouts: Vec<LayoutAnswer>,
         /// The first layout compared with every other, variant by variant.
         pub paired: Vec<LayoutPair>,
-        /// Names of the layouts in the order of the share of their barrels that falls, the smallest first; layouts
-        /// without a valid variant are left out.
+        /// Names of the layouts, sorted by the share of barrels that fall, the smallest first; layouts without a valid
+        /// variant are left out.
         pub order: Vec<String>,
         /// Requested changes that were not run, because they do not fit or cannot be stated.
         pub left_out: Vec<LeftOut>,
@@ -109,23 +109,23 @@ described! {
         pub spread: Option<f64> as "1",
         /// Number of barrels that fall.
         pub barrels_fallen: Estimate as "1",
-        /// Share of the capacity that falls.
+        /// Number of barrels that fall, divided by the capacity.
         pub share_lost: Estimate as "1",
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst.
         pub wine_lost: f64 as "m3",
-        /// Lower and upper estimate of the cost of the barrels that burst and of their wine, under the central
-        /// assumption on how many burst.
+        /// Lower and upper estimate of the cost (barrels that burst, and their wine), under the central assumption on
+        /// how many burst.
         pub cost: [f64; 2] as "US$",
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
-        /// Variants in which at least one aisle is blocked at the end; null without aisles.
+        /// Variants in which at least one aisle is blocked at the end; null if there are no aisles.
         pub some_blocked: Option<Count>,
         /// Distribution of the time from the start of the shaking to the first barrel in any aisle.
         pub first_barrel: Option<Range> as "s",
-        /// Largest force on a wall or column in any variant; null without walls and columns.
+        /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
-        /// Time by which the run that is shown ends before its motion does, the longest of a sequence; null if the
-        /// run covers its motion.
+        /// Time from the end of the run that is shown to the end of its motion, or the longest such time in a sequence
+        /// of shocks; null if the run covers its motion.
         pub cut: Option<f64> as "s",
     }
 
@@ -134,7 +134,8 @@ described! {
     pub struct Estimate {
         /// The mean.
         pub mean: f64 as "that of the field",
-        /// Bounds of its 95 % interval from the scatter between the variants; null for fewer than two.
+        /// Bounds of its 95 % interval, from the scatter between the variants; null if there are fewer than two
+        /// variants.
         pub interval: Option<[f64; 2]> as "that of the field",
     }
 
@@ -151,7 +152,7 @@ described! {
         pub left_out: Vec<u32>,
         /// True if both layouts have the same motion.
         pub same_motion: bool,
-        /// True if a variant has the same draws in both layouts for stacks of the same name.
+        /// True if the random draws of a variant are the same in both layouts for stacks of the same name.
         pub same_draws: bool,
         /// Number of stacks that fall by themselves.
         pub by_themselves: Change as "1",
@@ -159,16 +160,16 @@ described! {
         pub knocked_over: Change as "1",
         /// Number of barrels that fall.
         pub barrels_fallen: Change as "1",
-        /// Share of the capacity that falls.
+        /// Number of barrels that fall, divided by the capacity.
         pub share_lost: Change as "1",
         /// Expected loss of wine, under the central assumption on how many fallen barrels burst. This assumption is
         /// less certain than the number of barrels, so no interval is given.
         pub wine_lost: Change as "m3",
-        /// Lower estimate of the cost of the barrels that burst and of their wine, under the central assumption; no
-        /// interval is given.
+        /// Lower estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
+        /// is given.
         pub cost_low: Change as "US$",
-        /// Upper estimate of the cost of the barrels that burst and of their wine, under the central assumption; no
-        /// interval is given.
+        /// Upper estimate of the cost (barrels that burst, and their wine), under the central assumption; no interval
+        /// is given.
         pub cost_high: Change as "US$",
     }
 
@@ -182,7 +183,7 @@ described! {
         /// Mean in the second layout minus mean in the first.
         pub difference: f64 as "that of the field",
         /// Bounds of the 95 % interval of the difference, from the scatter of the differences of the variants. The
-        /// level of 95 % holds for the intervals of all layouts together. Null for fewer than two pairs.
+        /// confidence level of 95 % applies to the intervals of all layouts jointly. Null for fewer than two pairs.
         pub interval: Option<[f64; 2]> as "that of the field",
     }
 
@@ -205,8 +206,8 @@ pub fn check(layouts: &[(String, Cellar)]) -> Result<(), CompareError> {
     compare::check_distinct(&layouts.iter().map(print).collect::<Vec<_>>(), MOST)
 }
 
-/// Names layouts by their differences, such as "spacing 1 m" or "four levels"; with more differences than a name can
-/// state, the given names are kept.
+/// Names layouts by their differences, such as "spacing 1 m" or "four levels"; if there are more differences than a
+/// name can state, the given names are kept.
 pub fn labels(layouts: &[(String, Cellar)]) -> Vec<String> {
     let mut differences = differences(layouts.iter().map(|(_, cellar)| cellar));
     let of_room = |one: &Difference| {
@@ -266,9 +267,8 @@ pub fn compared(
 }
 
 impl CellarComparison {
-    /// Returns the layouts in the order of the tables: by the share of the barrels that falls, followed by those
-    /// without a valid variant. Each comes with its comparison to the first layout; `None` for the first layout
-    /// itself.
+    /// Returns the layouts in the order of the tables: sorted by the share of barrels that fall, followed by those
+    /// without a valid variant. Each comes with its comparison to the first layout; `None` for the first layout itself.
     pub fn ranked(&self) -> Vec<(&LayoutAnswer, Option<&LayoutPair>)> {
         let rank = |one: &LayoutAnswer| self.order.iter().position(|name| *name == one.name);
         let mut all: Vec<_> = self.layouts.iter().enumerate().collect();
@@ -312,7 +312,7 @@ impl Loss {
     }
 }
 
-/// Returns the losses of a layout by the numbers of the variants that statistics count.
+/// Returns the losses of a layout in the variants that the statistics count, by the number of the variant.
 fn losses(layout: &Layout) -> BTreeMap<u32, Loss> {
     let of = |case: &&Case| (case.variant, Loss::of(case, &layout.summary));
     counted(&layout.cases).iter().map(of).collect()
@@ -366,7 +366,7 @@ impl Estimate {
 
 impl Change {
     /// Returns the mean change of pairs of values between 0 and `most`; without an interval if `most` is `None`. The
-    /// confidence level holds for the intervals of `tries` such changes together.
+    /// confidence level applies to the intervals of `tries` such changes jointly.
     fn of(pairs: &[[f64; 2]], most: Option<f64>, tries: usize) -> Self {
         let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
             pairs.iter().map(of).sum::<f64>() / pairs.len().max(1) as f64

@@ -1,4 +1,4 @@
-//! Contact kinds of bodies, and the laws between bodies of different stacks.
+//! Contact kinds of bodies, and the contact laws between bodies of different stacks.
 //!
 //! Between bodies of two stacks, the contact laws are those of bodies of one stack that fall on each other.
 
@@ -16,12 +16,13 @@ enum Role {
     Rack,
     Barrel,
     Device,
-    /// A body of a free scene: index of the scene's laws among those of all scenes, its kind, and whether it is fixed.
+    /// A body of a free scene (arbitrary bodies in place of a stack): index of the scene in the list of contact laws,
+    /// kind of the body, and `true` if the body is fixed.
     Free(usize, String, bool),
     Obstacle,
 }
 
-/// Contact kinds of the bodies of a room, and the laws of all free scenes.
+/// Contact kinds of the bodies of a room, and the contact laws of all free scenes.
 #[derive(Default)]
 pub(crate) struct ContactKinds<'a> {
     all: Vec<(Role, ContactKind)>,
@@ -80,7 +81,7 @@ impl<'a> ContactKinds<'a> {
         })
     }
 
-    /// Returns the laws between all contact kinds.
+    /// Returns the contact laws between all contact kinds.
     pub(crate) fn crossing(&self) -> Crossing {
         let rule = |(first, _): &(Role, ContactKind), (second, _): &(Role, ContactKind)| {
             self.rule(first, second)
@@ -120,7 +121,7 @@ impl<'a> ContactKinds<'a> {
                 let laws = [self.law(*one, a, b)?, self.law(*other, a, b)?];
                 Some(Rule { reversed: laws[0].1, laws: laws.map(|(law, _)| law) })
             }
-            // An obstacle supplies the law itself.
+            // The contact law of an obstacle is stated with the obstacle.
             (
                 Role::Rack | Role::Barrel | Role::Device | Role::Free(_, _, false),
                 Role::Obstacle,
@@ -135,7 +136,8 @@ impl<'a> ContactKinds<'a> {
         }
     }
 
-    /// Returns the index of the law between two kinds of a free scene, and `true` if it names the second kind first.
+    /// Returns the index of the contact law between two kinds of a free scene, and `true` if the law names the second
+    /// kind first.
     fn law(&self, scene_index: usize, a: &str, b: &str) -> Option<(usize, bool)> {
         let mut laws = self.scenes[scene_index].interfaces.iter().enumerate();
         laws.find_map(|(at, law)| {

@@ -42,7 +42,7 @@ impl Convex {
         Self(hull)
     }
 
-    /// Returns a rectangle along the axes from two opposite corners.
+    /// Returns the axis-aligned rectangle with two given opposite corners.
     pub fn rectangle(a: Point, b: Point) -> Self {
         Self::hull(vec![a, [b[0], a[1]], b, [a[0], b[1]]])
     }
@@ -64,7 +64,8 @@ impl Convex {
         self.0.iter().copied().zip(self.0.iter().copied().cycle().skip(1))
     }
 
-    /// Returns the distance of a point from the polygon; inside, minus the distance to the nearest edge.
+    /// Returns the signed distance (m) of a point from the polygon. It is negative inside, where its magnitude is the
+    /// distance to the nearest edge.
     pub fn distance(&self, point: Point) -> f64 {
         let mut inside = f64::NEG_INFINITY;
         let mut nearest = f64::INFINITY;
@@ -84,7 +85,8 @@ impl Convex {
         if inside <= 0.0 { inside } else { nearest }
     }
 
-    /// Returns the free distance to another polygon; if they overlap, minus the shortest shift that separates them.
+    /// Returns the free distance (m) to another polygon. It is negative if the polygons overlap; its magnitude is then
+    /// the length of the shortest shift that separates them.
     pub fn apart(&self, other: &Self) -> f64 {
         let mut separation = f64::NEG_INFINITY;
         for (one, two) in [(self, other), (other, self)] {
@@ -242,7 +244,7 @@ mod tests {
         assert!((square.apart(&beside) - 0.3).abs() < 1e-12);
         let over = Convex::rectangle([0.9, 0.2], [2.0, 0.8]);
         assert!((square.apart(&over) + 0.1).abs() < 1e-12);
-        // Corner to corner, and turned by an eighth.
+        // Corner to corner, and turned by an eighth of a turn.
         let corner = Convex::rectangle([4.0, 5.0], [6.0, 6.0]);
         assert_eq!(square.apart(&corner), 5.0);
         let turned = Convex::rectangle([-0.5, -0.5], [0.5, 0.5])

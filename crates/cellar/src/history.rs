@@ -1,6 +1,6 @@
 //! Histories of forces.
 
-/// Returns the sum of two histories of a force, each of which is zero outside of its samples and linear between them.
+/// Returns the sum of two force histories. Each history is zero outside its samples, and linear between them.
 pub(crate) fn summed(one: &[(f64, [f64; 3])], other: &[(f64, [f64; 3])]) -> Vec<(f64, [f64; 3])> {
     if one.is_empty() || other.is_empty() {
         return if one.is_empty() { other.to_vec() } else { one.to_vec() };

@@ -47,7 +47,7 @@ pub(crate) struct Member {
 #[derive(Debug)]
 pub(crate) struct Fixed {
     pub(crate) members: Vec<Member>,
-    /// Indices of obstacles in the model.
+    /// Indices, in the room, of the obstacles that the model contains.
     pub(crate) obstacles: Vec<usize>,
     /// The owners of the bodies of the model.
     pub(crate) owners: Vec<Owner>,
@@ -58,7 +58,7 @@ pub(crate) struct Fixed {
     pub(crate) simulation: Simulation,
 }
 
-/// A record of the contact of two parties.
+/// Record of the contacts between two parties.
 #[derive(Clone, Debug)]
 pub(crate) struct Contact {
     pub(crate) time: f64,
@@ -84,7 +84,7 @@ pub(crate) struct Watch {
     pub(crate) impulse: f64,
 }
 
-/// Changing state of an island; the island can return to a copy of it.
+/// State of an island that changes in a run. A copy of the state lets the island return to the start of a window.
 #[derive(Clone, Debug)]
 pub(crate) struct Live {
     pub(crate) running: Running,
@@ -92,18 +92,19 @@ pub(crate) struct Live {
     pub(crate) contacts: BTreeMap<[PartyId; 2], Contact>,
     pub(crate) ending: Option<Ending>,
     pub(crate) failure: Option<RunError>,
-    /// Lengths of the logs of the island at this state, to which they are cut when the island returns to it.
+    /// Lengths of the logs of the island at this state. When the island returns to the state, its logs are cut to these
+    /// lengths.
     kept: Vec<usize>,
     /// For every body, the largest distance (m) from its pose at the start of the window.
     pub(crate) travels: Vec<f64>,
-    /// The body that would have left its tube in the next step.
+    /// The body that would have left its tube ([`Island::tubes`]) in the next step.
     pub(crate) stopped_by: Option<BodyId>,
-    /// Time (s) before which the island does not come to rest, since a barrel rolls toward another stack.
+    /// Time (s) before which the run of the island does not end, because a barrel rolls toward another stack.
     pub(crate) not_before: f64,
 }
 
 impl Live {
-    /// Creates the moving part of an island.
+    /// Creates the changing state of an island.
     pub(crate) fn of(running: Running, watches: Vec<Watch>) -> Self {
         let travels = vec![0.0; running.state.poses.len()];
         Self {
@@ -139,7 +140,7 @@ impl Owner {
 /// Logs, to which entries are only appended.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Logs {
-    /// Frames of every member.
+    /// Recorded frames of every member.
     pub(crate) frames: Vec<RoomFrames>,
     /// Forces (N) on every obstacle of the island, along the axes of the room.
     pub(crate) forces: Vec<Vec<(f64, [f64; 3])>>,
@@ -154,7 +155,7 @@ pub(crate) struct Island {
     /// Energies and work of the islands from which this one was merged.
     pub(crate) energy_before: EnergySummary,
     pub(crate) work: Work,
-    /// Time (s) between frames; `None` for no frames.
+    /// Time (s) between recorded frames; `None` if no frames are recorded.
     pub(crate) every: Option<f64>,
     /// For every body, the distance (m) that it may move in the current window.
     pub(crate) tubes: Vec<f64>,
@@ -165,7 +166,7 @@ pub(crate) struct Island {
 }
 
 impl Island {
-    /// Creates the island of a stack alone.
+    /// Creates an island of a single stack.
     pub(crate) fn alone(world: &World<'_>, stack: usize, every: Option<f64>) -> Self {
         let of = &world.stacks[stack];
         let Running { state, mut scratch, stepper } = of.running.clone();
@@ -263,8 +264,8 @@ impl Island {
         self.live.watches[member].rest.moving((&poses, &twists)).count()
     }
 
-    /// Starts a window in which bodies may move as far as their tubes; `keeps` is `true` if the island may have to
-    /// return to its start.
+    /// Starts a window, in which each body may move as far as its tube allows; `keeps` is `true` if the island may have
+    /// to return to the start of the window.
     pub(crate) fn open(&mut self, keeps: bool) {
         self.from = (0..self.fixed.owners.len()).map(|body| self.relative(body)).collect();
         self.live.travels.fill(0.0);
@@ -281,7 +282,7 @@ impl Island {
         }
     }
 
-    /// Advances to the last step that ends by a time (s), or until a body would leave its tube.
+    /// Advances until the next time step would end after a time (s), or until a body would leave its tube.
     pub(crate) fn advance(&mut self, world: &World<'_>, until: f64) {
         let Simulation { time_step: step, end_time, .. } = self.fixed.simulation;
         let latest = until + 1e-9 * step;
@@ -296,7 +297,7 @@ impl Island {
         let _ = self.update_travels(world, 0.0);
     }
 
-    /// Advances to a time (s) exactly; the last step is cut short.
+    /// Advances to a time (s) exactly; the last time step is shortened.
     pub(crate) fn advance_to(&mut self, world: &World<'_>, time: f64) {
         let sliver = 1e-9 * self.fixed.simulation.time_step;
         self.live.stopped_by = None;
@@ -323,8 +324,8 @@ impl Island {
         state.time = time;
     }
 
-    /// Updates the distances of bodies from the start of the window; returns a body that could leave its tube (the
-    /// distance that it may move in the window) within a time (s).
+    /// Updates how far each body has moved since the start of the window. Returns a body that could leave its tube (the
+    /// distance that it may move in the window) within a time `ahead` (s).
     fn update_travels(&mut self, world: &World<'_>, ahead: f64) -> Option<BodyId> {
         if self.from.is_empty() {
             return None;
@@ -381,7 +382,7 @@ impl Island {
         }
     }
 
-    /// Updates fates and rest; returns `true` if all members rest.
+    /// Updates the fates of the bodies and checks whether the stacks are at rest; returns `true` if all are.
     fn watch(&mut self) -> bool {
         let time = self.time();
         let mut rests = true;
@@ -503,7 +504,7 @@ impl Island {
         plus(self.live.running.stepper.energy.summary(0), &self.energy_before)
     }
 
-    /// Returns the numbers of steps and evaluations since the start.
+    /// Returns the numbers of time steps and force evaluations since the start.
     pub(crate) fn work(&self) -> Work {
         let Running { scratch, stepper, .. } = &self.live.running;
         Work {

@@ -14,10 +14,10 @@ use crate::world::World;
 /// Islands and obstacles that become one island.
 struct Plan<'a> {
     world: &'a World<'a>,
-    /// Index of the source island of every stack and index of the stack among its members, in the order of the names
-    /// of the stacks.
+    /// For every stack, in the order of their names: index of its source island, and index of the stack among the
+    /// members of that island.
     members: Vec<(usize, usize)>,
-    /// The stack of every member.
+    /// Index, in the room, of the stack of every member.
     stacks: Vec<usize>,
     obstacles: Vec<usize>,
     /// Placement of the frame of the merged island in the room.
@@ -48,8 +48,8 @@ impl Plan<'_> {
         stacks.chain(obstacles).collect()
     }
 
-    /// Returns the states to carry over from the islands, and the members and the owners of the bodies of the merged
-    /// island.
+    /// Returns the states to carry over from the islands, the members of the merged island, and the owners of its
+    /// bodies.
     fn places(&self, islands: &[Island]) -> (Vec<Carry>, Vec<Member>, Vec<Owner>) {
         let (mut carries, mut members, mut owners) = (Vec::new(), Vec::new(), Vec::new());
         let mut elements = 0;
@@ -71,7 +71,7 @@ impl Plan<'_> {
         (carries, members, owners)
     }
 
-    /// Moves the records of the islands into those of the merged one.
+    /// Moves the records of the islands into the merged island, and returns its logs.
     fn hand_over(&self, islands: Vec<Island>, live: &mut Live) -> Logs {
         let time = live.running.state.time;
         let mut watches = vec![None; self.members.len()];
@@ -106,7 +106,7 @@ impl Plan<'_> {
     }
 }
 
-/// Merges islands that have reached the same time, and obstacles.
+/// Merges islands that have reached the same time, together with obstacles.
 ///
 /// # Errors
 /// If names of bodies repeat.

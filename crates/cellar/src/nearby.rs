@@ -12,17 +12,17 @@ use barrelstack_dynamics::{BodyId, Motion, Pose, Spatial, Vec3};
 use crate::island::{Island, Owner, StackBody};
 use crate::world::World;
 
-/// Largest distance (m) of two bodies that are in the list of couples.
+/// Largest gap (m) between two bodies in the list of couples; it is estimated from the bounding spheres of the bodies.
 const MARGIN: f64 = 0.4;
 
 /// Displacement (m) of a body after which the list is rebuilt.
 const STALE: f64 = 0.1;
 
-/// Distance (m) that a body that is near no other may move in a window; it corresponds to 45 m/s.
+/// Distance (m) that a body may move in a window if no other body is near; it corresponds to a speed of 45 m/s.
 pub(crate) const FREE: f64 = 0.09;
 
-/// Least gap (m) that remains when two islands are merged, so that the merge does not affect their next step, and
-/// impacts are foreseen.
+/// Smallest gap (m) at which two islands are merged. The gap ensures that the merge comes before an impact, and does
+/// not affect the next step.
 const SLACK: f64 = 2e-3;
 
 /// Least distance (m) that a body may move in a window, even a body at rest.
@@ -31,7 +31,7 @@ const LEAST: f64 = 1e-3;
 /// Gap (m) up to which gaps are measured exactly; for larger gaps, a lower bound suffices.
 const EXACT: f64 = 0.1;
 
-/// Two bodies of different parties, the second of which may be an obstacle.
+/// Two bodies of different stacks, or a body and an obstacle.
 struct Couple {
     bodies: [Owner; 2],
     /// Gap (m) at the last measurement, or a lower bound of it.
@@ -53,7 +53,7 @@ pub(crate) struct Nearby {
     made_for: Vec<Vec3>,
 }
 
-/// Island of every stack, and the number of the first body of the stack in the model of the island.
+/// For every stack: index of its island, and number of its first body in the model of the island.
 pub(crate) type Places = Vec<(usize, BodyId)>;
 
 impl Nearby {
@@ -67,7 +67,7 @@ impl Nearby {
         }
     }
 
-    /// Makes the list anew if a body has moved far.
+    /// Rebuilds the list if a body has moved far.
     pub(crate) fn refresh(&mut self, world: &World<'_>, islands: &[Option<Island>]) {
         let moved = |(place, made): (&Vec3, &Vec3)| {
             let moved_by = *place - *made;
@@ -183,8 +183,8 @@ impl Nearby {
         self.made_for = places;
     }
 
-    /// Returns the couples, of different islands or of an island and an obstacle, that may touch within a time (s),
-    /// and sets for all other couples how far their bodies may move.
+    /// Returns the couples that may touch within a time (s): two bodies of different islands, or a body and an
+    /// obstacle. For all other couples, sets how far their bodies may move.
     pub(crate) fn meetings(
         &mut self,
         world: &World<'_>,
@@ -271,7 +271,7 @@ impl Nearby {
         (of.fixed.owners.iter().map(tube).collect(), near)
     }
 
-    /// Returns `true` if the bodies of a couple, one of which belongs to `island`, are not in the same island.
+    /// Returns `true` if the two bodies of a couple are not in the same island. One of them belongs to `island`.
     fn parted(couple: &Couple, places: &Places, island: &Island) -> bool {
         match couple.bodies {
             [Owner::Stack((one, _)), Owner::Stack((other, _))] => places[one].0 != places[other].0,
@@ -280,7 +280,7 @@ impl Nearby {
         }
     }
 
-    /// Returns the body or obstacle that keeps a body from moving on, if there is one.
+    /// Returns the body or obstacle that most restricts how far a body may move, if there is one.
     pub(crate) fn nearest_to(
         &self,
         world: &World<'_>,

@@ -16,10 +16,10 @@ use crate::words::plural;
 /// Depth (m) in front of a door that is to stay free, so that a person can enter.
 const ENTRY: f64 = PASSAGE;
 
-/// Depth (m) at which doors are drawn.
+/// Depth (m) of the rectangles that stand for doors in a drawing.
 const LEAF: f64 = 0.12;
 
-/// Shape of the stack of a model.
+/// Shape of the stacks with one number of levels.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Footprint about the origin of the stack.
@@ -68,7 +68,7 @@ pub struct Plan {
     pub footprints: Vec<Convex>,
     /// Problems that prevent a run, each with its place in the file and the stacks that are wrongly placed.
     pub problems: Vec<(ScenarioError, Vec<usize>)>,
-    /// The figures of the plan.
+    /// Summary of the plan.
     pub summary: PlanSummary,
 }
 
@@ -100,7 +100,7 @@ described! {
         pub nearest_stacks: Option<NearStacks>,
         /// The aisles.
         pub aisles: Vec<AislePlan>,
-        /// The places of people.
+        /// The places where people work.
         pub places: Vec<PlacePlan>,
         /// What prevents a run, one sentence each, with its place in the file.
         pub problems: Vec<String>,
@@ -141,7 +141,7 @@ described! {
         pub narrowest: f64 as "m",
     }
 
-    /// A place of people before the shaking.
+    /// A place where people work, before the shaking.
     #[derive(Clone, Debug)]
     pub struct PlacePlan {
         /// Name of the place.
@@ -155,7 +155,7 @@ impl Plan {
     /// Lays out a cellar and checks it.
     ///
     /// # Errors
-    /// If a stack cannot be built in space. Stacks in wrong places are listed in [`Plan::problems`].
+    /// If a stack cannot be built in three dimensions. Stacks in wrong places are listed in [`Plan::problems`].
     pub fn of(cellar: &Cellar) -> Result<Self, RunFailure> {
         let models = cellar.models.iter().map(Model::of).collect::<Result<Vec<_>, _>>()?;
         let stacks = layout(cellar, &models);
@@ -204,7 +204,9 @@ impl Plan {
             ));
         }
         if cellar.doors.is_empty() && !cellar.places.is_empty() {
-            findings.push("there are places of people, but no door by which to leave".to_owned());
+            findings.push(
+                "there are places where people work, but no door by which to leave".to_owned(),
+            );
         }
         let wine: f64 = stacks.iter().map(|one| models[one.model].wine).sum();
         let barrels = cellar.barrels();
@@ -236,7 +238,7 @@ impl Plan {
         self.drawn(cellar, &kind)
     }
 
-    /// Returns the plan with a kind for each stack.
+    /// Returns the plan as a picture; `kind` returns how each stack is drawn.
     pub(crate) fn drawn(&self, cellar: &Cellar, kind: &dyn Fn(usize) -> RegionKind) -> FloorPlan {
         let RoomSpec { length, width, .. } = cellar.room;
         let mut regions: Vec<Region> = cellar
@@ -262,7 +264,7 @@ impl Plan {
 }
 
 impl PlanSummary {
-    /// Returns the figures of the plan as sentences.
+    /// Describes the plan and its numbers in sentences.
     pub fn sentences(&self) -> Vec<String> {
         let mut all = vec![format!(
             "{} in {}: {} barrels, {} of wine, {} m² of floor for each barrel.",
@@ -354,7 +356,7 @@ fn layout(cellar: &Cellar, models: &[Model]) -> Vec<Standing> {
 
 type Problems = Vec<(ScenarioError, Vec<usize>)>;
 
-/// Smallest overlap (m) that counts; distances are stated with fewer digits.
+/// Smallest overlap (m) that is a problem. It is far smaller than the precision of stated distances.
 const TOUCH: f64 = 1e-6;
 
 /// Finds overlaps of stacks, and the two stacks that are nearest to each other.
@@ -427,7 +429,7 @@ fn neighbors(
     })
 }
 
-/// Finds stacks in walls, and the stack that is nearest to a wall.
+/// Finds stacks that overlap walls, and the stack that is nearest to a wall.
 fn walls(
     cellar: &Cellar,
     stacks: &[Standing],
@@ -475,7 +477,7 @@ fn walls(
     Some(NearWall { stack: stacks[at].name.clone(), side, distance: distance.max(0.0) })
 }
 
-/// Finds stacks in columns.
+/// Finds stacks that overlap columns.
 fn columns(cellar: &Cellar, stacks: &[Standing], footprints: &[Convex], problems: &mut Problems) {
     for (index, column) in (1..).zip(&cellar.columns) {
         let [lower, upper] = column.corners();
@@ -531,7 +533,8 @@ pub(crate) struct Obstacles<'a> {
 const CELL: f64 = 0.1;
 
 impl Obstacles<'_> {
-    /// Returns, for each place of people, whether a path of the width of a person leads to a door; `None` without doors.
+    /// Returns, for each place where people work, `true` if a path as wide as a person leads to a door; `None` if there
+    /// are no doors.
     pub(crate) fn paths_to_doors(&self) -> Vec<Option<bool>> {
         let cellar = self.cellar;
         if cellar.places.is_empty() || cellar.doors.is_empty() {
@@ -586,7 +589,7 @@ impl Obstacles<'_> {
         }
     }
 
-    /// `true` if a path of the width of a person leads through a zone along its longer side.
+    /// `true` if a path as wide as a person leads through a zone along its longer side.
     pub(crate) fn is_passable(&self, from: Point, to: Point) -> bool {
         let axis = usize::from(to[1] - from[1] > to[0] - from[0]);
         let half = 0.5 * PASSAGE;
@@ -645,7 +648,8 @@ impl Obstacles<'_> {
     }
 }
 
-/// Returns the interval in which a line across an axis cuts a polygon.
+/// Returns the interval in which a polygon is cut by the line that crosses `axis` at right angles, at the coordinate
+/// `at`.
 fn section(polygon: &Convex, axis: usize, at: f64) -> Option<[f64; 2]> {
     let across = 1 - axis;
     let corners = polygon.corners();

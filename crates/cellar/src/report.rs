@@ -20,11 +20,11 @@ use crate::start::POSE;
 use crate::summary::{CellarSummary, Count, ShockAnswer, ShockStack, ShownStack, counted};
 use crate::words::{sentences, shown_run, span, span_of_shares, tone};
 
-/// Returns the plan of a cellar with the fates of the stacks in the run that is shown, and the places where barrels end
-/// in all variants.
+/// Returns the plan of a cellar with the outcome of each stack in the run that is shown, and with the places where
+/// barrels end in all variants.
 pub fn picture(answer: &Answer) -> FloorPlan {
     let Answer { prepared, cases, summary, .. } = answer;
-    // If the work was stopped, the fates of the stacks are unknown.
+    // If the work was stopped, the outcomes of the stacks are unknown.
     let kind = |at: usize| match summary.shown.stacks[at].fate {
         _ if summary.unfinished.is_some() => RegionKind::Stands,
         "falls-by-itself" => RegionKind::Falls,
@@ -54,8 +54,8 @@ const MOST_POSES: f64 = 60_000.0;
 /// Largest frame rate (1/s) of the animation of a page.
 const RATE: f64 = 20.0;
 
-/// Returns the animation of the run that is shown; `None` without frames, or for a room of so many bodies that a page
-/// could not show them smoothly.
+/// Returns the animation of the run that is shown; `None` if there are no frames, or if the room has too many bodies
+/// for a smooth animation.
 fn players(answer: &Answer) -> Option<Block> {
     let Answer { prepared, shown, summary, .. } = answer;
     let end = shown.end_time;
@@ -358,7 +358,7 @@ pub fn stacks(summary: &CellarSummary) -> Table {
 
 fn rows(summary: &CellarSummary) -> Table {
     Table::of(
-        "Rows: the share of variants in which the first stack that falls is in the row, and the mean numbers of \
+        "For each row: share of the variants in which the first stack to fall is in this row, and mean numbers of its \
          stacks that fall by themselves and that are knocked over.",
         &summary.rows,
         &[

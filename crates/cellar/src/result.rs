@@ -1,4 +1,4 @@
-//! Result of a room: fates of bodies and stacks, meetings, and forces on obstacles.
+//! Result of a room: outcomes of bodies and stacks, contacts between stacks, and forces on obstacles.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
@@ -42,10 +42,10 @@ pub struct Touch {
     pub time: f64,
     /// The body of the stack, by its index in [`RoomRun::bodies`].
     pub body: usize,
-    /// The body of another stack.
+    /// The body of the other stack, by its index in [`RoomRun::bodies`].
     pub by: usize,
-    /// Impulse (N·s) that all bodies of other stacks exert on the stack until its first loss of seat, or over the
-    /// whole run if it keeps its seats; as the sum of magnitudes.
+    /// Impulse (N·s, sum of magnitudes) that all bodies of other stacks exert on the stack until its first loss of
+    /// seat, or over the whole run if it keeps its seats.
     pub impulse: f64,
 }
 
@@ -116,8 +116,8 @@ pub struct ObstacleEnd {
     pub peak: f64,
     /// Impulse (N·s) along the axes of the room.
     pub impulse: [f64; 3],
-    /// Times (s) and total forces (N) along the axes of the room, at every accepted step with a contact, and at the
-    /// step before and after it, at which the force is zero.
+    /// Times (s) and total forces (N) along the axes of the room, at every accepted step with a contact. The steps just
+    /// before and after a contact, at which the force is zero, are included.
     pub history: Vec<(f64, [f64; 3])>,
 }
 
@@ -139,7 +139,7 @@ pub struct RoomRun {
     pub bodies: Vec<BodyEnd>,
     /// The stacks, in the order of the room.
     pub stacks: Vec<StackEnd>,
-    /// All stacks that have touched each other, in the order of the first contacts.
+    /// All pairs of stacks that have touched each other, in the order of their first contacts.
     pub meetings: Vec<Meeting>,
     /// The obstacles, in the order of the room.
     pub obstacles: Vec<ObstacleEnd>,
@@ -147,7 +147,7 @@ pub struct RoomRun {
     pub frames: Vec<RoomFrames>,
     /// Energy balance of all islands; `None` if numbers are no longer finite.
     pub energy: Option<EnergySummary>,
-    /// Sums of steps and evaluations over all islands.
+    /// Numbers of time steps and force evaluations, summed over all islands.
     pub work: Work,
     /// Number of times that islands were merged.
     pub merges: usize,

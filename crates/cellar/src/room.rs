@@ -10,22 +10,24 @@ use barrelstack_space::Ground;
 pub struct Placed {
     /// Name of the stack; unique in its room.
     pub name: String,
-    /// Scenario of the stack in space, with all draws already applied. Its motion and the azimuth of its stack are
-    /// ignored.
+    /// Three-dimensional scenario of the stack, in which all random draws have been applied. Its motion and the azimuth
+    /// of its stack are ignored.
     pub scenario: Scenario,
     /// Position (m) of the middle of the footprint in the room.
     pub at: [f64; 2],
     /// Angle (rad), counterclockwise from the `x` axis of the room to the `x` axis of the stack.
     pub azimuth: f64,
-    /// Poses from which the stack starts, by the order of its bodies, without the ground: position of the center of
-    /// mass (m), and quaternion `w`, `x`, `y`, `z`, in the frame of the stack, relative to the ground; such as
-    /// [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest; losses of seats still count from the places as
-    /// built, so a seat that was lost before is lost at time zero. `None` to start as built.
+    /// Poses from which the stack starts, in the order of its bodies, without the ground; `None` to start as built. A
+    /// pose is the position of the center of mass (m) and the quaternion `w`, `x`, `y`, `z`, both in the frame of the
+    /// stack and relative to the ground, as in [`BodyEnd::own`](crate::BodyEnd::own). The bodies start at rest. A loss
+    /// of seat is still judged by the places as built, so a seat that was lost before the run counts as lost at time
+    /// zero.
     pub start: Option<Vec<[f64; 7]>>,
-    /// `true` if the poses of `start` are those in which an earlier run of the same room has left the bodies, which may
-    /// press into each other by any depth; overlaps of stated poses are an error.
+    /// `true` if an earlier run of the same room ended in the poses of `start`. Bodies may then overlap by any depth,
+    /// because loads press them into each other. In stated poses, an overlap is an error.
     pub carried_on: bool,
-    /// Shifts of bodies before the run, in this order, from the poses at rest or from those of `start`.
+    /// Shifts of bodies before the run, applied in this order to the poses of `start` if they are given, otherwise to
+    /// the poses at rest.
     pub shifts: Vec<Shift>,
 }
 
@@ -36,8 +38,8 @@ pub struct Shift {
     pub body: Option<usize>,
     /// Displacement (m) along the axes of the stack.
     pub by: [f64; 3],
-    /// Angle (rad), counterclockwise from above, by which the body is turned about the vertical through its center of
-    /// mass, and a whole stack about the middle of its footprint.
+    /// Angle (rad) of a turn about the vertical, counterclockwise from above: a body turns about its center of mass, a
+    /// whole stack about the middle of its footprint.
     pub turn: f64,
 }
 
@@ -112,8 +114,8 @@ pub enum RoomFailure {
     Empty,
     /// There are too many bodies.
     #[error(
-        "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed, with which a run needs about 3 GB: \
-         divide it into rooms between which nothing can fall"
+        "the room has {bodies} barrels, racks and other bodies, but at most {MOST_BODIES} are allowed (a run of that \
+         size needs about 3 GB): divide it into rooms such that nothing can fall from one into another"
     )]
     Large {
         /// Number of bodies.
@@ -121,7 +123,8 @@ pub enum RoomFailure {
     },
     /// Stacks have different gravity or integration methods.
     #[error(
-        "stacks \"{first}\" and \"{second}\" differ in run.gravity or run.method: give all stacks of a room the same"
+        "stacks \"{first}\" and \"{second}\" differ in run.gravity or run.method: give all stacks of a room the \
+         same values"
     )]
     Differ {
         /// Name of the first stack.
@@ -143,7 +146,7 @@ pub enum RoomFailure {
         /// The error.
         failure: Box<RunFailure>,
     },
-    /// A stack starts from poses of other bodies.
+    /// The number of poses from which a stack starts differs from the number of its bodies.
     #[error(
         "stack \"{name}\" starts from {found} poses, but has {expected} bodies: state one pose for each body"
     )]
@@ -178,8 +181,8 @@ pub enum RoomFailure {
         /// Number of bodies.
         bodies: usize,
     },
-    /// Bodies of two stacks, or a body and an obstacle, overlap from the start; also two bodies of a stack that does not
-    /// start as built.
+    /// Bodies of two stacks, or a body and an obstacle, overlap at the start. In a stack that does not start as built,
+    /// also two bodies of the same stack.
     #[error(
         "\"{first}\" and \"{second}\" overlap by {:.1} mm before the ground moves: move them apart",
         1e3 * depth
@@ -192,7 +195,7 @@ pub enum RoomFailure {
         /// Depth (m) of the overlap.
         depth: f64,
     },
-    /// An obstacle is not a block.
+    /// A side of an obstacle is not positive.
     #[error("obstacle \"{name}\" has a side of {side} m: give it three positive sides")]
     Side {
         /// Name of the obstacle.
@@ -200,7 +203,7 @@ pub enum RoomFailure {
         /// The side (m).
         side: f64,
     },
-    /// The bodies of stacks cannot be combined.
+    /// The bodies of the stacks cannot be combined into one model.
     #[error(transparent)]
     Model(#[from] ModelError),
 }

@@ -1,4 +1,5 @@
-//! Run of a room: windows of time, in which islands advance in parallel, and merges between them.
+//! Run of a room: islands advance in parallel in short windows of time, and islands that come near each other are
+//! merged.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -33,7 +34,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 pub struct Advance {
     /// Simulated time (s) that all stacks have reached or at which they rest.
     pub time: f64,
-    /// Simulated time (s) at which the run ends at the latest.
+    /// Latest simulated time (s) at which the run can end.
     pub end_time: f64,
     /// Number of stacks that move.
     pub moving: usize,
@@ -195,8 +196,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Merges the islands of which a body would have left its tube, in the order of time; each is merged with the
-    /// island or obstacle that is nearest to this body.
+    /// Merges each island in which a body would have left its tube with the island or obstacle that is nearest to this
+    /// body. The islands are merged in the order in which they stopped.
     fn repair(&mut self, until: f64) -> Result<(), RoomFailure> {
         let world = self.world;
         loop {

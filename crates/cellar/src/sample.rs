@@ -40,7 +40,7 @@ pub enum CellarFailure {
     /// The room cannot be run.
     #[error(transparent)]
     Room(#[from] RoomFailure),
-    /// The result of a variant cannot be kept, or one that was kept cannot be used.
+    /// The result of a variant cannot be kept, or a kept result cannot be used.
     #[error("{path}: {reason}; remove the file, or keep the results in another folder")]
     Kept {
         /// Path of the file or folder.
@@ -88,7 +88,7 @@ pub struct Later {
 /// Horizontal acceleration (m/s²) at which the shaking starts.
 const ONSET: f64 = 0.02 * barrelstack::motion::STANDARD_GRAVITY;
 
-/// Time (s) between two samples of the ground.
+/// Time (s) between two samples of the ground motion.
 const SAMPLE: f64 = 0.005;
 
 /// Thickness (m) of walls.
@@ -152,8 +152,8 @@ impl Prepared {
         })
     }
 
-    /// Returns a stack as drawn for a variant. Its constants are those of the variant, and its imperfections those of
-    /// the variant and the stack.
+    /// Returns a stack with the random draws of a variant. All stacks of the variant have the same constants, but each
+    /// stack has its own imperfections.
     fn drawn(&self, standing: &Standing, variant: u32) -> Result<Scenario, CellarFailure> {
         let stated = &self.cellar.models[standing.model];
         if variant == 0 {
@@ -416,8 +416,8 @@ impl Prepared {
         }
     }
 
-    /// Returns the time (s) from which an aisle stays blocked until the end; this is the start of the shaking if
-    /// stacks and columns block the aisle as they stand. `None` if the aisle is passable at the end.
+    /// Returns the time (s) from which an aisle stays blocked until the end; this is the start of the shaking if the
+    /// stacks and columns already block the aisle before it. `None` if the aisle is passable at the end.
     fn blocked_at(
         &self,
         from: [f64; 2],
@@ -465,7 +465,8 @@ impl Prepared {
     }
 }
 
-/// Work on one variant, with a number of threads; `None` if it was interrupted.
+/// Function that does the work on a variant; the arguments are the number of the variant, the number of threads, and
+/// the observer. Returns `None` if the work was interrupted.
 pub(crate) type OfVariant<'a, T> =
     &'a (dyn Fn(u32, usize, Observer<'_>) -> Result<Option<T>, CellarFailure> + Sync);
 
@@ -536,8 +537,8 @@ fn obstacles(cellar: &Cellar) -> Result<Vec<Obstacle>, CellarFailure> {
     let Some(mut law) = stated else { return Ok(Vec::new()) };
     if room.stiffness.is_some() || room.restitution.is_some() {
         let NormalLaw::Rebound { stiffness, restitution, .. } = &mut law.normal else {
-            let message = "the stiffness and restitution of walls are those of a rebound law: set `law = \"rebound\"` in \
-                           interface.barrel-ground, or leave them out"
+            let message = "the stiffness and restitution of walls need a rebound contact law: set `law = \"rebound\"` \
+                           in interface.barrel-ground, or leave them out"
                 .to_owned();
             return Err(cellar.host.error(&["room.stiffness", "room.restitution"], message).into());
         };
@@ -595,7 +596,7 @@ pub struct Case {
     pub stacks: Vec<StackCase>,
     /// The aisles.
     pub aisles: Vec<AisleCase>,
-    /// For each place of people, whether a path to a door is left; `None` without doors.
+    /// For each place where people work, `true` if a path to a door is left; `None` if there are no doors.
     pub paths_to_doors: Vec<Option<bool>>,
     /// Walls and columns.
     pub obstacles: Vec<ObstacleCase>,
@@ -605,7 +606,7 @@ pub struct Case {
     pub end_time: f64,
     /// `true` if the run ended before all stacks were at rest.
     pub cut_short: bool,
-    /// Number of stacks of which a body still moved at the end.
+    /// Number of stacks in which a body still moved at the end.
     pub still_moving: usize,
     /// Warnings, one sentence each, with the name of the stack that a warning concerns.
     pub warnings: Vec<(Option<String>, String)>,

@@ -1,5 +1,5 @@
-//! A cellar as stated in a file: a room with columns, doors, aisles and places of people, and blocks of stacks, each of
-//! which is the stack that the same file describes.
+//! A cellar as stated in a file: a room with columns, doors, aisles and places where people work, and blocks of stacks.
+//! The file describes one stack; all stacks are copies of it, but may differ in their numbers of levels.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -60,7 +60,7 @@ section! {
     /// Stiffness k of walls and columns where a body strikes them.
     stiffness: Option<f64> = Kind::Quantity(&[Dimension::HERTZ_STIFFNESS], Range::POSITIVE),
         Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
-    /// Ratio of the speeds after and before a strike on a wall or column.
+    /// Coefficient of restitution: ratio of the speeds after and before a body strikes a wall or column.
     restitution: Option<f64> = Kind::Number(Range::up_to(1.0)),
         Default::Derived("that of a barrel that strikes the ground, `interface.barrel-ground`");
     /// Friction coefficient of bodies on walls and columns.
@@ -140,8 +140,8 @@ pub struct Block {
     pub rows: u32,
     /// Number of stacks in a row, which follow each other along x.
     pub stacks: u32,
-    /// Position (m) of the near left corner of the bounding rectangle, along x and y, of the footprint of the first
-    /// stack.
+    /// Position (m), along x and y, of the near left corner of the first stack (of the bounding rectangle of its
+    /// footprint).
     pub first: [f64; 2],
     /// Free distance (m) between the stacks of a row.
     pub spacing: f64,
@@ -153,14 +153,14 @@ pub struct Block {
     pub rows_together: u32,
     /// Angle (rad) by which every stack is turned, counterclockwise from above.
     pub azimuth: f64,
-    /// Number of levels; that of the stack if absent.
+    /// Number of levels; `None` for the number of levels that the stack states.
     pub levels: Option<u32>,
     /// Numbers of levels row by row, in place of `levels`; empty if not given.
     pub levels_by_row: Vec<u32>,
 }
 
 table! {
-    /// Rows of stacks, each of which is the stack of this file.
+    /// Rows of stacks; every stack is a copy of the stack that this file describes.
     pub static BLOCK = "block";
     /// Name, by which a change can refer to the block.
     name = Kind::Text, Default::Nothing;
@@ -214,9 +214,9 @@ table! {
     place = Kind::Tables(&PLACE), Default::Nothing;
     /// Blocks of stacks.
     block = Kind::Tables(&BLOCK), Default::Required;
-    /// The stack, in space; all stacks of the room are alike.
+    /// The stack, in three dimensions; all stacks of the room are alike.
     stack = Kind::Table(&STACK), Default::Required;
-    /// Contact laws by pair of bodies; bodies of different stacks have the laws of bodies that have fallen.
+    /// Contact laws by pair of bodies; between bodies of different stacks, the laws of fallen bodies apply.
     interface = Kind::Table(&INTERFACES), Default::Nothing;
     /// Places from which bodies start, such as those surveyed after an earthquake.
     start = Kind::Table(&START), Default::Nothing;
@@ -228,10 +228,9 @@ table! {
     record = Kind::Table(&RECORD), Default::Nothing;
     /// Thresholds that define a collapse.
     outcome = Kind::Table(&OUTCOME), Default::Nothing;
-    /// Random differences from stack to stack, and the number of variants of the room; they are drawn for every
-    /// stack.
+    /// Random differences from stack to stack, which are drawn for every stack, and the number of variants of the room.
     imperfections = Kind::Table(&IMPERFECTIONS), Default::Nothing;
-    /// Uncertainty of constants that nobody has measured; they are drawn once for all stacks of a variant.
+    /// Uncertainty of constants that nobody has measured; the constants are drawn once for all stacks of a variant.
     unknowns = Kind::Table(&UNKNOWNS), Default::Nothing;
 }
 
@@ -268,10 +267,10 @@ const LANGUAGE: Language = Language {
 /// Maximum number of barrels in a room. A run keeps all bodies with their frames in memory.
 pub const MOST_BARRELS: u64 = 10_000;
 
-/// Maximum number of columns, doors, aisles and places, each.
+/// Maximum number of columns; also of doors, of aisles and of places.
 const MOST_ITEMS: usize = 1000;
 
-/// Maximum number of shocks of a sequence, each of which takes the time of a run.
+/// Maximum number of shocks of a sequence. Each shock takes as long as a run.
 pub const MOST_SHOCKS: usize = 20;
 
 /// A stack in its place.
@@ -312,7 +311,8 @@ pub struct Cellar {
     pub blocks: Vec<Block>,
     /// Places from which bodies start.
     pub start: StartSpec,
-    /// The shocks of a sequence after the first, which is the motion of the stack as stated.
+    /// The shocks of a sequence after the first. The first shock is the motion of the stack as stated
+    /// ([`Cellar::stated`]).
     pub later: Vec<MotionSpec>,
     /// Scenarios of the stacks as stated, one for each number of levels.
     pub models: Vec<Scenario>,
@@ -366,7 +366,7 @@ impl Cellar {
         Self::of(&Host::builtin(name, changes, &LANGUAGE)?)
     }
 
-    /// `true` if a text, or a text that it extends, is of the kind of a cellar. A text that cannot be read is not.
+    /// `true` if a text describes a cellar, or extends a text that does; `false` if the text cannot be read.
     pub fn is_stated(path: Option<&Path>, bytes: &[u8]) -> bool {
         is_cellar(path, bytes, 8)
     }
@@ -394,7 +394,7 @@ impl Cellar {
         self.blocks.iter().zip(&self.model_of).map(row).sum()
     }
 
-    /// Returns the scenario of the stack as stated, whose motion, settings and imperfections are those of the room.
+    /// Returns the scenario of the stack as stated. Its motion, settings and imperfections are those of the room.
     pub fn stated(&self) -> &Scenario {
         &self.models[0]
     }
@@ -467,7 +467,7 @@ impl Cellar {
     }
 
     /// Returns the fingerprint of the cellar without its title: the 64-bit FNV-1a hash of the resolved text, in which
-    /// the bytes of a record stand for its path.
+    /// the path of a record is replaced by the bytes of the record.
     pub fn fingerprint(&self) -> u64 {
         let mut own = self.write();
         own.remove("title");
@@ -683,7 +683,7 @@ impl Cellar {
     }
 }
 
-/// Returns the number of barrels of the stack of a scenario.
+/// Returns the number of barrels of the stack that a scenario describes.
 pub(crate) fn barrels(scenario: &Scenario) -> u64 {
     scenario.stack().map_or(0, |stack| {
         let along = stack.space.map_or(1, |space| space.columns_along);
@@ -733,7 +733,8 @@ fn check(host: &Host, stated: &Scenario) -> Result<(), ScenarioError> {
     }
     if stated.run.until != Until::Rest {
         let message =
-            "a room is followed until its bodies rest, since stacks may fall on others late: leave `run.until` out"
+            "a room is simulated until its bodies rest, because a stack may fall on another late in the run: leave \
+             `run.until` out"
                 .to_owned();
         return Err(host.error(&["run.until"], message));
     }

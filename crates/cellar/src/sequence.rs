@@ -1,4 +1,5 @@
-//! Sequences of shocks: the room after one shock, in which the next starts, and the runs of all shocks as one.
+//! Sequences of shocks: the room after a shock, from which the next shock starts, and the runs of all shocks combined
+//! into one run.
 
 use barrelstack::outcome::Outcome;
 use barrelstack_space::Fate;
@@ -92,7 +93,8 @@ fn add(all: &mut RoomRun, next: &RoomRun) {
     }
 }
 
-/// Adds the end of a body in a shock; `stood` is `true` if its stack stood before the shock.
+/// Adds the result of a body in a further shock, which starts at the time `from` (s), to its result so far; `stood` is
+/// `true` if its stack stood before the shock.
 fn add_body(all: &mut BodyEnd, next: &BodyEnd, from: f64, stood: bool) {
     let (one, two) = (all.fate, next.fate);
     let left = two.left_seat.map(|(time, loss, heading)| (from + time, loss, heading));

@@ -27,7 +27,7 @@ section! {
     /// A shift of a stack or of one of its bodies.
     #[derive(Clone, Debug, PartialEq)]
     pub struct ShiftSpec;
-    /// A shift before the first shock, from the place at rest as built.
+    /// A shift before the first shock, relative to the place at rest as built.
     pub static SHIFT = "shift";
     /// Stack: row and number in the row, such as "1-2".
     stack: String = Kind::Text, Default::Required;
@@ -43,9 +43,9 @@ section! {
 table! {
     /// Places from which bodies start, such as those surveyed after an earthquake. All other bodies start as built.
     pub static START = "start";
-    /// CSV file, relative to this file, with a row for each stack or body: columns `stack` and `body` (empty: the whole
-    /// stack), and shifts `dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`; or poses in the frame of the stack `x (m)`,
-    /// `y (m)`, `z (m)`, `qw`, `qx`, `qy`, `qz`, of all bodies of a stack.
+    /// CSV file with one row for each stack or body; its path is relative to this file. It has the columns `stack` and
+    /// `body` (empty for the whole stack), and either shifts (`dx (m)`, `dy (m)`, `dz (m)`, `turn (deg)`) or, for all
+    /// bodies of a stack, poses in the frame of the stack (`x (m)`, `y (m)`, `z (m)`, `qw`, `qx`, `qy`, `qz`).
     file = Kind::Text, Default::Nothing;
     /// Shifts, in this order, after those of the file.
     shift = Kind::Tables(&SHIFT), Default::Nothing;
@@ -117,7 +117,7 @@ pub(crate) struct StackStart {
     pub(crate) line: Option<usize>,
 }
 
-/// Returns, by the name of the stack, where each stack starts that does not start as built.
+/// Returns the starts of all stacks that do not start as built, by the name of the stack.
 ///
 /// # Errors
 /// If the file cannot be read, or a stack or a body is unknown.

@@ -41,20 +41,20 @@ described! {
         pub stacks: Vec<StackAnswer>,
         /// The aisles.
         pub aisles: Vec<AisleAnswer>,
-        /// The places of people.
+        /// The places where people work.
         pub places: Vec<PlaceAnswer>,
         /// Walls and columns.
         pub obstacles: Vec<ObstacleAnswer>,
         /// Names of the stacks in the order in which to inspect them after the shaking: by the median of their movement in
         /// the variants in which they stand, the largest first. Stacks that always fall are not listed.
         pub inspection: Vec<String>,
-        /// The shocks of a sequence, in order; empty for a single shock, and if no run is counted. For a sequence,
-        /// all other values are those of all shocks together: times continue from shock to shock, without the quiet
-        /// time between them.
+        /// The shocks of a sequence, in order; empty for a single shock, or if no run is counted. For a sequence, all
+        /// other values are those of all shocks together: times continue from shock to shock, without the quiet time
+        /// between them.
         pub shocks: Vec<ShockAnswer>,
         /// The run that is shown.
         pub shown: ShownRoom,
-        /// Component of the ground motion along x, of the first shock.
+        /// Component along x of the ground motion of the first shock.
         pub motion: Option<MotionSummary>,
         /// Component of the ground motion along y; null where the motion has only one horizontal component.
         pub other_component: Option<MotionSummary>,
@@ -85,7 +85,8 @@ described! {
         pub pgv: f64 as "m/s",
     }
 
-    /// A count out of the variants, with the 95 % interval of the share in all such rooms (Wilson 1927).
+    /// Number of variants in which an event happens, with the share of these variants and the 95 % interval of the
+    /// probability of the event (Wilson 1927).
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Count {
         /// Number of variants.
@@ -123,10 +124,10 @@ described! {
         pub burst: [f64; 3] as "1",
         /// Expected loss of wine, under the three assumptions of `burst`.
         pub wine_lost: [f64; 3] as "m3",
-        /// Lower and upper estimate of the cost of the barrels that burst and of their wine, under the central
-        /// assumption on how many burst.
+        /// Lower and upper estimate of the cost (barrels that burst, and their wine), under the central assumption on
+        /// how many burst.
         pub cost: [f64; 2] as "US$",
-        /// Largest force on a wall or column in any variant; null without walls and columns.
+        /// Largest force on a wall or column in any variant; null if there are no walls or columns.
         pub peak_force: Option<f64> as "N",
     }
 
@@ -171,13 +172,13 @@ described! {
         pub by_itself: Count,
         /// Variants in which the stack is knocked over.
         pub knocked_over: Count,
-        /// Distribution of the time of the first loss of seat of the stack.
+        /// Distribution of the time at which the stack first loses a seat.
         pub falls_at: Option<Range> as "s",
         /// Name of the other stack that most often touches this stack first; null if none touches it.
         pub touched_by: Option<String>,
         /// Distribution of the time of the first contact with another stack.
         pub touched_at: Option<Range> as "s",
-        /// Distribution of the impulse that other stacks exert on the stack until it lost a seat, or over the whole
+        /// Distribution of the impulse that other stacks exert on the stack until it loses a seat, or over the whole
         /// run if it stands.
         pub impulse: Option<Range> as "N s",
         /// Mean number of barrels that fall from the stack.
@@ -194,7 +195,7 @@ described! {
     pub struct AisleAnswer {
         /// Name of the aisle.
         pub name: String,
-        /// Variants in which a barrel comes into the aisle.
+        /// Variants in which a barrel enters the aisle.
         pub entered: Count,
         /// Distribution of the time of the first barrel in the aisle.
         pub first_barrel: Option<Range> as "s",
@@ -208,12 +209,12 @@ described! {
         pub fastest: Option<Range> as "m/s",
     }
 
-    /// A place of people.
+    /// A place where people work.
     #[derive(Clone, Debug)]
     pub struct PlaceAnswer {
         /// Name of the place.
         pub name: String,
-        /// Variants in which a path 0.6 m wide leads from the place to a door at the end; null without doors.
+        /// Variants in which a path 0.6 m wide leads from the place to a door at the end; null if there are no doors.
         pub leads_out: Option<Count>,
     }
 
@@ -292,13 +293,13 @@ described! {
         pub knocked_over: u32,
         /// Number of barrels that fall.
         pub barrels_fallen: usize,
-        /// Number of stacks of which a body still moves when the shock ends.
+        /// Number of stacks in which a body still moves when the shock ends.
         pub still_moving: usize,
-        /// Time in the record of the shock at which the shock ends: all bodies rest, its duration is over, or it was
-        /// stopped.
+        /// Time in the record of the shock at which its run ends, because all bodies rest, its duration is over, or it
+        /// was stopped.
         pub end_time: f64 as "s",
-        /// Time by which the run ends before the motion of the shock while stacks still move; 0 if the run covers the
-        /// motion or all stacks are at rest.
+        /// Time from the end of the run to the end of the motion of the shock, if stacks still move when the run ends;
+        /// 0 if the run covers the motion or all stacks are at rest.
         pub cut: f64 as "s",
     }
 
@@ -309,10 +310,10 @@ described! {
         pub variant: u32,
         /// True if this run is the most typical of those that are counted.
         pub typical: bool,
-        /// Time in the record at which the run ends: all bodies rest, its duration is over, or it was stopped.
+        /// Time in the record at which the run ends, because all bodies rest, its duration is over, or it was stopped.
         pub end_time: f64 as "s",
-        /// Time by which the run ends before the motion while stacks still move, the longest of a sequence; 0 if the
-        /// run covers the motion or all stacks are at rest.
+        /// Time from the end of the run to the end of its motion, if stacks still move when the run ends; for a
+        /// sequence, the longest such time of its shocks; 0 if the run covers the motion or all stacks are at rest.
         pub cut: f64 as "s",
         /// Row of the first stack that falls.
         pub starts: Option<u32>,
@@ -345,8 +346,8 @@ described! {
         pub touched_by: Option<String>,
         /// Names of the bodies in the first contact: that of this stack, and that of the other stack.
         pub bodies: Option<[String; 2]>,
-        /// Impulse that other stacks exert on the stack until it lost a seat, or over the whole run if it stands;
-        /// null if it lost a seat before it was touched.
+        /// Impulse that other stacks exert on the stack until it loses a seat, or over the whole run if it stands; null
+        /// if it lost a seat before it was touched.
         pub impulse: Option<f64> as "N s",
         /// Number of barrels that fell from the stack.
         pub barrels_fallen: usize,
@@ -431,7 +432,7 @@ pub fn typical(cases: &[Case]) -> Option<u32> {
     counted.iter().min_by(|a, b| far(a).total_cmp(&far(b))).map(|case| case.variant)
 }
 
-/// Summarizes the cases of a cellar and the run that is shown, whose result is `shown`.
+/// Summarizes the cases of a cellar, and the run that is shown; `shown` holds this run and its case.
 pub fn of(prepared: &Prepared, cases: &[Case], shown: (&Case, &RoomRun)) -> CellarSummary {
     let all = counted(cases);
     let plan = &prepared.plan;
@@ -587,7 +588,8 @@ pub(crate) fn shocks(prepared: &Prepared, all: &[&Case], shown: &Case) -> Vec<Sh
     grounds.enumerate().map(one).collect()
 }
 
-/// Returns the time (s) by which a run ends before its motion while stacks still move; otherwise zero.
+/// Returns the time (s) from the end of a run to the end of its motion, if stacks still move when the run ends;
+/// otherwise zero.
 fn cut(ground: &barrelstack_space::Ground, case: &Case) -> f64 {
     let left = ground.end() - case.end_time;
     if case.cut_short && left > CUT { left } else { 0.0 }

@@ -43,7 +43,7 @@ pub(crate) fn shown_run(summary: &CellarSummary) -> String {
     }
 }
 
-/// Returns the sentence of work that was stopped before the end of the run (s) that is shown.
+/// Returns the sentence on work that was stopped. If there is only one run, it was stopped at `end_time` (s).
 pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
     let Unfinished { done, of } = unfinished;
     if *of == 1 {
@@ -56,20 +56,20 @@ pub(crate) fn stopped(unfinished: &Unfinished, end_time: f64) -> String {
     )
 }
 
-/// Returns the longest time (s) by which the run that is shown ends before the motion of a shock while stacks still
-/// move; `None` if there is no such time.
+/// Returns the time (s) from the end of the run that is shown to the end of its motion, if stacks still move when the
+/// run ends; for a sequence, the longest such time of its shocks. `None` if there is no such time.
 pub(crate) fn missing(summary: &CellarSummary) -> Option<f64> {
     Some(summary.shown.cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the longest time (s) by which a run ends before the motion of a shock while stacks still move; `None` if
-/// there is no such time.
+/// Returns the longest time (s) from the end of the run of a shock to the end of its motion, among the runs that end
+/// while stacks still move; `None` if there is no such run.
 pub(crate) fn longest_cut<'a>(shocks: impl Iterator<Item = &'a ShockAnswer>) -> Option<f64> {
     let cut = shocks.filter_map(|shock| Some(shock.shown.as_ref()?.cut)).fold(0.0, f64::max);
     Some(cut).filter(|cut| *cut > 0.0)
 }
 
-/// Returns the sentence on shocks whose runs end a time (s) before their motions do.
+/// Returns the sentence which states that the run of a shock ends the time `cut` (s) before its motion.
 pub(crate) fn followed(cut: f64) -> String {
     format!("The run of a shock ends {cut:.1} s before its motion does.")
 }
@@ -85,7 +85,8 @@ fn standing(summary: &CellarSummary) -> usize {
     summary.plan.stacks - summary.shown.fallen_before as usize
 }
 
-/// Returns a clause on the variants in which a stack falls, after a run in which none does; empty if there are none.
+/// Returns a clause on the variants in which a stack falls, to follow the statement that none falls in the run that is
+/// shown; empty if there are no such variants.
 fn but_some_fall(summary: &CellarSummary) -> String {
     match summary.room.some_fall.of_variants {
         0 => String::new(),
@@ -136,7 +137,7 @@ pub fn headline(summary: &CellarSummary) -> String {
     sentence(summary, &format!("{starts}{fall}{}.", blocked(summary)))
 }
 
-/// Returns the result of the run that is shown of a sequence.
+/// Returns the result of the run that is shown, for a sequence of shocks.
 fn of_sequence(summary: &CellarSummary) -> String {
     let cut = missing(summary).map_or(String::new(), |missing| {
         format!("; the run of a shock ends {missing:.1} s before its motion does")
@@ -165,7 +166,8 @@ fn falling(own: u32, of: &str, knocked: u32) -> String {
 /// Largest number of shocks that a sentence lists one by one.
 const LISTED: usize = 3;
 
-/// Returns what happens in the shocks of the run that is shown; of many shocks, only in those that change something.
+/// Describes what happens in the shocks of the run that is shown. If there are many shocks, only those in which a stack
+/// falls are described.
 fn shock_by_shock(summary: &CellarSummary) -> String {
     let all = &summary.shocks;
     let changes = |shown: &ShownShock| shown.by_themselves + shown.knocked_over > 0;
@@ -284,8 +286,9 @@ fn still_moving(shock: &ShockAnswer, of: u32, last: bool) -> String {
     format!(" In {}, a body still moves when the shock ends{next}.", share(&shock.still_moving, of))
 }
 
-/// Returns a sentence that states how many of the stacks that stand after the first shock survive the second, whose
-/// strength `strength` describes; `None` if the summary has no second shock or the work was stopped.
+/// Returns a sentence that states how many of the stacks that stand after the first shock survive the second;
+/// `strength` describes the strength of the second shock. `None` if the summary has no second shock or the work was
+/// stopped.
 pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
     let (shock, of) = (summary.shocks.get(1)?, summary.counted);
     if summary.unfinished.is_some() || of == 0 {
@@ -316,7 +319,7 @@ pub fn aftershock(summary: &CellarSummary, strength: &str) -> Option<String> {
     ))
 }
 
-/// Returns a sentence on the run that is shown, which names the run if there are several.
+/// Returns a sentence that states `text` about the run that is shown, and names this run if there are several.
 fn sentence(summary: &CellarSummary, text: &str) -> String {
     match (summary.counted, summary.shown.typical) {
         (2.., true) => format!("In the most typical of {} runs, {text}", summary.counted),
@@ -347,8 +350,8 @@ fn blocked(summary: &CellarSummary) -> String {
     }
 }
 
-/// Returns the shock of a sequence in which the run that is shown is at a time (s) from the start of the shaking; `None`
-/// for a single shock.
+/// Returns a phrase that names the shock in which a time (s) lies, counted from the start of the shaking in the run
+/// that is shown; `None` for a single shock.
 fn shock_at(summary: &CellarSummary, time: f64) -> Option<String> {
     let mut left = summary.onset + time;
     let number = summary.shocks.iter().find_map(|shock| {
@@ -364,7 +367,7 @@ fn shock_at(summary: &CellarSummary, time: f64) -> Option<String> {
 pub fn tone(summary: &CellarSummary) -> Tone {
     match summary.room.some_fall.of_variants {
         _ if summary.counted == 0 || summary.unfinished.is_some() => Tone::Invalid,
-        // As for one stack, few variants that stand are no verdict.
+        // As for a single stack, a few variants in which all stacks stand are not enough for a verdict.
         0 if summary.counted < ENOUGH || standing(summary) == 0 || missing(summary).is_some() => {
             Tone::Neutral
         }
@@ -388,12 +391,13 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     all.extend(shocks.map(|(number, shock)| of_shock(shock, *of, number == last)));
     if let Some(motion) = summary.motion.as_ref().filter(|_| summary.shocks.is_empty()) {
         let other = summary.other_component.as_ref();
-        let other = other
-            .map(|other| format!("; along y as {}, {}", other.name, peaks(other.pga, other.pgv)));
+        let other = other.map(|other| {
+            format!("; along y it is {}, {}", other.name, peaks(other.pga, other.pgv))
+        });
         let vertical = summary.vertical_component.as_ref();
-        let vertical = vertical.map(|up| format!("; vertically {}", peaks(up.pga, up.pgv)));
+        let vertical = vertical.map(|up| format!("; vertically it is {}", peaks(up.pga, up.pgv)));
         all.push(format!(
-            "Along x the ground moves as {}, {}{}{}.",
+            "The ground motion along x is {}, {}{}{}.",
             motion.name,
             peaks(motion.pga, motion.pgv),
             other.unwrap_or_default(),
@@ -421,7 +425,7 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     for place in &summary.places {
         if let Some(count) = &place.leads_out {
             all.push(format!(
-                "A path 0.6 m wide leads from the place \"{}\" to a door in {}.",
+                "A path 0.6 m wide from the place \"{}\" to a door is left in {}.",
                 place.name,
                 share(count, *of)
             ));
@@ -501,12 +505,13 @@ fn peaks(acceleration: f64, velocity: f64) -> String {
 /// Returns the sentence on an aisle over a number of variants.
 fn of_aisle(aisle: &AisleAnswer, of: u32) -> String {
     let Some(first) = &aisle.first_barrel else {
-        return format!("No barrel comes into the aisle \"{}\".", aisle.name);
+        return format!("No barrel enters the aisle \"{}\".", aisle.name);
     };
-    let fast =
-        aisle.fastest.map_or(String::new(), |fast| format!(", at up to {:.1} m/s", fast.most));
+    let fast = aisle.fastest.map_or(String::new(), |fast| {
+        format!("; barrels in the aisle move at up to {:.1} m/s", fast.most)
+    });
     format!(
-        "The first barrel is in the aisle \"{}\" {} after the shaking starts{fast}; at the end, {} of the area of \
+        "The first barrel enters the aisle \"{}\" {} after the shaking starts{fast}. At the end, {} of the area of \
          the aisle is covered, and the aisle is blocked in {}.",
         aisle.name,
         span(first, aisle.entered.of_variants, 1, "s"),

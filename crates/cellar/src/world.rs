@@ -47,7 +47,7 @@ pub(crate) struct ObstacleOf {
     pub(crate) model: Model<Spatial>,
     pub(crate) kinds: [usize; 1],
     pub(crate) rank: usize,
-    /// Longest step (s) with which the contacts of the obstacle are integrated.
+    /// Longest time step (s) with which the contacts of the obstacle are integrated.
     pub(crate) step: f64,
 }
 
@@ -126,7 +126,7 @@ impl<'a> World<'a> {
         Ok(Self { room, stacks, obstacles, crossing, end_time: end, count: first })
     }
 
-    /// Returns the number of a body of a stack among those of all stacks; obstacles follow.
+    /// Returns the number of a body or an obstacle; the bodies of all stacks come first, followed by the obstacles.
     pub(crate) fn number(&self, owner: Owner) -> usize {
         match owner {
             Owner::Stack((stack, body)) => self.stacks[stack].first + body,

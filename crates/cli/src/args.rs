@@ -8,7 +8,7 @@ use clap::{Parser, Subcommand};
 
 use crate::language::LanguageArgs;
 
-/// End of the first page of help.
+/// Text at the end of the help of the program.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack demo                                       a first run, and a report to open in a browser
@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Stop at a point of the work, WORK:THINGS:DONE, as Ctrl-C does; for tests.
+    /// Stop the program at a point of its work, given as WORK:THINGS:DONE, as Ctrl-C would; for tests.
     #[arg(long, global = true, hide = true, value_name = "POINT")]
     pub(crate) stop_at: Option<crate::interrupt::StopPoint>,
 }
@@ -48,7 +48,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Protection with the best benefit for its cost: levels, racks, devices, or pairs of these.
+    /// Protection with the best benefit for its cost: fewer levels, other racks, devices, or pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
@@ -78,7 +78,7 @@ pub(crate) enum Command {
     Man(crate::commands::shell::ManArgs),
 }
 
-/// A scenario, and changes to be made to the scenario.
+/// A scenario, and changes to be made to its values.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct ScenarioArgs {
     /// A scenario file (TOML), the name of a built-in scenario, or - for standard input.
@@ -120,8 +120,8 @@ pub(crate) struct RunArgs {
     pub(crate) overwrite: bool,
     #[command(flatten)]
     pub(crate) tables: crate::tables::TableArgs,
-    /// Repeat the run with half the step, with finer nodes and with disturbances of a nanometer,
-    /// and report until when the run is predictable and whether its outcome is robust.
+    /// Repeat the run with half the time step, with finer contact nodes and with disturbances of a nanometer, and
+    /// report how long the run is predictable and whether its outcome is robust.
     #[arg(long)]
     pub(crate) verify: bool,
     /// Do not search for changes that would have kept a fallen stack up; the search may take as
@@ -140,16 +140,16 @@ pub(crate) struct RunArgs {
     /// in report.html, so that a reader of the report can change the stack and run it again.
     #[arg(long, requires = "out", value_name = "FILE")]
     pub(crate) with_engine: Option<PathBuf>,
-    /// Write the places of all bodies at the end of the run of a cellar into this file, which must not exist;
-    /// start.file of another cellar can name it.
+    /// Write the final places of all bodies of a cellar into this file, which must not exist. Another cellar can start
+    /// from these places: its start.file names this file.
     #[arg(long, value_name = "FILE")]
     pub(crate) state: Option<PathBuf>,
     /// Keep the result of every variant of a cellar in this folder. Variants whose results are there are not run
     /// again, so work that was stopped can be continued.
     #[arg(long, value_name = "DIR")]
     pub(crate) keep: Option<PathBuf>,
-    /// Run only this part of the variants of a cellar, such as 1/8 to 8/8, and keep their results;
-    /// a run without this option then gathers them.
+    /// Run only this part of the variants of a cellar, such as 3/8 for the third of eight parts, and keep their
+    /// results; a run without this option then gathers the results of all parts.
     #[arg(long, requires = "keep", value_name = "PART/PARTS", conflicts_with_all = ["out", "state", "json"])]
     pub(crate) part: Option<PartName>,
     /// Draw the stack in the summary with ASCII characters only.

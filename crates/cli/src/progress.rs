@@ -141,7 +141,7 @@ impl Progress {
 pub(crate) enum Of {
     /// One run, whose simulated time advances steadily.
     One,
-    /// Many runs side by side, the shortest of which end first.
+    /// Many runs side by side; the shortest runs end first.
     Many,
 }
 
@@ -303,9 +303,9 @@ mod tests {
         whole: f64,
     }
 
-    /// Returns runs that start in order, `width` of them side by side. Each run settles for
-    /// `settling` (s), and then takes the first of its `lengths` (s); without a collapse it would
-    /// take the second.
+    /// Returns runs that start in order, `width` of them side by side. Each run settles for `settling` (s), and is then
+    /// shaken for the first of its two `lengths` (s). The second is the time for which it would be shaken without a
+    /// collapse.
     fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {

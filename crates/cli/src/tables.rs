@@ -10,10 +10,10 @@ use crate::store::{store, store_all};
 
 /// Name of the workbook of a folder.
 const WORKBOOK: &str = "tables.xlsx";
-/// Refusal of a build without workbooks.
+/// Error message of a build that cannot write workbooks.
 const WITHOUT: &str = "this build of the command writes no workbooks; install it with `cargo install barrelstack --features xlsx`, \
                        or open the CSV files";
-/// Maximum size (bytes) of a file of which a workbook is made.
+/// Maximum size (bytes) of a file from which a workbook is made.
 const LIMIT: usize = 4 << 30;
 
 /// Options of the commands that write tables into a folder.
@@ -74,7 +74,7 @@ impl TableArgs {
     }
 }
 
-/// Returns the refusal of `--xlsx` by a build that writes no workbooks, before any work is done.
+/// Returns the error message if `--xlsx` is given to a build that writes no workbooks, before any work is done.
 pub(crate) fn refusal(mut arguments: impl Iterator<Item = std::ffi::OsString>) -> Option<String> {
     let refused = !cfg!(feature = "xlsx") && arguments.any(|argument| argument == "--xlsx");
     refused.then(|| format!("--xlsx: {WITHOUT}"))
@@ -115,7 +115,7 @@ fn book(tables: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     Ok(spreadsheet::workbook(tables)?)
 }
 
-/// Refuses, since this build writes no workbooks.
+/// Returns an error, because this build writes no workbooks.
 #[cfg(not(feature = "xlsx"))]
 fn book(_: &[(&str, &str)]) -> anyhow::Result<Vec<u8>> {
     bail!("{WITHOUT}")

@@ -17,11 +17,11 @@ use super::observed::{Mode, Time};
 /// of the events.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Course {
-    /// Mode of collapse, or that the stack stands.
+    /// Mode of collapse; `Mode::Stands` if the stack stands.
     pub(crate) mode: Mode,
     /// Time at which the first body left its seat.
     pub(crate) loss: Time,
-    /// Name of each barrel and the time at which it had fallen; the barrels are in the order of the bodies.
+    /// Name of each barrel and the time at which it counts as fallen, in the order of the bodies.
     pub(crate) falls: Vec<(String, Time)>,
 }
 
@@ -51,8 +51,7 @@ impl Course {
         fallen.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// Returns the time at which the barrel with the name `barrel` had fallen; `None` if there is no such
-    /// barrel.
+    /// Returns the time at which the barrel with the name `barrel` counts as fallen; `None` if there is no such barrel.
     pub(super) fn fall(&self, barrel: &str) -> Option<Time> {
         self.falls.iter().find(|(name, _)| name == barrel).map(|(_, time)| *time)
     }
@@ -61,9 +60,9 @@ impl Course {
 /// Ground motion of a test.
 #[derive(Clone)]
 pub(crate) enum Shaking {
-    /// Motion in a plane.
+    /// Motion in a vertical plane.
     Planar(Arc<Ground>),
-    /// Motion in space.
+    /// Motion in three dimensions.
     Spatial(Arc<barrelstack_space::Ground>),
 }
 

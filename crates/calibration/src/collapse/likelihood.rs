@@ -7,18 +7,18 @@ use barrelstack_dynamics::math;
 use super::ensemble::Course;
 use super::observed::{Observed, Time};
 
-/// Assumed errors of observations, compared with the course of a correct simulation.
+/// Assumed differences between observations and the course of a correct simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// Standard deviation (s) of a time read from a video.
     pub reading: f64,
-    /// Increase of the standard deviation of a time (s) for every second after the first loss of seat.
+    /// Increase of the standard deviation of a time, in seconds per second after the first loss of seat.
     ///
     /// The course of a collapse departs more and more from that of any model: in a stack of eight barrels, falls two
     /// seconds after the loss of seat shift by half a second when one contact parameter changes by 10 %.
     pub growth: f64,
-    /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that the model
-    /// does not contain.
+    /// Probability that an observed mode, first barrel or time differs from the simulated one for a reason outside the
+    /// model.
     pub other: f64,
 }
 

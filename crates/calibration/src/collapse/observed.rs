@@ -39,7 +39,7 @@ pub(crate) enum Mode {
 pub(super) struct Observed {
     /// Scenario of the test, if the row names one.
     pub(super) scenario: Option<String>,
-    /// Mode of collapse, or that the stack stood.
+    /// Mode of collapse; `Mode::Stands` if the stack stood.
     pub(super) mode: Option<Mode>,
     /// Name of the first barrel to fall.
     pub(super) first_barrel: Option<String>,
@@ -47,7 +47,7 @@ pub(super) struct Observed {
     pub(super) loss: Option<Time>,
     /// Time at which the first barrel counts as fallen.
     pub(super) first_fall: Option<Time>,
-    /// Names of barrels, and the times at which they had fallen.
+    /// Names of barrels, and the times at which they fell.
     pub(super) falls: Vec<(String, Time)>,
     /// End of the observation (s), counted from the start of the motion.
     pub(super) until: f64,

@@ -1,4 +1,4 @@
-//! Figures of collapses: observations compared with simulations at the estimated values.
+//! Figures of collapses: observations compared with simulations that are weighted by the posterior.
 
 use barrelstack_report::{Axis, Figure, Plot, Series};
 
@@ -11,7 +11,7 @@ use crate::figures::measured;
 /// Quantiles of the simulated times at the two ends of a bar; the times are weighted by the posterior.
 const MIDDLE: [f64; 2] = [0.05, 0.95];
 
-/// Draws the posterior weight of the observed modes, and the times of the observed events.
+/// Plots the posterior weight of the observed modes, and the times of the observed events.
 pub(super) fn pictures(
     tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],
@@ -32,7 +32,7 @@ fn of<'a>(
     courses.iter().skip(at).step_by(tests.len())
 }
 
-/// Draws the weight of the courses with the observed mode; `None` if no mode was observed.
+/// Plots, for each test, the posterior weight of the courses with the observed mode; `None` if no mode was observed.
 fn modes(
     tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],
@@ -51,7 +51,7 @@ fn modes(
     rows.figure("collapse-modes", caption, x, None)
 }
 
-/// Draws the times of events; `None` if no time was observed.
+/// Plots the observed and simulated times of events; `None` if no time was observed.
 fn times(
     tests: &[PreparedTest<'_>],
     courses: &[Option<Course>],

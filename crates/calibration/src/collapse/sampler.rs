@@ -53,7 +53,7 @@ struct Proposal {
     width: Vec<f64>,
 }
 
-/// Samples a posterior distribution, whose prior is uniform in the box, with about `count` samples.
+/// Draws about `count` samples of a posterior distribution. The prior is uniform in the box.
 ///
 /// `evaluate` returns the log-likelihood of each sample of a batch, `−∞` for a likelihood of zero.
 /// Returns `None` if every sample has a likelihood of zero.
@@ -144,8 +144,8 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     Some(weights.into_iter().map(|weight| weight / sum).collect())
 }
 
-/// Returns the weights with the likelihood raised to a power, and the power: the largest up to one that
-/// leaves enough effective samples.
+/// Returns the weights with the likelihood raised to a power, and this power. It is the largest power, at most one,
+/// that leaves enough effective samples.
 fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     let whole = weights(logs, densities, 1.0)?;
     if effective(&whole) >= FEWEST {

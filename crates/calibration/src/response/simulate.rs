@@ -88,8 +88,8 @@ impl<'a> Simulator<'a> {
         let mut scenario = scenario.clone();
         scenario.run.stop_after_collapse = None;
         let scale = scenario.run.similitude.sqrt();
-        // All simulations use one time step, so that a change of step is not mistaken for an effect of a
-        // parameter. The step of a run is a small fraction of the critical one.
+        // All simulations use one time step, so that a change of step is not mistaken for an effect of a parameter. It
+        // is the step that a run chooses by default, a small fraction of the critical time step.
         let assembly = assemble(&scenario).map_err(RunFailure::from)?;
         let step = time_step(&scenario, &assembly)? / scale;
         scenario.run.step = Some(step);

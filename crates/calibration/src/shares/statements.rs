@@ -13,8 +13,7 @@ const SIZE_LIMIT: usize = 1 << 20;
 /// and empty barrels.
 pub const MODEL_ERROR: f64 = 0.10;
 
-/// Largest standard deviation of the natural logarithm of the ratio of the motion in a cellar to that at the station;
-/// it stands for a factor of 7 up or down.
+/// Largest permitted value of [`Earthquake::motion`]; one standard deviation is then a factor of 7 up or down.
 const MOST_MOTION: f64 = 2.0;
 
 /// Error of a file of statements.
@@ -26,7 +25,7 @@ pub struct StatementsError(String);
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statements {
-    /// The earthquakes, in the order of the page.
+    /// The earthquakes, in the order of the file.
     pub earthquake: Vec<Earthquake>,
 }
 
@@ -42,7 +41,7 @@ pub struct Earthquake {
     /// Distance between record and cellars.
     #[serde(default)]
     pub place: String,
-    /// Standard deviation of the natural logarithm of the ratio of the motion in a cellar to that at the station.
+    /// Standard deviation of ln r, where r is the motion in a cellar divided by the motion at the station.
     pub motion: f64,
     /// Names of the studies of `validation/field.md` that simulate the earthquake; empty if there is no record.
     #[serde(default)]
@@ -61,14 +60,14 @@ pub struct Statement {
     pub statement: String,
     /// Publication or person that makes the statement.
     pub source: String,
-    /// How the statement is read as a number.
+    /// How the statement is converted to numbers, such as a share with its error.
     pub uncertainty: Option<String>,
     /// What the statement is about.
     pub kind: Kind,
-    /// Reason why the statement is left out, if it is.
+    /// Reason why the statement is not used; required if the kind is [`Kind::Unusable`].
     pub reason: Option<String>,
-    /// Studies of `validation/field.md` that simulate the observed stacks. Several studies are planes of one stack,
-    /// which counts as fallen if it falls in at least one of them.
+    /// Studies of `validation/field.md` that simulate the observed stacks. If there are several, each simulates one
+    /// plane of the same stack; the stack counts as fallen if it falls in at least one plane.
     #[serde(default)]
     pub studies: Vec<String>,
     /// Heights (numbers of levels) of the observed stacks, in unknown proportions.
@@ -80,9 +79,9 @@ pub struct Statement {
     pub low: Option<f64>,
     /// Upper end of the 95 % interval of the observed share.
     pub high: Option<f64>,
-    /// Standard error of a bound.
+    /// Standard error of `value`, for the kinds [`Kind::Most`] and [`Kind::Few`].
     pub error: Option<f64>,
-    /// Number of stacks of which at least one fell.
+    /// Number of stacks; at least one of them fell.
     pub stacks: Option<f64>,
 }
 
@@ -94,9 +93,9 @@ pub enum Kind {
     Barrels,
     /// Share of the stacks that fell.
     Stacks,
-    /// Share of the stacks that fell, at least about a value.
+    /// The share of the stacks that fell is at least about a value.
     Most,
-    /// Share of the stacks that fell, at most about a value.
+    /// The share of the stacks that fell is at most about a value.
     Few,
     /// At least one of a number of stacks fell.
     Some,
@@ -116,29 +115,29 @@ pub enum Likelihood {
         /// Standard deviation.
         error: f64,
     },
-    /// Share of stacks at least about a value.
+    /// The share of stacks is at least about a value.
     AtLeast {
         /// The value.
         value: f64,
         /// Standard error.
         error: f64,
     },
-    /// Share of stacks at most about a value.
+    /// The share of stacks is at most about a value.
     AtMost {
         /// The value.
         value: f64,
         /// Standard error.
         error: f64,
     },
-    /// At least one of a number of stacks.
+    /// At least one of a number of stacks fell.
     One {
-        /// The number.
+        /// Number of stacks.
         stacks: f64,
     },
 }
 
 impl Likelihood {
-    /// Returns the likelihood of a share, 1 at most.
+    /// Returns the likelihood of a share; the largest possible likelihood is 1.
     pub fn of(&self, share: f64) -> f64 {
         match *self {
             Self::Near { value, error } => {

@@ -28,8 +28,8 @@ fn statement(kind: &str, numbers: &str) -> Statement {
 }
 
 /// Every campaign draws true parameters, a true motion and a true mixture of heights, "simulates" 300 stacks by the
-/// closed form, and states the true share with an error of 1 %; to this the fit adds the error of the model, which the
-/// closed form does not have.
+/// closed form, and states the true share with an error of 1 %. The fit adds the error of the model to this error,
+/// although the closed form has no such error.
 #[test]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     let heights = heights(&[4, 5, 6]);
@@ -66,7 +66,7 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
         narrower += (ends[1] - ends[0]) / 1.9 / 100.0;
     }
     println!("{held} of 100 held, {narrower:.2} of the width of the prior");
-    // At a coverage of 95 %, 90 or more are held in 98.9 % of all sequences of campaigns.
+    // If the true coverage is 95 %, at least 90 of 100 intervals hold the truth with a probability of 98.9 %.
     assert!(held >= 90, "{held}"); // measured 96
     assert!(narrower < 0.9, "{narrower}"); // measured 0.73
 }

@@ -57,14 +57,13 @@ impl Row<'_> {
     }
 }
 
-/// Returns the layouts in the order of the share of their barrels that falls, followed by the changes that were not
-/// run.
+/// Returns the layouts, sorted by the share of barrels that fall, followed by the changes that were not run.
 fn rows(found: &CellarComparison) -> Vec<Row<'_>> {
     let run = found.ranked().into_iter().map(|(one, pair)| Row::Run(one, pair));
     run.chain(found.left_out.iter().map(Row::LeftOut)).collect()
 }
 
-/// Returns a change with its sign and its interval.
+/// Formats the difference between two layouts, with its sign and its interval.
 fn change(change: &Change, scale: f64) -> Cell {
     let signed = |value: f64| match amount(value.abs()) {
         none if none == "0" => none,
@@ -77,12 +76,12 @@ fn change(change: &Change, scale: f64) -> Cell {
     ))
 }
 
-/// Returns the table of losses against capacity, in the order of the share of the barrels that falls.
+/// Returns the table of losses against capacity. The layouts are sorted by the share of barrels that fall.
 pub fn table(found: &CellarComparison) -> Table {
     Table::of(
-        "Loss against capacity, in the order of the share of the barrels that falls. Means over the variants, with their 95 % \
-         intervals; differences from the first layout are taken variant by variant. Wine and cost are expected \
-         losses under the central assumption on how many of the fallen barrels burst.",
+        "Loss against capacity; the layouts are sorted by the share of barrels that fall. Means over the variants, \
+         with their 95 % intervals; differences from the first layout are taken variant by variant. Wine and cost are \
+         expected losses under the central assumption on how many of the fallen barrels burst.",
         rows(found),
         &[
             ("layout", "", &Row::name),
@@ -116,10 +115,10 @@ fn courses(found: &CellarComparison) -> Table {
         format!(
             "How the stacks fall: means over the variants with their 95 % intervals. Spread: number of stacks that \
              fall, divided by the number that fall by themselves. Aisles: share of the variants in which an aisle \
-             is blocked at the end. The time of the first \
-             barrel in an aisle is counted from the start of the shaking, over 5 to 95 % of the variants in which a \
-             barrel enters an aisle, or over all of them if they are fewer than {FEW}. Impact forces last a few \
-             milliseconds and grow with the assumed stiffness of the contact."
+             is blocked at the end. The time at which the first \
+             barrel enters an aisle is counted from the start of the shaking; its range covers 5 to 95 % of the \
+             variants in which a barrel enters an aisle, or all of them if they are fewer than {FEW}. Impact forces \
+             last a few milliseconds and grow with the assumed stiffness of the contact."
         ),
         rows(found),
         &[
@@ -242,7 +241,7 @@ pub fn document(layouts: &[Layout], found: &CellarComparison) -> Document {
     }
 }
 
-/// Returns the names of the layouts, followed by the title if all cellars have the same.
+/// Returns the names of the layouts, followed by the title if all cellars have the same title.
 fn title(layouts: &[Layout]) -> String {
     let names = format!("Comparison of {}", listed(layouts.iter().map(|one| one.name.clone())));
     let first = layouts.first().map(|one| &one.cellar.title);

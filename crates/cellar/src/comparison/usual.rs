@@ -1,5 +1,5 @@
-//! The usual changes of a room that may reduce the loss and the spread of a collapse; changes that do not fit are
-//! listed with the reason.
+//! Usual changes to a room that may reduce the loss and the spread of a collapse. Changes that do not fit are listed
+//! with the reason.
 
 use barrelstack::RunFailure;
 use barrelstack::device::WalkingStops;
@@ -10,13 +10,13 @@ use barrelstack_report::shortest;
 use crate::plan::{Plan, meters};
 use crate::scenario::{Block, Cellar};
 
-/// Free distance (m) between the stacks of a row that is tried first.
+/// Free distance (m) between the stacks of a row with which the search for a wider spacing begins.
 const WIDE: f64 = 1.0;
 
-/// Number of distances in a meter that the search for the widest spacing tries.
+/// Resolution of the search for the widest spacing that fits: number of distances per meter.
 const PER_METER: f64 = 100.0;
 
-/// A usual change of a room.
+/// A usual change to a room.
 #[derive(Clone, Debug)]
 pub struct Usual {
     /// Name, such as "one level less".
@@ -25,8 +25,8 @@ pub struct Usual {
     pub changed: Result<Cellar, String>,
 }
 
-/// Returns the usual changes of a room: wider spacing, all levels strapped together, stops under every rack, one level less,
-/// and every stack turned by 90°.
+/// Returns the usual changes to a room: wider spacing, all levels strapped together, stops under every rack, one level
+/// less, and every stack turned by 90°.
 pub fn usual(cellar: &Cellar) -> Vec<Usual> {
     let (spacing, wider) = spaced(cellar);
     let pretension = PRETENSIONS[PRETENSIONS.len() - 1];
@@ -41,7 +41,8 @@ pub fn usual(cellar: &Cellar) -> Vec<Usual> {
     all.into_iter().map(|(name, changed)| Usual { name, changed }).collect()
 }
 
-/// Returns a cellar with changes, or the reason why it cannot be stated or does not fit its room.
+/// Returns the cellar with the changes, or the reason why the changed cellar is invalid or its stacks do not fit into
+/// the room.
 fn fitting(cellar: &Cellar, changes: &[String]) -> Result<Cellar, String> {
     let reason = |error: &ScenarioError| error.problem().to_string();
     let count = cellar.stated().imperfections().map_or(0, |own| own.variants);
@@ -53,7 +54,8 @@ fn fitting(cellar: &Cellar, changes: &[String]) -> Result<Cellar, String> {
     }
 }
 
-/// Returns the name and the layout with the stacks of each row farther apart: by 1 m, or by the largest distance that fits.
+/// Returns the name and the layout with wider spacing: 1 m between the stacks of each row, or the largest distance that
+/// fits.
 fn spaced(cellar: &Cellar) -> (String, Result<Cellar, String>) {
     let rows = |block: &&Block| block.stacks > 1;
     let name = |spacing: f64| format!("spacing {} m", shortest(spacing));
@@ -76,7 +78,7 @@ fn spaced(cellar: &Cellar) -> (String, Result<Cellar, String>) {
         Ok(wide) => return (name(WIDE), Ok(wide)),
         Err(reason) => reason,
     };
-    // Distances that fit come before those that do not.
+    // All distances up to the widest spacing fit, so that it is found by bisection.
     let (mut fits, mut too_wide) = ((least * PER_METER).floor(), WIDE * PER_METER);
     let mut widest = None;
     while too_wide - fits > 1.0 {
@@ -107,7 +109,8 @@ fn strapped_at(cellar: &Cellar, pretension: f64) -> Result<Vec<String>, String> 
     })
 }
 
-/// Returns the changes that add stops under every rack, which hold it on the barrels below along and across them.
+/// Returns the changes that add stops under every rack. The stops hold the rack on the barrels below in both horizontal
+/// directions.
 fn stopped(cellar: &Cellar) -> Result<Vec<String>, String> {
     if is_low(cellar) {
         return Err("stacks of one level have no rack on barrels".to_owned());

@@ -51,7 +51,8 @@ fn best(found: &CellarComparison, first: &LayoutAnswer) -> String {
             clause(first, one, pair)
         ),
         Some(_) => format!(
-            "None of {} other layouts loses fewer barrels for its capacity than \"{}\", of whose {} barrels {} fall{}.",
+            "None of {} other layouts loses fewer barrels for its capacity than \"{}\"; of the {} barrels of \
+             that layout, {} fall{}.",
             many - 1,
             first.name,
             first.capacity,
@@ -96,7 +97,7 @@ fn compared(second: &str, first: &str) -> String {
 fn clause(first: &LayoutAnswer, second: &LayoutAnswer, pair: &LayoutPair) -> String {
     let Change { first: from, second: to, difference, .. } = pair.barrels_fallen;
     if from == 0.0 && to == 0.0 {
-        return format!("no barrel falls in either, in {}", variants(pair));
+        return format!("no barrel falls in either layout, in {}", variants(pair));
     }
     let average = on_average(pair.variants);
     if first.capacity == second.capacity {
@@ -137,7 +138,7 @@ fn words_of(difference: f64, [less, more, same]: [&str; 3]) -> String {
     }
 }
 
-/// Returns the interval of a change with the number of pairs, and whether it proves a difference.
+/// Describes the interval of a change and the number of pairs, and states whether they prove a difference.
 fn interval(change: &Change, scale: f64, [less, more]: [&str; 2], pair: &LayoutPair) -> String {
     let pairs = variants(pair);
     let Some([low, high]) = change.interval.map(|both| both.map(|bound| scale * bound)) else {
@@ -203,7 +204,7 @@ pub fn sentences(found: &CellarComparison) -> Vec<String> {
             }));
             if pairs().any(|(_, pair)| pair.barrels_fallen.interval.is_some()) {
                 all.push(
-                    "The level of 95 % holds for the intervals of all these differences together."
+                    "The confidence level of 95 % applies to the intervals of all these differences jointly."
                         .to_owned(),
                 );
             }

@@ -24,7 +24,7 @@ use crate::printer;
 use crate::progress::Progress;
 use crate::typed::{typed, word};
 
-/// End of the help.
+/// Text at the end of the help.
 const AFTER_HELP: &str = "\
 Files are CSV with a header whose columns carry their unit, such as
   penetration (mm),force (kN)
@@ -131,7 +131,7 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// Returns the scenario of a name, with the changes.
+    /// Returns the arguments that select the scenario with the name `name`, with the changes.
     fn of(&self, name: &str) -> ScenarioArgs {
         let (set, record) = (self.set.clone(), self.record.clone());
         ScenarioArgs { scenario: name.to_owned(), set, record }

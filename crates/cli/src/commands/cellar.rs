@@ -53,7 +53,7 @@ pub(crate) fn check(args: &CheckArgs, cellar: &Cellar) -> anyhow::Result<ExitCod
     Err(first.into())
 }
 
-/// Prints how the stacks of a cellar rest before the motion.
+/// Prints how the stacks of a cellar stand at rest, before the motion.
 fn stands(cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Result<()> {
     for model in &cellar.models {
         let found =
@@ -202,7 +202,7 @@ pub(super) fn selected(cellar: Cellar, args: VariantArgs) -> anyhow::Result<(Cel
     }
 }
 
-/// Adds to an error the position in the file.
+/// Adds to an error its position in the file.
 pub(super) fn placed(error: CellarFailure, cellar: &Cellar, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CellarFailure::Plan(error) => error.into(),

@@ -18,7 +18,7 @@ use crate::interrupt::{Interrupt, Stopped};
 use crate::language::LanguageArgs;
 use crate::printer;
 
-/// End of the help of `compare`.
+/// Examples at the end of the help of `compare`.
 const EXAMPLES: &str = "\
 Examples:
   barrelstack compare demo-napa --against stack.levels=4
@@ -38,8 +38,8 @@ pub(crate) struct CompareArgs {
     /// Add a run of the first scenario with this value changed; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     against: Vec<String>,
-    /// Add the usual changes of the first cellar, as far as they fit: wider spacing, all levels strapped together,
-    /// stops under every rack, one level less, every stack turned by 90°.
+    /// Add runs of the first cellar with the usual changes, as far as they fit: wider spacing, all levels strapped
+    /// together, stops under every rack, one level less, every stack turned by 90°.
     #[arg(long)]
     pub(super) usual: bool,
     /// Change a value in all runs, such as run.duration="20 s"; may be repeated.
@@ -107,7 +107,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Replaces the first names of runs by those that are given.
+/// Replaces the names of the first runs by the given names.
 pub(super) fn name(names: &mut Vec<String>, given: &[String]) -> anyhow::Result<()> {
     if given.len() > names.len() {
         bail!("--label: there are {} names for {} runs", given.len(), names.len());
@@ -184,8 +184,8 @@ fn stacks(
     Ok(super::status(broken))
 }
 
-/// Writes the report of the only run that was finished, or at least started, when the comparison
-/// was stopped.
+/// Writes the report of a single run, which is all that the comparison had finished, or at least started, when it was
+/// stopped.
 fn alone(
     args: &CompareArgs,
     folder: &Folder,

@@ -38,8 +38,9 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     Ok(super::run::status(&answer))
 }
 
-/// Returns the changes that were given, preceded by those of the demo: unless a view is given, the stack is in space, with
-/// fewer variants than in a run, since a variant takes several times as long there as in a plane.
+/// Returns the given changes, preceded by those of the demo. Unless a change selects the view, the demo is
+/// three-dimensional. It then has fewer variants than other runs, because a three-dimensional variant takes several
+/// times as long as one in a plane.
 fn in_space(given: &[String]) -> Vec<String> {
     let states =
         |path: &str| given.iter().any(|one| one.split('=').next().map(str::trim) == Some(path));

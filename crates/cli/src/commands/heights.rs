@@ -21,8 +21,8 @@ pub(crate) struct HeightsArgs {
     /// Number of levels of the highest stack.
     #[arg(long, value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
     highest: u32,
-    /// Shake the stacks in space, in a horizontal direction that is drawn for every run, instead of in the planes across and
-    /// along the barrels.
+    /// Simulate the stacks in three dimensions, shaken in a random horizontal direction in every run, instead of in the
+    /// two planes across and along the barrels.
     #[arg(long)]
     space: bool,
     /// File of an additional motion, such as a record from your own site; may be repeated.

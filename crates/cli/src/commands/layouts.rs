@@ -24,7 +24,8 @@ pub(super) fn compare(
     requested: &[(String, ScenarioArgs)],
     given: Vec<(String, Cellar)>,
 ) -> anyhow::Result<ExitCode> {
-    // A room that cannot be run is refused before another room is run for minutes; usual changes fit.
+    // All given rooms are checked first, so that a room that cannot be run is refused before another room runs for
+    // minutes. The usual changes have been checked already.
     for ((_, cellar), (_, one)) in given.iter().zip(requested) {
         Prepared::new(cellar).map_err(|error| super::cellar::placed(error, cellar, one))?;
     }

@@ -66,7 +66,7 @@ impl PageArgs {
     }
 }
 
-/// Adds to an error the option that caused it: the user did not write the studies behind a page.
+/// Adds to an error the option that caused it, because the user did not write the studies that the page presents.
 pub(super) fn of_option(error: StudyError, motions: &str, out: &Path) -> anyhow::Error {
     let option = match error {
         StudyError::Stopped => return Stopped.into(),

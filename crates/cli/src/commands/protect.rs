@@ -27,8 +27,7 @@ pub(crate) struct ProtectArgs {
     /// Peak ground velocity to which motions are scaled, such as "50 cm/s"; may be repeated.
     #[arg(long, value_name = "VELOCITY")]
     pgv: Vec<String>,
-    /// Folder of recorded motions, all of which are used, in place of the bundled record and
-    /// synthetic motions.
+    /// Folder of recorded motions. All of them are used, in place of the bundled record and synthetic motions.
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
     /// Maximum cost of a protection for a stack (US$).
@@ -37,8 +36,8 @@ pub(crate) struct ProtectArgs {
     /// Number of motions per round, if no folder of motions is given.
     #[arg(long, value_name = "NUMBER", default_value_t = 12, value_parser = clap::value_parser!(u32).range(4..=1000))]
     count: u32,
-    /// Number of rounds: the first round tries all protections, and each further round the better
-    /// half of the protections of the previous round.
+    /// Number of rounds: the first round evaluates all protections, and each further round evaluates the better half of
+    /// those in the previous round.
     #[arg(long, value_name = "NUMBER", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=12))]
     rounds: u32,
     /// Seed of motions and friction.
@@ -51,7 +50,7 @@ pub(crate) struct ProtectArgs {
     page: PageArgs,
 }
 
-/// Tries all protections, writes the page, and prints the table.
+/// Evaluates all protections, writes the page, and prints the table.
 pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     let request = request(args)?;
     let (options, progress) = args.page.begin(&args.out)?;

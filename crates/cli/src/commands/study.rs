@@ -27,7 +27,7 @@ use crate::language::LanguageArgs;
 use crate::printer;
 use crate::tables::TableArgs;
 
-/// End of the help.
+/// Text at the end of the help.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack study example > mine.toml           a commented study to change
@@ -41,7 +41,7 @@ one Parquet file per chunk in shards.";
 /// Exit status of `study collect` if chunks are missing.
 const UNFINISHED: u8 = 4;
 
-/// Files of which the tables for spreadsheet programs are made.
+/// Files from which the tables for spreadsheet programs are made.
 const TABLES: [&str; 3] = ["table.csv", "columns.csv", "provenance.json"];
 
 /// Arguments of `study`.

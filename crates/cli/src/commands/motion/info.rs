@@ -1,4 +1,4 @@
-//! `barrelstack motion info`: the contents of a file, to check units and steps.
+//! `barrelstack motion info`: the contents of a file, to check units and time steps.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -83,7 +83,7 @@ fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.print_summary()
 }
 
-/// Combines consecutive files of the same event, station and step into one record.
+/// Combines consecutive files of the same event, station and time step into one record.
 fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     let mut groups: Vec<Vec<Record>> = Vec::new();
     for record in records {
@@ -381,7 +381,7 @@ described! {
         peak_velocity: f64 as "m/s" = fit.peak_velocity,
         /// Time at which the pulse starts.
         start: f64 as "s" = fit.start,
-        /// Share of the integral of the squared velocity of the record that the pulse contains.
+        /// Energy of the pulse divided by the energy of the record; energy is the integral of the squared velocity.
         energy_share: f64 as "1" = fit.energy_share,
     }
 

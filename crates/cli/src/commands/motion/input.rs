@@ -244,7 +244,7 @@ impl Input {
         if self.allow_mixed {
             return Ok(Record::gather_mixed(records)?);
         }
-        // Differences in station and publisher can be overruled, but not those in step and time.
+        // Differences in station and publisher can be overruled, but not differences in time step and start time.
         Record::gather(records).map_err(|error| match Record::gather_mixed(records) {
             Ok(_) => anyhow!("{error}, or add --allow-mixed"),
             Err(_) => error.into(),

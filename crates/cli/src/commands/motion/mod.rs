@@ -24,7 +24,7 @@ use std::process::ExitCode;
 
 use clap::Subcommand;
 
-/// End of `motion --help`.
+/// Text at the end of `motion --help`.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?

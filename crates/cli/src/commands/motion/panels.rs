@@ -45,7 +45,7 @@ fn axis(quantity: Quantity, channel: &str) -> Axis {
 /// Plots a record: acceleration, velocity and displacement of every component with their peaks, the
 /// build-up of the Arias intensity, and response and Fourier spectra.
 ///
-/// The Fourier spectra show the corners suggested by the noise of the record as `read`.
+/// The Fourier spectra show the corner frequencies suggested by the noise of the record as `read`.
 pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let mut rows = Vec::new();
     for channel in &record.channels {
@@ -252,7 +252,7 @@ pub(super) fn fourier_series(name: &str, channel: &Channel) -> Series {
     Series::new(name, spectrum.frequency[1..].to_vec(), spectrum.amplitude[1..].to_vec())
 }
 
-/// Plots Fourier amplitudes, with the corners suggested by the noise.
+/// Plots Fourier amplitudes, with the corner frequencies suggested by the noise.
 fn fourier(channels: &[(String, &Channel)], corners: &[(f64, f64)]) -> Plot {
     let (x, y) = fourier_axes();
     let mut plot = Plot {

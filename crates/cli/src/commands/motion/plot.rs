@@ -164,7 +164,10 @@ fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     let mut kinds = args.figure.clone();
     if is_file(&args.output) {
         if args.formats.names_any() {
-            bail!("{} states its format; --format applies to a folder", args.output.display());
+            bail!(
+                "--format applies to a folder; the name {} already states the format",
+                args.output.display()
+            );
         }
         vacant(&args.output, true)?;
         let kind = match kinds.as_slice() {

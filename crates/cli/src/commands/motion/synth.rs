@@ -59,11 +59,11 @@ enum Kind {
     Ricker(Made<Size>),
     /// Gabor wavelet of velocity.
     Gabor(Made<Wavelet>),
-    /// Cycloidal pulse of type A: a permanent displacement forward.
+    /// Cycloidal pulse of type A: a permanent forward displacement.
     CycloidA(Made<Size>),
-    /// Cycloidal pulse B: a displacement forward and back.
+    /// Cycloidal pulse of type B: a forward displacement, and the return.
     CycloidB(Made<Size>),
-    /// Cycloidal pulse C: several cycles.
+    /// Cycloidal pulse of type C: several cycles of displacement.
     CycloidC(Made<Repeated>),
     /// Near-fault velocity pulse of Mavroeidis and Papageorgiou.
     MavroeidisPapageorgiou(Made<Wavelet>),

@@ -8,7 +8,7 @@ use crate::commands::page;
 use crate::language::LanguageArgs;
 use crate::printer;
 
-/// End of the help.
+/// Text at the end of the help.
 const AFTER_HELP: &str = "\
 A hazard curve is a table (CSV) of the intensity, with its unit, and the annual rate at which it is exceeded:
 

@@ -88,7 +88,7 @@ impl Journal {
             let read = reader.read_until(b'\n', &mut line).map_err(input::plain);
             let read = read.with_context(|| cannot("read"))? as u64;
             let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
-            // An incomplete head, as left by a killed process, is also ours.
+            // An incomplete first line, as left by a killed process, also belongs to this program.
             if at == 0 && !head.as_bytes().starts_with(&line) {
                 let ours = found.as_ref().is_some_and(|first| first["settings"].is_string());
                 let whose = if ours {

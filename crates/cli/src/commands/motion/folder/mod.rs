@@ -88,7 +88,7 @@ pub(super) struct Batch<'a> {
     /// Extension of the output file of each record; a record whose output file is missing is
     /// processed again.
     pub(super) ending: Option<String>,
-    /// Further forms of the tables.
+    /// Further file formats of the tables.
     pub(super) tables: TableArgs,
 }
 
@@ -277,8 +277,7 @@ impl Measurements {
     }
 }
 
-/// Returns the fingerprint of the bytes of the files of a record; an unreadable file counts as
-/// empty.
+/// Returns a fingerprint of the contents of all files of a record; an unreadable file counts as empty.
 fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
     for path in source.paths() {

@@ -7,7 +7,7 @@ use barrelstack_motion::{RecordFiles, group_files};
 
 use crate::commands::motion::{archives, input};
 
-/// Maximum depth of nested folders, which ends cycles of symbolic links.
+/// Maximum depth of nested folders. The limit ends cycles of symbolic links.
 const DEEPEST: usize = 32;
 
 /// The files of one record, and the folder in which they were found.

@@ -20,7 +20,7 @@ use crate::printer;
 use crate::tables::TableArgs;
 use limits::{Limits, Range};
 
-/// End of the help.
+/// Text at the end of the help.
 const AFTER_HELP: &str = "\
 Targets:
   FILE.csv     a ground-motion model's table: \"period (s), median (g), sigma\", sigma of ln Sa;
@@ -44,10 +44,10 @@ pub(super) struct SelectArgs {
     /// Period at which Sa is given; must be one of the periods of the table.
     #[arg(long, value_name = "TIME")]
     at: Option<String>,
-    /// Sa at the period --at, such as "0.6 g".
+    /// Sa at the period given with --at, such as "0.6 g".
     #[arg(long, value_name = "ACCELERATION", requires = "at", conflicts_with = "epsilon")]
     level: Option<String>,
-    /// Sa at the period --at, as the number of standard deviations of ln Sa above the median.
+    /// Sa at the period given with --at, as the number of standard deviations of ln Sa above the median.
     #[arg(long, value_name = "NUMBER", requires = "at", allow_hyphen_values = true)]
     epsilon: Option<f64>,
     /// Shortest period to match.
@@ -59,7 +59,7 @@ pub(super) struct SelectArgs {
     /// Number of records; by default 30, or fewer if fewer records can be scaled to the target.
     #[arg(long, value_name = "NUMBER")]
     count: Option<usize>,
-    /// Spectrum of each record that is compared with the target.
+    /// Kind of spectrum that is compared with the target, for each record.
     #[arg(long, value_enum, default_value_t = Spectrum::Rotd50)]
     spectrum: Spectrum,
     /// Smallest and largest scale factor.
