@@ -101,8 +101,8 @@ pub struct Demanded {
     /// Proficiency `dispersion/b`: the scatter expressed in terms of intensity. It also penalizes measures on
     /// which the demand depends only weakly (Padgett et al. 2008).
     pub proficiency: f64,
-    /// p-value of the sufficiency test: the probability that `ε` seems to depend at least as strongly on a
-    /// second quantity if there is no such dependence.
+    /// p-value of the sufficiency test: if `ε` does not depend on a second quantity, the probability of a correlation
+    /// between the two that is at least as strong as the observed one.
     pub sufficiency: Option<f64>,
     /// Number of cases.
     pub cases: usize,

@@ -10,7 +10,7 @@ pub const FEWEST_RUNS: usize = 16;
 /// Number of points over which a share is averaged; a point holds a value of every constant.
 const AVERAGED: usize = 32;
 
-/// Step between the samples that are used where a share is averaged: every sixth of the kept samples.
+/// Step between the samples that [`Conditional::at`] uses: every sixth of the kept samples.
 const THINNED: usize = 6;
 
 /// Number of discarded samples and number of kept samples of the posterior distribution.
@@ -65,9 +65,10 @@ pub struct DrawnRun {
 /// ```
 ///
 /// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the runs. Squares and
-/// products are needed: without them, the range of a stack of three levels contained 10 of 24 true shares. With them,
-/// it contains 19 of the 24, and all 24 if the sampling error of the true shares is allowed for
-/// (`validation/statistics.md`). The posterior distribution is sampled by the method of Albert and Chib (1993).
+/// products are needed, as a test with a stack of three levels and 24 sets of true constants shows. Without them, the
+/// computed range contained the true share of 10 of the 24 sets. With them, it contains the true share of 19 sets, and
+/// of all 24 if the sampling error of the true shares is allowed for (`validation/statistics.md`). The posterior
+/// distribution is sampled by the method of Albert and Chib (1993).
 #[derive(Clone, Debug)]
 pub struct Conditional {
     /// Coefficients `g`, `b`, `aⱼ`, `cᵢⱼ` of each sample.
@@ -84,7 +85,7 @@ pub struct Influence {
     /// Total index: the fraction of the variance of the share that remains if all other constants are known,
     /// including interactions.
     pub total: f64,
-    /// Mean width of the range of the share that remains if this constant is known exactly.
+    /// Mean width of the range in which the share still lies if this constant is known exactly.
     pub width_if_known: f64,
 }
 
@@ -144,8 +145,9 @@ fn priors_of_constants(unknowns: usize) -> impl Iterator<Item = Prior> {
     first.chain(std::iter::repeat_n(Prior::Student(PRIOR_SECOND), second))
 }
 
-/// Draws samples of the coefficients of a probit regression from their posterior distribution. If there are
-/// coefficients of groups, a sample holds in their place, as its last value, their common standard deviation.
+/// Draws samples of the coefficients of a probit regression from their posterior distribution. Coefficients with the
+/// prior distribution [`Prior::Group`] are not part of a sample; the last value of the sample is instead their common
+/// standard deviation.
 fn posterior(
     rows: &[Vec<f64>],
     failed: &[bool],
@@ -336,7 +338,8 @@ impl Intensities {
 
     /// Returns, for every draw of [`Conditional::shares`], the intensity between `low` and `high` at which the share of
     /// failures is `share`. The intensity is 0 if the share of failures exceeds `share` already at `low`, and `high` if
-    /// it does not exceed `share` even there. Returns `None` unless the share follows a lognormal curve.
+    /// the share of failures does not exceed `share` even at `high`. Returns `None` unless the share follows a
+    /// lognormal curve.
     pub fn intensities(&self, share: f64, [low, high]: [f64; 2]) -> Option<Vec<f64>> {
         let [below, above] = [self.at(low)?.shares(), self.at(high)?.shares()];
         let quantile = normal_quantile(share);
