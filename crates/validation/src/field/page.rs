@@ -137,7 +137,8 @@ fn observed(text: &mut String, quake: &Earthquake) {
     }
 }
 
-/// Returns the view of a study: across, along, or in space.
+/// Returns the words for the view of a study: across the barrels, along the barrels, or in three dimensions ("in
+/// space").
 fn view(study: &str) -> &'static str {
     match study.rsplit('-').next() {
         Some("across") => "across",
@@ -248,7 +249,8 @@ fn predictions(text: &mut String, observations: &Statements, results: &Results) 
     }
 }
 
-/// Counts the falls of a study in space: those in which the first body left its seat along the barrels, and all.
+/// Returns two counts for a three-dimensional study: the falls in which the first body left its seat along the barrels,
+/// and all falls.
 fn along(cases: &[FieldCases], study: &str) -> (u32, u32) {
     let all = cases.iter().filter(|one| one.study == study).flat_map(|one| &one.cases);
     all.filter(|case| case.falls).fold((0, 0), |(along, all), case| {
@@ -282,7 +284,7 @@ fn direction(text: &mut String, cases: &[FieldCases]) {
     text.push_str("\nThe statement “Racks slid off the ends of the barrels below” names this direction, and most stacks of the model fall in it; since nobody counted, no likelihood is given.\nThe mode agrees less well: at Napa College more stacks of the model lose a barrel first (“ejection”) than a rack, which no report mentions. However, a barrel on a leaning rack counts as fallen once it is low enough, so the distinction between the two modes is a convention (see [space.md](space.md)).\n");
 }
 
-/// Returns the shares of a study at a height.
+/// Returns the shares of a study for stacks of a number of levels.
 fn share<'a>(results: &'a Results, study: &str, levels: usize) -> Option<&'a Share> {
     results.shares.iter().find(|one| one.study == study && one.levels == levels)
 }
@@ -370,13 +372,13 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     );
 }
 
-/// Returns the mean likelihood of a statement in the bin of friction barrel–rack that begins at a value.
+/// Returns the mean likelihood of a statement for barrel–rack friction in the bin whose lower edge is `from`.
 fn likelihood(results: &Results, given: &str, from: f64) -> String {
     let is = |bin: &&Bin| bin.given == given && bin.unknown == 0 && bin.range[0] == from;
     results.bins.iter().find(is).map_or_else(String::new, |bin| format!("{:.2}", bin.likelihood))
 }
 
-/// Describes what falls at the far station.
+/// Describes the stacks that fall at the distant station (Concord).
 fn far(cases: &[FieldCases]) -> String {
     let all: Vec<_> = cases
         .iter()

@@ -201,7 +201,7 @@ fn order(seed: u64) -> Result<f64, Failure> {
             nodes.reverse();
         }
     }
-    // The same pairs of bodies in the same roles, whatever their numbers.
+    // Each pair keeps its bodies and their roles (contactor or target), although the bodies have new numbers.
     let pairs = all_pairs(&bodies)
         .into_iter()
         .map(|p| ContactPair { contactor: place(p.contactor), target: place(p.target), ..p })

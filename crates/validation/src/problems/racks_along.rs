@@ -86,7 +86,8 @@ fn posts() -> Problem {
     })
 }
 
-/// Returns the height (m) of the center of mass of the upper levels above the posts that carry them.
+/// Returns the height (m) of the center of mass of the second and third levels, measured from the tops of the posts
+/// that carry these levels.
 fn height_of_upper_levels() -> Result<f64, Failure> {
     let assembly = assemble(&scenario(&towers())?).map_err(absent)?;
     let (mut mass, mut moment) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Bodies in space that lie on a face or along a line: rest, rocking and rolling.
+//! Three-dimensional bodies that touch the floor or each other with a face or along a line: rest, rocking and rolling.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
