@@ -57,7 +57,8 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
         .collect();
     let b = 1.0 / alone.curve.dispersion;
     let both = Likelihood { terms, slope: Some(1) };
-    // If there is no maximum, the two measures separate failures from survivals completely, and the likelihood tends to 1.
+    // If there is no maximum, the two measures separate failures from survivals completely, and the likelihood tends to
+    // 1.
     let highest =
         both.top([-b * ln(alone.curve.median), b, 0.0]).map_or(0.0, |top| top.shape.value);
     Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))

@@ -1,4 +1,4 @@
-//! Assembly of a free scene in space: bodies, and contact pairs with their laws.
+//! Assembly of a three-dimensional free scene: individual bodies, and contact pairs with their contact laws.
 
 use barrelstack::RunFailure;
 use barrelstack::assemble::{AssembleError, PartKind, laws_of_free};
@@ -76,7 +76,8 @@ fn is_unbounded(body: &Body<Spatial>) -> bool {
     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace)
 }
 
-/// Returns the index of the interface between two bodies, and `true` if the interface names the second body first.
+/// Returns the index of the interface between two bodies, and a flag that is `true` if the interface names the second
+/// body first.
 fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
     let label = |id: BodyId| match id.checked_sub(1) {
         Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),

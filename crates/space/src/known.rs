@@ -1,11 +1,12 @@
-//! Check that all features of a stack are supported in space. The error for an unsupported feature names the field of
-//! the feature.
+//! Check that all features of a stack are supported in three dimensions. The error for an unsupported feature names the
+//! field of the feature.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
-/// Returns the barrel of a stack, or rejects a feature that is not supported in space.
+/// Returns the barrel of a stack; returns an error if the stack has a feature that is not supported in three
+/// dimensions.
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;

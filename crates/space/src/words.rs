@@ -1,4 +1,4 @@
-//! Sentences about a stack in space: the sentences of a plane model, with the addition of directions.
+//! Sentences about a three-dimensional stack: the sentences about a plane model, with the addition of directions.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -55,7 +55,7 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
     }
 }
 
-/// Returns the words for a direction, in the form that follows a verb.
+/// Returns the words for a direction, such as "across the barrels, to the right".
 pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
