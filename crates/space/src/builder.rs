@@ -147,8 +147,8 @@ impl<'a> Builder<'a> {
         else {
             return Err(AssembleError::NotInSpace {
                 field: "stack.rack.cradle",
-                reason: "in space a cradle must be a pair of supports: set stack.rack.cradle.type to \"supports\", or \
-                         stack.view to \"both\""
+                reason: "in three dimensions a cradle must be a pair of supports: set stack.rack.cradle.type to \
+                         \"supports\", or stack.view to \"both\""
                     .into(),
             });
         };

@@ -188,9 +188,9 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges cover 5 to 95 % of the variants. The direction of the first body is the one in \
-             which it left its seat. The direction of a barrel that fell{} leads from its position \
-             at rest to its position at the end of the variant.",
+            "Ranges span the 5th to the 95th percentile of the variants. The direction of the first body is the one \
+             in which it left its seat. The direction of a barrel that fell{} leads from its position at rest to its \
+             position at the end of the variant.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],

@@ -118,7 +118,7 @@ fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
         Scene::Stack { .. } | Scene::Free(_) | Scene::Spatial(_) => Err(AssembleError::NotInSpace {
             field: "stack.view",
-            reason: "this needs a stack in space, but the scenario has none: set stack.view to \"spatial\""
+            reason: "this needs a three-dimensional stack, but the scenario has none: set stack.view to \"spatial\""
                 .into(),
         }),
     }

@@ -90,8 +90,8 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall{}, {} end up across the barrels from their position at \
-                 rest, and {} along the barrels.",
+                "Of the barrels that fall{}, {} move mainly across the barrels from their position at rest to their \
+                 final position, and {} mainly along the barrels.",
                 summary
                     .ensemble
                     .as_ref()
