@@ -10,7 +10,8 @@ pub const FEWEST_RUNS: usize = 16;
 /// Number of points over which a share is averaged; a point holds a value of every constant.
 const AVERAGED: usize = 32;
 
-/// Step between the samples that [`Conditional::at`] uses: every sixth of the kept samples.
+/// Step between the samples that [`Conditional::difference`] and [`Conditional::at`] use: every sixth of the kept
+/// samples.
 const THINNED: usize = 6;
 
 /// Number of discarded samples and number of kept samples of the posterior distribution.

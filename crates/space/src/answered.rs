@@ -137,7 +137,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the result and what supports it, in a few sentences.
+    /// Returns the result in a few sentences, with the main numbers on which it is based.
     pub fn sentences(&self) -> Vec<String> {
         match self {
             Self::Planes(answer) => sentences(&answer.decides.run, &answer.decides.summary),

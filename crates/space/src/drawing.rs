@@ -190,7 +190,7 @@ fn enter(
     }
 }
 
-/// A body of a room for a picture.
+/// A body of a room, with the data that a picture of the room needs.
 #[derive(Clone, Debug)]
 pub struct Shown<'a> {
     /// Name in the picture.

@@ -195,8 +195,8 @@ pub fn run_all(
     Ok(run_some(&plane, &ground, &numbers, &|done| observer(done, numbers.len())))
 }
 
-/// Runs variants by their numbers on all cores; the observer receives the number of finished variants, and may stop the
-/// work.
+/// Runs the variants with the given numbers on all cores. The observer receives the number of finished variants, and
+/// may stop the work.
 fn run_some(
     plane: &Plane,
     ground: &Ground,

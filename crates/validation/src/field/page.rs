@@ -29,7 +29,7 @@ The results are data as well: [shares by height](field/shares.csv), [posteriors]
 [likelihoods](field/likelihood.csv), and every simulated stack (`field/cases/`), from the studies in \
 `field/studies/`.
 The record of Napa College comes with the program. The records of the other stations may not be distributed with it; \
-without `--records` the command skips their hindcasts, and names them.
+without `--records` the command skips the hindcasts of these stations, and lists them.
 ";
 
 const METHOD: &str = "\
@@ -51,10 +51,11 @@ that at the station by a factor with a median of 1 and a standard deviation of i
 this is an assumption.
 
 **Probability of a fall.** In each study, this probability is fitted by a logistic regression of second degree in \
-the height and in the logarithms of the four unknowns. For three-dimensional simulations, it also contains cos 2φ \
-and sin 2φ of the azimuth φ. The coefficients have a weak prior; their uncertainty is represented by draws from a \
-Metropolis chain.
-The share of barrels that fall with a stack is the mean over the stacks of the same height that fell.
+the height and in the logarithms of the four unknowns. For three-dimensional simulations, the regression also \
+contains cos 2φ and sin 2φ of the azimuth φ. The coefficients have a weak prior; their uncertainty is represented by \
+draws from a Metropolis chain.
+If a stack of a given height falls, the share of its barrels that fall is taken as the mean over the simulated \
+stacks of this height that fell.
 Studies of only 10 to 60 cases (Concord, Waiau, and the three-dimensional study of Curicó) determine the \
 coefficients poorly, so the ranges of their results mainly show the uncertainty of the fit.
 
@@ -84,10 +85,10 @@ pub(super) fn page(observations: &Statements, cases: &[FieldCases], results: &Re
     text.push_str(METHOD);
     let _ = writeln!(
         text,
-        "For “half”, σ is 0.077, so that 35 to 65 % is the 95 % interval. An error of the model itself of \
-         {MODEL_ERROR:.2} is added to every σ in quadrature, because neighboring stacks, walls and empty barrels are \
-         not simulated. The posterior without this error is shown for comparison.\nAll results are from {DRAWS} \
-         draws of the unknowns. The factor on the motion is the same for both statements on Napa Barrel Care."
+        "For “half”, σ is 0.077, so that 35 to 65 % is the 95 % interval. A model error of {MODEL_ERROR:.2} is added \
+         to every σ in quadrature, because neighboring stacks, walls and empty barrels are not simulated. The \
+         posterior without this error is shown for comparison.\nAll results are from {DRAWS} draws of the unknowns. \
+         The factor on the motion is the same for both statements on Napa Barrel Care."
     );
     text.push_str(
         "\n## What the model predicts\n\nTwo columns are untuned. “Catalog medians” is the probability of a fall \
@@ -209,7 +210,7 @@ fn posterior(text: &mut String, results: &Results) {
         let _ = writeln!(text, "| {given} | {} | {:.0} |", cells.join(" | "), one.effective);
     }
     text.push_str("\nIn the row “maule”, the factor on the motion is that at Curicó.\nThe effective number of draws \
-                   is (Σ L)² / Σ L²; if a statement gave no information, it would be the number of all \
+                   is (Σ L)² / Σ L²; if a statement gave no information, it would equal the number of all \
                    draws.\n\n![Share of barrels on the floor against friction, and friction before and after the \
                    observations](field.svg)\n\nThe next tables give the likelihood of each statement if one unknown \
                    lies in a bin, averaged over all other unknowns (the largest possible likelihood is 1):\n\n");
@@ -429,10 +430,10 @@ fn far(cases: &[FieldCases]) -> String {
 const UNEXPLAINED: &str = "
 ## What remains unexplained
 
-- **Friction and stiffness.** With four to six levels, most stacks of the model fall with nearly every friction, and \
-a fallen stack leaves at least its bottom level standing. About half of the barrels are therefore on the floor with \
-almost any constants. Counts of fallen stacks of two and three levels would narrow the ranges of the constants, \
-because the friction decides whether such stacks fall. Nobody has published such counts.
+- **Friction and stiffness.** Of the stacks with four to six levels, most fall in the model for nearly every \
+friction, and at least the bottom level of a fallen stack remains standing. About half of the barrels are therefore \
+on the floor with almost any constants. Counts of fallen stacks of two and three levels would narrow the ranges of \
+the constants, because the friction decides whether such stacks fall. Nobody has published such counts.
 - **Why half fell and half did not.** In the model this depends on the motion in the cellar and on the direction of \
 the rows, neither of which is known. Heights by room, the direction of the rows and a record inside the building \
 would reveal more than any test of friction.

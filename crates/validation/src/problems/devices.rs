@@ -180,7 +180,8 @@ pub(super) fn period(samples: &[(f64, f64)], after: f64) -> Option<f64> {
 }
 
 fn slides() -> Problem {
-    // Newmark's block slides backward relative to the ground, by `a t²/2 · (a − μg)/(μg)`.
+    // Under a push `a` of duration `t`, Newmark's block slides backward relative to the ground, by
+    // `a t²/2 · (a − μg)/(μg)`.
     let (push_g, seconds, friction) = (0.15, 0.4, 0.05);
     let over: f64 = push_g - friction;
     let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;

@@ -13,7 +13,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 const SOURCE: &str = "symmetry of mechanics";
 const BALANCE: &str = "balance of energy";
 
-/// Returns the number of heaps that a problem computes.
+/// Returns the number of random heaps of bodies for which a problem is computed.
 fn seeds(effort: Effort) -> u64 {
     match effort {
         Effort::Fast => 2,

@@ -416,8 +416,8 @@ fn glancing(turn: f64, own: f64, side: f64) -> Result<Room, Failure> {
     Ok(room)
 }
 
-/// Runs a room of [`glancing`] blocks; an error if the blocks do not touch each other, or the second block does not
-/// touch the wall.
+/// Runs a room of [`glancing`] blocks. Returns an error if the blocks do not touch each other, or if the second block
+/// does not touch the wall.
 fn met(room: &Room, threads: usize) -> Result<RoomRun, Failure> {
     let run = run(room, threads)?;
     let all = !run.meetings.is_empty() && run.obstacles[0].first.is_some();
