@@ -27,13 +27,13 @@ const FREEDOM: f64 = 3.0;
 /// of its standard deviations.
 const PRIOR: f64 = 0.6;
 
-/// Scale of the prior distribution of the coefficients of squares and products of the constants.
+/// Scale of the prior distribution of `cᵢⱼ`, the coefficients of the squares and products of the constants.
 const PRIOR_SECOND: f64 = 0.2;
 
 /// Scale of the prior distribution of the standard deviation between motions.
 const PRIOR_GROUPS: f64 = 0.6;
 
-/// Standard deviation of the normal prior distribution of the coefficient of the logarithm of the intensity.
+/// Standard deviation of the normal prior distribution of `b₁`, the coefficient of the logarithm of the intensity.
 const PRIOR_SLOPE: f64 = 4.0;
 
 /// Scale of the prior distribution of `bₓ`, the departure of the share at a single intensity from the curve.
@@ -418,8 +418,8 @@ impl Conditional {
         draws.map(|(sample, point)| share(sample, point)).collect()
     }
 
-    /// Returns the share for given constants, as standard normal deviates, with the coefficients of one sample of the
-    /// posterior distribution. Numbers beyond the last sample start again from the first.
+    /// Returns the share for given constants (as standard normal deviates), computed with one sample of the
+    /// coefficients. Sample numbers beyond the last sample start again from the first.
     ///
     /// # Panics
     /// If there are fewer deviates than constants.
@@ -472,8 +472,8 @@ impl Conditional {
         (mean(shares.iter().copied()), ends(&shares, level))
     }
 
-    /// Returns the share in every [`THINNED`]th sample of the posterior distribution with one constant at a
-    /// deviate, averaged over all other constants.
+    /// Returns, for every [`THINNED`]th sample of the coefficients, the share with one constant at a deviate, averaged
+    /// over all other constants.
     fn shares_at(&self, unknown: usize, deviate: f64) -> Vec<f64> {
         let points = self.points[..AVERAGED].iter();
         let points: Vec<_> = points.map(|point| self.fixed(point, unknown, deviate)).collect();

@@ -205,8 +205,8 @@ pub struct Shown<'a> {
     pub leaves_at: Option<f64>,
 }
 
-/// Returns the drawing of many bodies on one floor, such as those of the stacks of a room, at the times (s) of
-/// their frames. The scene across the barrels also has all bodies in three dimensions.
+/// Returns the drawing of many bodies on one floor, such as all stacks of a room, at the times (s) of their frames. The
+/// scene across the barrels also has all bodies in three dimensions.
 pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     let [right, up] = sight.page();
     let toward = right.cross(up);
@@ -281,7 +281,7 @@ fn top(run: &Run) -> impl Iterator<Item = usize> {
         .filter(move |body| levels > 0 && run.stack.parts[*body].level == levels)
 }
 
-/// Returns the traces of the centers of the barrels of the top level in a scene of the run.
+/// Returns the traces of the top-level barrels (the paths of their centers) in a scene of the run.
 pub fn traces(run: &Run, scene: &Scene) -> Vec<Trace> {
     let first = scene.bodies.len() - top(run).count();
     let trace = |(at, body): (usize, usize)| Trace {

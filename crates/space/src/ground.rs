@@ -13,7 +13,7 @@ const SQUARE: f64 = 5.0;
 pub struct Ground {
     /// The horizontal component that the scenario names, and the vertical component if there is one.
     pub first: barrelstack::Ground,
-    /// The other horizontal component; `None` if the motion has only one.
+    /// The other horizontal component; `None` if the motion has only one horizontal component.
     pub second: Option<barrelstack::Ground>,
     /// Cosine and sine of the angle by which the stack is rotated counterclockwise.
     turn: [f64; 2],

@@ -174,8 +174,8 @@ fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     profile
 }
 
-/// Returns the mesh of the surface of revolution of a profile from pole to pole about `x`; `quarter` is the number of
-/// steps per quarter circle.
+/// Returns the mesh of the surface that a profile, given from pole to pole, generates by rotation about `x`; `quarter`
+/// is the number of steps per quarter circle.
 fn revolved(profile: &[[f64; 2]], quarter: u32) -> Mesh {
     debug_assert!(profile.len() >= 3, "a profile between two poles");
     let around = 4 * quarter as usize;

@@ -42,8 +42,8 @@ pub(crate) struct Heights {
     pub(crate) underside: f64,
 }
 
-/// Returns the radius (m), at a position (m) along the axis of a barrel, of the surface of revolution that lies at a
-/// given distance (m) outside of the stave.
+/// Returns the distance (m) from the axis of a barrel to the surface that lies `distance` (m) outside of the stave, at
+/// the position `along` (m) on the axis.
 fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding + distance;
     (arc * arc - along * along).sqrt() - barrel.stave_offset

@@ -202,7 +202,7 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Returns every element of the devices, with its fate and the description of its device.
+    /// Returns every element of the devices, with its outcome and the description of its device.
     pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {

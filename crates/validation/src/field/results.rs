@@ -123,7 +123,7 @@ impl Results {
         Ok(results)
     }
 
-    /// Weights the draws by the likelihood of every statement that has one.
+    /// Weights the draws by the likelihoods of all statements for which a likelihood is defined.
     fn weigh(
         &mut self,
         observations: &Statements,

@@ -290,8 +290,8 @@ fn between_stops() -> Problem {
 /// Natural frequency (rad/s) of the structure to which a mass is tuned: the square root of stiffness divided by mass.
 const OMEGA: f64 = TAU;
 
-/// Returns the largest dynamic amplification of the displacement of a structure with a tuned mass, over all frequencies
-/// of a harmonic force.
+/// For a structure with a tuned mass, returns the largest dynamic amplification of its displacement, over all
+/// frequencies of a harmonic force.
 ///
 /// The tuned mass is `share` times the mass of the structure. The response to an impulse, which excites all
 /// frequencies, is transformed to the frequency domain.

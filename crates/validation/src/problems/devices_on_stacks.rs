@@ -244,8 +244,8 @@ fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
 
-/// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass tuned by Den
-/// Hartog's formula, over all frequencies of the ground.
+/// Creates the problem of a platform with a mass that is tuned by Den Hartog's formula. The quantity is the largest
+/// dynamic amplification of the displacement of the platform, over all frequencies of the ground motion.
 ///
 /// The exact answer is a closed form. The program's answer is computed from the response to an impulse, which excites
 /// all frequencies.

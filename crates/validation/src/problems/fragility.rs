@@ -24,7 +24,7 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// Creates the problem of one number of the fit to the eight stripes. The tolerance is half a unit of the last
+/// Creates the problem of one result of the fit to the eight stripes. The tolerance is half a unit of the last
 /// published digit.
 fn number(
     id: &str,

@@ -39,7 +39,7 @@ fn scenario(settings: &[String]) -> Result<Scenario, Failure> {
     Ok(Scenario::parse("racks.toml", &text, settings)?)
 }
 
-/// Distance (m) of the outer end of the flat top of a post from the middle of the rack: 44 cm to the axis of the post,
+/// Distance (m) from the middle of the rack to the outer end of the flat top of a post: 44 cm to the axis of the post,
 /// plus half its width of 5 cm, minus the corner radius of 12 mm.
 const EDGE: f64 = 0.44 + 0.025 - 0.012;
 
