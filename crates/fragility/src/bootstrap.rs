@@ -15,13 +15,13 @@ pub struct Replicates {
     pub curves: Vec<Lognormal>,
     /// Number of resampled data sets that determine no curve ([`FitError`]).
     ///
-    /// These data sets are excluded from every interval. If they are more than a few percent of all data sets, the
-    /// intervals are too narrow.
+    /// Intervals are computed without these data sets. If more than a few percent of the resampled data sets are
+    /// excluded in this way, the intervals are too narrow.
     pub refused: usize,
 }
 
 impl Replicates {
-    /// Returns the interval of a function of the curve, by bias-corrected percentiles (Efron 1987).
+    /// Returns the confidence interval of a function of the curve, from bias-corrected percentiles (Efron 1987).
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let mut values: Vec<f64> = self.curves.iter().map(&of).collect();
         values.sort_by(f64::total_cmp);
@@ -33,7 +33,8 @@ impl Replicates {
 
     /// Returns the interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
-        // The interval is that of the score, which is monotone in the probability and not bounded by 0 and 1.
+        // The interval is computed for the score, which increases with the probability and is not bounded, and is then
+        // converted to probabilities.
         let score = |curve: &Lognormal, x: f64| ln(x / curve.median) / curve.dispersion;
         let chance = |x: &f64| {
             let scores = self.interval(level, |curve| score(curve, *x));

@@ -2,7 +2,7 @@
 
 use crate::fit::FitError;
 
-/// What is known of the capacity of a case. The capacity is the intensity at which the case begins to fail.
+/// Value or bounds of the capacity of a case. The capacity is the intensity at which the case begins to fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
     /// The capacity is this intensity.

@@ -7,7 +7,7 @@ use crate::likelihood::{Likelihood, Observation, Score, Top, covariance};
 use crate::math::{exp, ln, ln_choose, normal_quantile};
 use crate::proportion::Interval;
 
-/// Treatment of the dispersion in a fit: it is fitted, or it is given.
+/// Treatment of the dispersion in a fit: fitted or given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dispersion {
     /// The dispersion is fitted together with the median.
@@ -140,11 +140,11 @@ fn around(value: f64, error: f64, level: f64) -> Interval {
 
 /// Fits a lognormal curve to evidence by maximum likelihood.
 ///
-/// The likelihood of an observation is the probability (or, for an exact capacity, the density) of its
-/// capacity. For failure counts the fit is that of Baker (2015). For exact capacities the result is the
-/// normal distribution that is fitted to their logarithms; its variance is the sum of squares divided by `n`,
-/// whereas [`moments`] divides by `n − 1`. Standard errors follow from the observed information matrix and
-/// assume independent cases.
+/// The likelihood of an observation is the probability (or, for an exact capacity, the density) of its capacity. For
+/// failure counts the fit is that of Baker (2015). For `n` exact capacities, `ln θ` and `β²` are the mean and the
+/// variance of the logarithms of the capacities. This variance is the sum of the squared deviations divided by `n`,
+/// whereas [`moments`] divides by `n − 1`. Standard errors follow from the observed information matrix and assume
+/// independent cases.
 ///
 /// # Errors
 /// A [`FitError`] if the evidence does not determine a curve.
@@ -195,7 +195,8 @@ fn fixed(evidence: &[Evidence], beta: f64) -> Result<Fit, FitError> {
 /// Maximizes the likelihood over the intercept `a = −ln θ/β` and the slope `b = 1/β`.
 pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     let start = [-middle(evidence), 1.0];
-    // The start is β = 1 about the mean logarithm, wide enough for any data.
+    // The iteration starts from β = 1 and from ln θ at the mean logarithm of the intensities. This start is wide enough
+    // for any data.
     let top = free_likelihood(evidence).top(start).ok_or(FitError::NotConverged)?;
     let [intercept, slope] = top.parameters;
     // A slope so small that the median overflows counts as zero.
@@ -254,9 +255,9 @@ fn middle(evidence: &[Evidence]) -> f64 {
 
 /// Checks that the likelihood has its maximum at a positive, finite dispersion.
 ///
-/// There is no such maximum if a single capacity agrees with all evidence, since the dispersion then tends to
-/// zero. Nor is there one if the likelihood decreases from `b = 1/β = 0` on, since failure then becomes less
-/// likely with intensity. Both criteria are exact, because the likelihood is concave.
+/// There is no such maximum if a single capacity agrees with all evidence, since the dispersion then tends to zero.
+/// There is no such maximum either if the likelihood decreases with increasing `b` at `b = 1/β = 0`, since failure then
+/// becomes less likely as intensity increases. Both criteria are exact, because the log-likelihood is concave.
 fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitError> {
     let (mut above, mut below) = (0.0_f64, f64::INFINITY);
     let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);

@@ -20,8 +20,8 @@ pub struct Goodness {
     pub groups: usize,
     /// Degrees of freedom: number of groups minus number of fitted parameters.
     pub freedom: usize,
-    /// p-value: the probability of a statistic `pearson` at least as large as this one if the curve is true.
-    /// Without degrees of freedom it is 1, and the test has no meaning.
+    /// p-value: the probability of a statistic `pearson` at least as large as this one if the curve is true. If there
+    /// are no degrees of freedom, `p` is 1 and the test is meaningless.
     pub p: f64,
 }
 
@@ -53,8 +53,8 @@ pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
 /// Computes [`goodness`] for bins in which cases have different intensities. The cases of a bin are stripes
 /// in ascending order of intensity.
 ///
-/// The expected number of failures in a bin is the sum of the probabilities of its cases, since the curve is not linear
-/// within the bin.
+/// The expected number of failures in a bin is the sum of the failure probabilities of its cases, each at its own
+/// intensity, because the curve is not linear within the bin.
 pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     let chance = |s: &Stripe| found.curve.probability(s.intensity);
     // Cases, failures, expected failures, variance.
@@ -124,7 +124,7 @@ pub fn goodness_by_simulation(
     Ok((worse + 1) as f64 / (usable + 1) as f64)
 }
 
-/// Result of a test that capacities are lognormal.
+/// Result of a test of whether capacities are lognormal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normality {
     /// Largest distance between the empirical distribution function of the capacities and the fitted one
@@ -134,9 +134,10 @@ pub struct Normality {
     pub p: f64,
 }
 
-/// Computes Lilliefors's test that exact capacities are lognormal with unknown median and dispersion.
+/// Tests whether exact capacities are lognormal with unknown median and dispersion (Lilliefors 1967).
 ///
-/// The distribution of the distance does not depend on the median and the dispersion; it is simulated.
+/// The test statistic is [`Normality::distance`]. Its distribution, which does not depend on the median and the
+/// dispersion, is simulated.
 ///
 /// # Errors
 /// As for [`moments`].

@@ -151,8 +151,8 @@ impl Hazard {
         Some(x0 * exp(ln(x1 / x0) * ln(rate / r0) / ln(r1 / r0)))
     }
 
-    /// Integrates an effect between two intensities within the table; the weight is the rate density of the
-    /// intensity.
+    /// Integrates an effect, given by `of` as a function of the intensity, between two intensities within the table.
+    /// The effect is weighted with the density of the annual rate over the intensity.
     fn integral(&self, from: f64, to: f64, of: &impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for pair in self.rows.windows(2) {

@@ -34,11 +34,12 @@ impl Ida {
 
     /// Returns the demand at an intensity.
     ///
-    /// The demand is interpolated linearly between runs, and from zero at zero intensity to the first run.
-    /// Between a run in which the structure stood and a run in which it collapsed, in either order, the
-    /// boundary is placed at the geometric mean of the two intensities. On the side of the standing run, the
-    /// demand of that run is used. Above the last run, the demand is infinite if the structure collapsed in
-    /// that run, since analyses end there. It is `None` (unknown) if the structure stood in that run.
+    /// The demand is interpolated linearly between runs, and from zero at zero intensity to the first run. Between a
+    /// run in which the structure stood and a run in which it collapsed, in either order, the boundary is placed at the
+    /// geometric mean of the two intensities. On one side of the boundary the demand is that of the standing run, and
+    /// on the other side it is infinite. Above the last run, the demand is infinite if the structure collapsed in that
+    /// run, because an analysis usually ends at the collapse. It is `None` (unknown) if the structure stood in that
+    /// run.
     pub fn demand(&self, intensity: f64) -> Option<f64> {
         let after = self.points.partition_point(|(x, _)| *x < intensity);
         let before = after.checked_sub(1).map_or((0.0, 0.0), |i| self.points[i]);

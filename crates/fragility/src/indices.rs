@@ -30,14 +30,14 @@ pub struct Index {
 /// total  = mean((f(A) − f(AᵢB))²) / 2V           Jansen 1999
 /// ```
 ///
-/// `V` is the variance of all `f(A)` and `f(B)`. All results are centered on the mean of these. Intervals
-/// come from the delete-one jackknife over blocks and from Student's t distribution, with the number of
-/// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on
-/// the logarithmic scale, and the wider one is returned. If an input changes the result in at most half of
-/// the blocks, its changes are rare events. The interval then also covers the index that would result if the
-/// changes that the blocks may have missed were as large as the range of results. Bounds are clamped to the range
-/// from 0 to 1. In simulations with 16 to 256 blocks, the coverage is at least 89 % for binary results, counts and
-/// continuous results (`tests/claims.rs`).
+/// `V` is the variance of all `f(A)` and `f(B)`. All results are centered on the mean of all `f(A)` and `f(B)`.
+/// Intervals come from the delete-one jackknife over blocks and from Student's t distribution, with the number of
+/// blocks minus one as degrees of freedom. For the total index, an interval is computed on the linear and on the
+/// logarithmic scale, and the wider one is returned. If an input changes the result in at most half of the blocks,
+/// these changes count as rare events, and the blocks may have missed a small proportion ([`unobserved`]) of them. The
+/// interval is then extended to the index that would result if the missed changes were as large as the range of
+/// results. Bounds are clamped to the range from 0 to 1. In simulations with 16 to 256 blocks, the coverage is at least
+/// 89 % for binary results, counts and continuous results (`tests/claims.rs`).
 ///
 /// Returns `None` for fewer than two blocks, for blocks of different lengths, and for constant results.
 pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
@@ -82,14 +82,15 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
         let half = reach * error;
         let (mut low, mut high) = (here - half, here + half);
         if which == TOTAL && here > 0.0 {
-            // The mean of squares over few blocks has a skewed distribution, so the logarithmic scale is tried as well.
+            // The mean of squares over few blocks has a skewed distribution, so the upper bound is also computed on the
+            // logarithmic scale.
             high = high.max(here * exp((half / here).min(50.0)));
         }
         let unchanged = blocks.iter().filter(|block| block[0] == block[2 + input]).count();
         if 2 * unchanged >= count {
-            // Largest contribution of a block to an index, range²/(2 V). For the total index it is a squared change;
-            // for the first-order index it is a change times a distance from the mean, which is taken as half of the
-            // range.
+            // Largest contribution of a block to an index, range²/(2 V). The contribution to the total index is a
+            // squared change. The contribution to the first-order index is a change times a distance from the mean,
+            // which is taken as half of the range.
             let most = range * range / (2.0 * variance);
             let (below, above) = if which == TOTAL { (0.0, most) } else { (-most, most) };
             low = low.min((1.0 - missed) * here + missed * below);
@@ -120,8 +121,8 @@ struct Sums {
     results: f64,
     /// Sum of the squares of `f(A)` and `f(B)`.
     squares: f64,
-    /// For every input, the sum of `f(AᵢB) − f(A)`, the sum of its product with `f(B)`, and the sum of its
-    /// square.
+    /// For every input, three sums: of the change `f(AᵢB) − f(A)`, of the product of this change and `f(B)`, and of the
+    /// square of this change.
     inputs: Vec<[f64; 3]>,
 }
 

@@ -30,11 +30,11 @@
 //! *between* two intensities. This covers failure counts at fixed intensities, capacities from incremental
 //! dynamic analysis, bracketed capacities, and records under which nothing fails up to the largest intensity.
 //!
-//! # Data without a curve
+//! # Data that do not determine a curve
 //!
-//! Data that do not determine a curve give a [`FitError`] with the reason: nothing failed, all failed,
-//! failures and survivals do not overlap, or failure does not become likelier with intensity. No penalty,
-//! prior or clipping is used to turn such data into a plausible number.
+//! If the data do not determine a curve, the functions return a [`FitError`] with the reason: nothing failed,
+//! everything failed, failures and survivals do not overlap, or failure does not become likelier with intensity. No
+//! penalty, prior or clipping is used to turn such data into a plausible curve.
 //!
 //! # Random numbers
 //!

@@ -57,7 +57,8 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
         .collect();
     let b = 1.0 / alone.curve.dispersion;
     let both = Likelihood { terms, slope: Some(1) };
-    // If there is no maximum, the two measures separate failures from survivals completely, and the likelihood tends to 1.
+    // If there is no maximum, the two measures separate failures from survivals completely, and the likelihood tends to
+    // 1.
     let highest =
         both.top([-b * ln(alone.curve.median), b, 0.0]).map_or(0.0, |top| top.shape.value);
     Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))
@@ -101,8 +102,8 @@ pub struct Demanded {
     /// Proficiency `dispersion/b`: the scatter expressed in terms of intensity. It also penalizes measures on
     /// which the demand depends only weakly (Padgett et al. 2008).
     pub proficiency: f64,
-    /// p-value of the sufficiency test: the probability that `ε` seems to depend at least as strongly on a
-    /// second quantity if there is no such dependence.
+    /// p-value of the sufficiency test: if `ε` does not depend on a second quantity, the probability of a correlation
+    /// between the two that is at least as strong as the observed one.
     pub sufficiency: Option<f64>,
     /// Number of cases.
     pub cases: usize,

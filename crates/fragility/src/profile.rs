@@ -44,8 +44,8 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// Returns by how much the log-likelihood of a score at `ln x = place` falls short of the bound of the
-    /// interval; negative for scores inside the interval.
+    /// Returns the log-likelihood at the ends of the interval, minus the largest log-likelihood of all curves that have
+    /// the given score at `ln x = place`. The result is negative for scores inside the interval.
     fn excess(&self, place: f64, score: f64) -> f64 {
         let highest = match self.dispersion {
             Dispersion::Free => {
@@ -71,7 +71,7 @@ impl<'a> Profile<'a> {
 fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     match of.top([start]) {
         Some(top) if top.parameters[0] >= 0.0 => top.shape.value,
-        // The likelihood is concave, so without an interior maximum over b ≥ 0 it is highest at 0.
+        // The likelihood is concave, so if it has no maximum at a slope b > 0, its highest value for b ≥ 0 is at b = 0.
         _ => of.shape(&[0.0]).value,
     }
 }

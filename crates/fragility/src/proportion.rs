@@ -49,10 +49,10 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// Returns the largest proportion of a population that may well be absent from a sample of `count` observations.
+/// Returns the largest proportion of a population that a sample of `count` observations may plausibly miss completely.
 ///
-/// With that proportion, the probability that the sample contains none of it is `(1 − level)/2`, one tail of an
-/// interval with the confidence `level`.
+/// The probability that the sample misses this proportion is `(1 − level)/2`, one tail of an interval with the
+/// confidence `level`.
 pub fn unobserved(count: usize, level: f64) -> f64 {
     if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
 }
@@ -78,7 +78,7 @@ mod tests {
     fn one_sided_bounds_have_their_textbook_values() {
         // For no failures in n cases the bound is 1 − 0.05^(1/n) (rule of three).
         assert!((at_most(0, 24, 0.95) - (1.0 - 0.05_f64.powf(1.0 / 24.0))).abs() < 1e-12);
-        // If the probability equals the bound, at most one of 34 cases fails in 5 of 100 samples.
+        // If the true probability equals the bound, then in 5 % of samples of 34 cases at most one case fails.
         let p = at_most(1, 34, 0.95);
         let tail = (1.0 - p).powi(34) + 34.0 * p * (1.0 - p).powi(33);
         assert!((tail - 0.05).abs() < 1e-9, "{p}: {tail}");

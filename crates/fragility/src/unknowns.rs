@@ -10,7 +10,8 @@ pub const FEWEST_RUNS: usize = 16;
 /// Number of points over which a share is averaged; a point holds a value of every constant.
 const AVERAGED: usize = 32;
 
-/// Step between the samples that are used where a share is averaged: every sixth of the kept samples.
+/// Step between the samples that [`Conditional::difference`] and [`Conditional::at`] use: every sixth of the kept
+/// samples.
 const THINNED: usize = 6;
 
 /// Number of discarded samples and number of kept samples of the posterior distribution.
@@ -26,13 +27,13 @@ const FREEDOM: f64 = 3.0;
 /// of its standard deviations.
 const PRIOR: f64 = 0.6;
 
-/// Scale of the prior distribution of the coefficients of squares and products of the constants.
+/// Scale of the prior distribution of `cᵢⱼ`, the coefficients of the squares and products of the constants.
 const PRIOR_SECOND: f64 = 0.2;
 
 /// Scale of the prior distribution of the standard deviation between motions.
 const PRIOR_GROUPS: f64 = 0.6;
 
-/// Standard deviation of the normal prior distribution of the coefficient of the logarithm of the intensity.
+/// Standard deviation of the normal prior distribution of `b₁`, the coefficient of the logarithm of the intensity.
 const PRIOR_SLOPE: f64 = 4.0;
 
 /// Scale of the prior distribution of `bₓ`, the departure of the share at a single intensity from the curve.
@@ -65,9 +66,10 @@ pub struct DrawnRun {
 /// ```
 ///
 /// `z` holds the constants as standard normal deviates, and `±g` distinguishes the two halves of the runs. Squares and
-/// products are needed: without them, the range of a stack of three levels contained 10 of 24 true shares. With them,
-/// it contains 19 of the 24, and all 24 if the sampling error of the true shares is allowed for
-/// (`validation/statistics.md`). The posterior distribution is sampled by the method of Albert and Chib (1993).
+/// products are needed, as a test with a stack of three levels and 24 sets of true constants shows. Without them, the
+/// computed range contained the true share of 10 of the 24 sets. With them, it contains the true share of 19 sets, and
+/// of all 24 if the sampling error of the true shares is allowed for (`validation/statistics.md`). The posterior
+/// distribution is sampled by the method of Albert and Chib (1993).
 #[derive(Clone, Debug)]
 pub struct Conditional {
     /// Coefficients `g`, `b`, `aⱼ`, `cᵢⱼ` of each sample.
@@ -84,7 +86,7 @@ pub struct Influence {
     /// Total index: the fraction of the variance of the share that remains if all other constants are known,
     /// including interactions.
     pub total: f64,
-    /// Mean width of the range of the share that remains if this constant is known exactly.
+    /// Mean width of the range in which the share still lies if this constant is known exactly.
     pub width_if_known: f64,
 }
 
@@ -144,8 +146,9 @@ fn priors_of_constants(unknowns: usize) -> impl Iterator<Item = Prior> {
     first.chain(std::iter::repeat_n(Prior::Student(PRIOR_SECOND), second))
 }
 
-/// Draws samples of the coefficients of a probit regression from their posterior distribution. If there are
-/// coefficients of groups, a sample holds in their place, as its last value, their common standard deviation.
+/// Draws samples of the coefficients of a probit regression from their posterior distribution. Coefficients with the
+/// prior distribution [`Prior::Group`] are not part of a sample; the last value of the sample is instead their common
+/// standard deviation.
 fn posterior(
     rows: &[Vec<f64>],
     failed: &[bool],
@@ -336,7 +339,8 @@ impl Intensities {
 
     /// Returns, for every draw of [`Conditional::shares`], the intensity between `low` and `high` at which the share of
     /// failures is `share`. The intensity is 0 if the share of failures exceeds `share` already at `low`, and `high` if
-    /// it does not exceed `share` even there. Returns `None` unless the share follows a lognormal curve.
+    /// the share of failures does not exceed `share` even at `high`. Returns `None` unless the share follows a
+    /// lognormal curve.
     pub fn intensities(&self, share: f64, [low, high]: [f64; 2]) -> Option<Vec<f64>> {
         let [below, above] = [self.at(low)?.shares(), self.at(high)?.shares()];
         let quantile = normal_quantile(share);
@@ -414,8 +418,8 @@ impl Conditional {
         draws.map(|(sample, point)| share(sample, point)).collect()
     }
 
-    /// Returns the share for given constants, as standard normal deviates, with the coefficients of one sample of the
-    /// posterior distribution. Numbers beyond the last sample start again from the first.
+    /// Returns the share for given constants (as standard normal deviates), computed with one sample of the
+    /// coefficients. Sample numbers beyond the last sample start again from the first.
     ///
     /// # Panics
     /// If there are fewer deviates than constants.
@@ -468,8 +472,8 @@ impl Conditional {
         (mean(shares.iter().copied()), ends(&shares, level))
     }
 
-    /// Returns the share in every [`THINNED`]th sample of the posterior distribution with one constant at a
-    /// deviate, averaged over all other constants.
+    /// Returns, for every [`THINNED`]th sample of the coefficients, the share with one constant at a deviate, averaged
+    /// over all other constants.
     fn shares_at(&self, unknown: usize, deviate: f64) -> Vec<f64> {
         let points = self.points[..AVERAGED].iter();
         let points: Vec<_> = points.map(|point| self.fixed(point, unknown, deviate)).collect();

@@ -6,8 +6,8 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A closed set of variants. The table that selects a variant contains the fields of this variant.
-/// Such a set is declared with [`choices!`](crate::choices!).
+/// A closed set of variants. A table selects a variant by its tag field, and also contains the fields of the selected
+/// variant. Such a set is declared with [`choices!`](crate::choices!).
 pub trait Chosen: Sized {
     /// Returns all variants.
     fn variants() -> &'static [Variant];

@@ -176,10 +176,9 @@ impl<T: Named> Held for T {
 
 /// Declares a type and the table it is read from.
 ///
-/// Each field is listed once with its type, its kind and its default; its doc comment is also its
-/// help text. `as` gives the key in files where it differs from the Rust name. `by` names the field
-/// that selects a variant with further fields; the type of that field is declared with
-/// [`choices!`](crate::choices!).
+/// Each field is listed once with its type, kind and default; its doc comment is also its help text. `as` gives the key
+/// of the field in files if the key differs from the Rust name. `by` names the tag field, whose value selects a variant
+/// with fields of its own; the type of the tag field is declared with [`choices!`](crate::choices!).
 ///
 /// ```
 /// use barrelstack_input::declared::Declared;
@@ -285,10 +284,9 @@ macro_rules! section {
 
 /// Declares a table that is read by hand-written code.
 ///
-/// Each field is listed once with its kind and its default; its doc comment is its help text. `by`
-/// names the field that selects a variant, followed by the fields of each variant, or `of` refers
-/// to variants declared with [`choices!`](crate::choices!). `at most one of` lists mutually
-/// exclusive fields.
+/// Each field is listed once with its kind and its default; its doc comment is its help text. `by` names the tag field,
+/// whose value selects a variant. The fields of the variants follow in braces; alternatively, `of` refers to variants
+/// declared with [`choices!`](crate::choices!). `at most one of` lists mutually exclusive fields.
 ///
 /// ```
 /// use barrelstack_input::field::{Default, Field, Kind, Range};
@@ -357,9 +355,9 @@ macro_rules! table {
     };
 }
 
-/// Expands to an array of fields declared in the syntax of [`table!`](crate::table). Existing
-/// fields listed after `with` come before these fields, and those listed after `then` come after
-/// them.
+/// Expands to an array of fields declared in the syntax of [`table!`](crate::table). Existing fields may be added:
+/// those listed after `with` are placed before the declared fields, and those listed after `then` are placed after the
+/// declared fields.
 #[macro_export]
 macro_rules! fields {
     (

@@ -1,8 +1,8 @@
 //! Merges files and overrides in layers.
 //!
-//! Tables are merged key by key; any other value is replaced. A field removes the fields that it
-//! excludes, and a new variant removes the fields of the old variant, so that an upper layer never
-//! has to undo a lower layer.
+//! Tables are merged key by key; any other value is replaced. A field of an upper layer also removes the lower layer's
+//! fields with which it is mutually exclusive. If the upper layer selects another variant, the fields of the previous
+//! variant are removed. An upper layer therefore never has to undo a lower layer.
 
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
@@ -33,10 +33,11 @@ pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>)
     }
 }
 
-/// Prepares `base` for a key and returns the section of the key.
+/// Prepares `base` for the new value of a key, and returns the section of the key.
 ///
-/// Removes the fields that the key excludes and the fields of a replaced variant. Expands a name to
-/// its table if a table is merged into the value.
+/// Removes the fields that are mutually exclusive with the key and, if the key selects another variant, the fields of
+/// the previous variant. If the new value is a table but the existing value is a name that is short for a table,
+/// expands the name, so that the two tables can be merged.
 fn place_for(
     base: &mut Table,
     section: Option<&'static Section>,
@@ -149,8 +150,8 @@ fn apply_override(
     set(table, Some(section), &keys, parse_value(value, origin)).map_err(wrong)
 }
 
-/// Returns the definition of the field at a path, for the variants that the table selects, or
-/// `None` if there is no such field.
+/// Returns the definition of the field at a path, or `None` if there is no such field. If several variants define the
+/// field, the variant that the table selects takes precedence.
 pub fn field_at(
     table: Option<&Table>,
     section: &'static Section,
@@ -222,7 +223,8 @@ fn holds(table: &Table, origin: Origin) -> bool {
 
 /// Applies the overrides with index `first` and above, in order.
 ///
-/// An override that contradicts an earlier one is an error; a repetition is accepted.
+/// An override that replaces or removes the value of an earlier override is an error, unless it has the same text as
+/// the earlier override.
 pub fn apply_overrides(
     table: &mut Table,
     section: &'static Section,

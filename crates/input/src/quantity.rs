@@ -151,8 +151,8 @@ impl Quantity {
 
     /// Suggests a replacement for a text that is not a quantity of a dimension in `wanted`.
     ///
-    /// The suggestion adds the missing unit or corrects it to the unit probably meant; otherwise
-    /// the suggestion is an example. The suggestion always parses as a quantity of one of the
+    /// The suggestion adds a missing unit, or replaces a wrong unit with the unit that was probably meant. If neither
+    /// is possible, the suggestion is an example value. The suggestion always parses as a quantity of one of the
     /// dimensions.
     pub fn suggestion(text: &str, wanted: &[Dimension]) -> String {
         let trimmed = text.trim();
@@ -164,13 +164,13 @@ impl Quantity {
         let repaired = Decimal::take(trimmed).and_then(|(number, rest)| {
             let (number, rest) = (number.text, rest.trim());
             if rest.is_empty() {
-                // The unit of the example is the most common one.
+                // The example of a dimension has the most common unit of this dimension.
                 let units = wanted.iter().map(|d| d.example());
                 let units = units.filter_map(|text| Some(text.split_once(' ')?.1.to_owned()));
                 return units.map(|unit| format!("{number} {unit}")).find(reads);
             }
             let Some(fraction) = rest.strip_prefix(',') else { return with_unit(number, rest) };
-            // Three digits after a comma may be thousands.
+            // A comma before exactly three digits may be a thousands separator.
             let (digits, unit) = split_digits(fraction);
             let decimals = !number.contains('.') && !matches!(digits.len(), 0 | 3);
             decimals.then(|| with_unit(&format!("{number}.{digits}"), unit.trim()))?

@@ -36,8 +36,8 @@ pub fn words(error: &io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// Returns the current time (s since the start of 1970, UTC), or the time in the variable `SOURCE_DATE_EPOCH` if the
-/// variable is set, so that files can be reproduced bit for bit.
+/// Returns the current time (s since the start of 1970, UTC). If the environment variable `SOURCE_DATE_EPOCH` is set,
+/// returns its value instead, so that files can be reproduced bit for bit.
 ///
 /// # Errors
 /// A message if the variable is not a whole number.
@@ -58,10 +58,9 @@ pub fn clock() -> Result<u64, String> {
 
 /// Opens an input file for reading.
 ///
-/// If inputs are guarded ([`guard_inputs`]), [`store`] refuses to replace the file afterwards.
-/// Symbolic links are followed. Named pipes are refused, because opening a pipe without a writer
-/// blocks forever, and so are devices, which may be endless. Pipes opened by the shell
-/// (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
+/// If inputs are guarded ([`guard_inputs`]), [`store`] refuses to replace the file afterwards. Symbolic links are
+/// followed. Named pipes are refused, because opening a pipe without a writer blocks forever. Devices are refused,
+/// because they may be endless. Pipes opened by the shell (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
 ///
 /// # Errors
 /// A message if the file cannot be opened, or is a named pipe, a device or a socket.
@@ -208,8 +207,8 @@ pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Creates a new file. An existing file or link of that name is removed first; its content is never
-/// overwritten.
+/// Creates a new file. An existing file or link of the same name is removed first, so that the content of the existing
+/// file, or of the file to which the link leads, is never overwritten.
 ///
 /// # Errors
 /// If the operating system reports an error.
@@ -273,8 +272,8 @@ pub fn temporary(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Returns `true` if the path names an incomplete file left by a killed process. Such a name is a
-/// name accepted by `meant`, followed by the suffix of [`temporary`].
+/// Returns `true` if the path names an incomplete file left by a killed process: if the name of the file consists of a
+/// name that `meant` accepts and the suffix of [`temporary`].
 pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some((whole, process)) = name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.'))
@@ -295,7 +294,7 @@ static WRITING: Mutex<()> = Mutex::new(());
 /// Acquires a lock and never releases it, so that no operation guarded by the lock starts while the
 /// process ends.
 ///
-/// Returns `None` after a fifth of a second, in case a disk hangs.
+/// Returns `None` if the lock is not free within 0.2 s, for example because a disk hangs.
 pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'static, T>>> {
     for _ in 0..20 {
         match lock.try_lock() {
@@ -324,8 +323,8 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     store_all(&std::iter::once((path.to_owned(), bytes))).map_err(|(_, error)| error)
 }
 
-/// Writes several files as [`store`] does and renames them together, so that a full disk leaves the
-/// earlier versions untouched.
+/// Writes several files under temporary names, and renames them only when all are written. If the disk becomes full,
+/// the earlier versions of all files are therefore kept.
 ///
 /// # Errors
 /// The same as for [`store`]. The error also contains the path that failed.
@@ -360,7 +359,7 @@ pub fn writable(folder: &Path) -> Result<(), String> {
         .and_then(|()| begin(&probe).map(drop))
         .and_then(|()| fs::remove_file(&probe));
     for made in missing {
-        // Ignore the error: a folder may not have been created, or may hold files of others.
+        // Ignore the error: the folder may not exist, or another process may have written files into it.
         let _ = fs::remove_dir(made);
     }
     tried.map_err(|error| words(&error))
@@ -427,7 +426,7 @@ mod tests {
         store(&out.join("a"), b"new")?;
         begin(&out.join("b"))?.write_all(b"new")?;
         assert!(open_to_change(&out.join("c")).is_err());
-        // As if the link came after the check.
+        // This represents a link that is created after the check.
         assert!(open_unfollowed(&out.join("c")).is_err());
         let said = folder_below(&out, Path::new("figures/more")).unwrap_err().to_string();
         assert!(said.contains("figures is a link, not a folder"), "{said}");

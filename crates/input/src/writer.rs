@@ -90,7 +90,7 @@ impl Writer {
         self.put(name, Value::Text(Quantity { value, dimension }.to_string()));
     }
 
-    /// Writes a value with `write` if there is one, else omits the field.
+    /// Writes a value by calling `write`; omits the field if the value is `None`.
     pub fn optional<T>(
         &mut self,
         name: &'static str,
@@ -103,12 +103,12 @@ impl Writer {
         }
     }
 
-    /// Writes a quantity if there is one, else omits the field.
+    /// Writes a quantity; omits the field if the quantity is `None`.
     pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
         self.optional(name, value, Self::quantity);
     }
 
-    /// Writes a quantity if there is one, else the word that replaces it.
+    /// Writes a quantity; if it is `None`, writes the word that replaces the quantity.
     pub fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
         match (value, self.field(name).kind) {
             (Some(value), _) => self.quantity(name, value),
@@ -137,7 +137,7 @@ impl Writer {
         self.put(name, Value::Text(value.to_owned()));
     }
 
-    /// Writes a text if there is one, else omits the field.
+    /// Writes a text; omits the field if the text is `None`.
     pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
         self.optional(name, value, Self::text);
     }

@@ -1,4 +1,4 @@
-//! The answer to a scenario, whether its stack is in planes or in space.
+//! The results of a scenario, whether it is simulated in planes or in three dimensions.
 
 use std::ops::ControlFlow;
 
@@ -21,16 +21,16 @@ use crate::report::document;
 use crate::variants::Answer;
 use crate::words;
 
-/// Results of a scenario in planes or in space.
+/// Results of a scenario that is simulated in planes or in three dimensions.
 #[derive(Clone, Debug)]
 pub enum AnyAnswer {
     /// Results in one plane or in both.
     Planes(Box<variants::Answer>),
-    /// Results in space.
+    /// Results in three dimensions.
     Space(Box<Answer>),
 }
 
-/// Evaluates an expression on either answer.
+/// Evaluates the same expression for the results in planes and for the results in three dimensions.
 macro_rules! either {
     ($of:expr, $one:pat => $value:expr) => {
         match $of {
@@ -41,7 +41,8 @@ macro_rules! either {
 }
 
 impl AnyAnswer {
-    /// Runs all variants of a scenario, then the run to show; the observer receives the progress and may cancel.
+    /// Runs all variants of a scenario, and then the run that the results show. The observer receives the progress and
+    /// may cancel the work.
     ///
     /// # Errors
     /// When the motion cannot be read, or when the stack cannot be built or does not stand.
@@ -57,7 +58,8 @@ impl AnyAnswer {
         })
     }
 
-    /// Searches for the smallest changes that would have kept the stack up; `None` if there was no search.
+    /// Searches for the smallest changes that would have kept the stack up; returns `None` if no search is made, for
+    /// example because the stack stands.
     ///
     /// # Errors
     /// When a motion cannot be read.
@@ -135,7 +137,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the result and what supports it, in a few sentences.
+    /// Returns the result in a few sentences, with the main numbers on which it is based.
     pub fn sentences(&self) -> Vec<String> {
         match self {
             Self::Planes(answer) => sentences(&answer.decides.run, &answer.decides.summary),

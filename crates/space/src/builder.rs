@@ -1,5 +1,5 @@
-//! Construction of a stack in space: racks made of tubes, barrels as bodies of revolution, and contact pairs with their
-//! laws.
+//! Construction of a three-dimensional stack: racks made of tubes, barrels as bodies of revolution, and contact pairs
+//! with their contact laws.
 
 use barrelstack::assemble::{AssembleError, PartKind, law_in_space, laws_in_space};
 use barrelstack::device::{Isolators, Words};
@@ -15,7 +15,8 @@ use crate::part::{Part, Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, reach_along, tubes};
 use crate::stack::Stack;
 
-/// Tributary length (m) of a contact for constants that are stated per meter; the same value as in the plane.
+/// Tributary length (m) of a contact, which converts constants per meter of contact; the same value as in the plane
+/// models.
 pub(crate) const TRIBUTARY: f64 = 0.01;
 
 /// A stack under construction.
@@ -28,7 +29,8 @@ pub(crate) struct Builder<'a> {
     pub(crate) laws: Laws,
     /// Elements that will be fitted to the stack at rest.
     pub(crate) loose: Vec<Loose>,
-    /// Elements without which the stack would not stand, each with the description of its device.
+    /// Elements that already act while the stack is settled, because it would not stand without them; each with the
+    /// description of its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
     /// Contact pairs of the ground with the bearings of platforms.
     pub(crate) bearings: Vec<ContactPair>,
@@ -55,7 +57,8 @@ impl Laws {
         };
         let pad = spec.devices.pad.law();
         let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", law));
-        // The law of an end of a platform is shared by two corners.
+        // The contact law of a plane model is for an end of a platform, which has two corners in three dimensions, so
+        // each corner has half of the constants.
         let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
         let bearing = isolator.map(|isolator| add("isolator-ground", isolator.law(0.5)));
         Self { all, cradle, bearing }
@@ -77,7 +80,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the distance (m), along the barrels, of the outermost beams of a rack from the middle of the rack.
+    /// Returns the distance (m), along the barrels, from the middle of a rack to its outermost beams.
     pub(crate) fn reach_along(&self) -> f64 {
         reach_along(&self.spec.rack, self.spec.barrel.length + self.spec.gap)
     }
@@ -89,7 +92,7 @@ impl<'a> Builder<'a> {
         self.bodies.len() - 1
     }
 
-    /// Raises everything that stands on the ground by a height (m).
+    /// Raises all bodies except the ground by a height (m).
     pub(crate) fn raise(&mut self, height: f64) {
         for body in &mut self.bodies[1..] {
             body.pose.position.z += height;
@@ -144,8 +147,8 @@ impl<'a> Builder<'a> {
         else {
             return Err(AssembleError::NotInSpace {
                 field: "stack.rack.cradle",
-                reason: "in space a cradle must be a pair of supports: set stack.rack.cradle.type to \"supports\", or \
-                         stack.view to \"both\""
+                reason: "in three dimensions a cradle must be a pair of supports: set stack.rack.cradle.type to \
+                         \"supports\", or stack.view to \"both\""
                     .into(),
             });
         };
@@ -160,7 +163,7 @@ impl<'a> Builder<'a> {
         let id = self.bodies.len();
         let count = list.len();
         let mut seats = Seats { carries: vec![None; count], lies_on: vec![None; count] };
-        // The barrels below are ordered by their position along the rack, then by column.
+        // The barrels below are ordered by row, and within a row by column.
         let columns = rack.barrels;
         for (deep, tube) in beams {
             let of_beam = supports
@@ -171,7 +174,7 @@ impl<'a> Builder<'a> {
             seats.lies_on[tube] = Some(of_beam.collect());
         }
         for ((column, deep), tube) in posts {
-            // A rack is its own mirror image, so its tubes stay in place, but its barrels change sides.
+            // A rack is symmetric, so in a mirrored stack its tubes stay in place, but its barrels change sides.
             let column = if spec.mirror { columns - 1 - column } else { column };
             seats.carries[tube] = Some(id + 1 + (deep * columns + column) as usize);
         }
@@ -254,10 +257,10 @@ impl<'a> Builder<'a> {
         Vec3::new(side * place.x, place.y, place.z)
     }
 
-    /// Returns all boundary pairs that can touch, each with its law.
+    /// Returns all pairs of surfaces that can touch, each with its contact law.
     ///
-    /// Where one body rests on another, the law of the seat applies. All other boundaries of these bodies, and all
-    /// other bodies, touch only in impacts, with the laws for impacts.
+    /// Where one body rests on another, the contact law of the seat applies. The contact laws for impacts apply to all
+    /// other surfaces of the two bodies, and to bodies that do not rest on each other.
     pub(crate) fn pairs(&self) -> Vec<ContactPair> {
         let mut list = Vec::new();
         let count = self.bodies.len();
@@ -295,7 +298,7 @@ impl<'a> Builder<'a> {
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// Adds the contact pairs of all solids of two bodies; the law of a pair depends on the solid of the contactor.
+    /// Adds the contact pairs of all solids of two bodies. `law` returns the contact law for a solid of the contactor.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,

@@ -1,4 +1,4 @@
-//! Check of a scenario in space without shaking: whether the scenario is valid, and whether its stack stands.
+//! Check of a three-dimensional scenario without shaking: whether the scenario is valid, and whether its stack stands.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::check::{AtRest, Checked};
@@ -38,7 +38,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         time_step: stack.step,
         rest: settled.map(|settled| AtRest::of(settled, sunk)),
         motion: ground.first.motion.as_ref().map(MotionSummary::of),
-        // The warning about contacts with too soft sticking stiffness exists only for plane models.
+        // Only plane models warn about contacts whose sticking stiffness is too low.
         sticks: Vec::new(),
         warnings: ground.warnings,
         scenario_hash: format!("{:016x}", scenario.fingerprint()),

@@ -1,4 +1,4 @@
-//! Additional columns, with the directions of falls, for tables of cases in space.
+//! Additional columns, with the directions of falls, for tables of three-dimensional cases.
 
 use barrelstack::ensemble;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
@@ -65,8 +65,8 @@ pub fn values(
     std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
 }
 
-/// Returns the table of the variants of a stack; variant 0 is the stack as stated. The table has the columns of a plane
-/// model and the columns of this module. Interrupted cases have no row.
+/// Returns the table of the variants of a stack; variant 0 is the scenario as stated. The table has the columns of the
+/// table for a plane model, followed by the columns of this module. Interrupted cases have no row.
 pub fn variants(cases: &[Case]) -> Vec<Column> {
     let mut all = ensemble::variants(cases.iter().map(|case| &case.result));
     let ended = cases.iter().filter(|case| !case.result.is_interrupted());

@@ -1,4 +1,4 @@
-//! A run in space as one side of a comparison.
+//! A three-dimensional run as one side of a comparison.
 
 use std::ops::ControlFlow;
 

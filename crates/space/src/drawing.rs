@@ -1,8 +1,9 @@
-//! Plane drawings of a run in space: across the barrels, along them, and from above.
+//! Flat drawings of a three-dimensional run: viewed across the barrels, along the barrels, and from above.
 //!
-//! A plane scene has bodies with fixed outlines that move in its plane. The outline of a solid body depends only on the
-//! view direction in the body frame. So a body has one drawing for every view direction that occurs, rounded to steps
-//! of a few degrees, and each frame shows one of these drawings.
+//! In a flat scene, every body has a fixed outline that moves in the plane of the drawing. The outline of a
+//! three-dimensional body depends on the direction, in the body frame, from which the body is viewed. A body therefore
+//! has one drawing for every direction that occurs, rounded to steps of a few degrees, and each frame shows one of
+//! these drawings.
 
 mod deep;
 mod view;
@@ -56,8 +57,8 @@ impl Sight {
         }
     }
 
-    /// Returns `true` if events in the direction `heading` are labeled in this view. Each event is labeled in exactly
-    /// one view.
+    /// Returns `true` if a motion in the direction `heading` is labeled in this view. Each such event is labeled in
+    /// exactly one view.
     fn shows(self, heading: Heading) -> bool {
         match self {
             Self::Across => heading.is_across(),
@@ -83,13 +84,13 @@ impl Sight {
     }
 }
 
-/// Half the assumed thickness (m) of those parts of devices that the plane drawings show as lines.
+/// Half the assumed thickness (m) of those parts of devices that the flat drawings show as lines.
 pub(crate) const PLATE: f64 = 0.012;
 
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
-/// Number of steps of the view direction of a body per right angle.
+/// Number of steps per right angle to which the direction from which a body is viewed is rounded.
 const STEPS: f64 = 6.0;
 
 /// Number of steps per right angle to which the direction from which a body is viewed is rounded in a [`coarse_scene`].
@@ -100,8 +101,8 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     Arc::new(drawn(run, sight, STEPS))
 }
 
-/// Returns the drawing of a run across the barrels for a small file: the scene in three dimensions is that of [`scene`],
-/// while the flat drawings of rotating bodies change in coarser steps.
+/// Returns the drawing of a run across the barrels in a form that makes a smaller file. The three-dimensional scene is
+/// the same as that of [`scene`], but the flat drawings of rotating bodies change in coarser steps.
 pub fn coarse_scene(run: &Run) -> Scene {
     drawn(run, Sight::Across, COARSE_STEPS)
 }
@@ -165,8 +166,8 @@ fn drawn(run: &Run, sight: Sight, steps: f64) -> Scene {
     }
 }
 
-/// Adds the drawings of a body for all view directions that occur in its path, in the given steps per right angle, and
-/// its poses in all frames.
+/// Adds a drawing of a body for every view direction that occurs along its path, and the poses of the body in all
+/// frames. `steps` is the number of steps per right angle to which view directions are rounded.
 fn enter(
     (part, body): (&Part, &Body<Spatial>),
     path: impl Iterator<Item = [f64; 7]>,
@@ -189,7 +190,7 @@ fn enter(
     }
 }
 
-/// A body of a room for a picture.
+/// A body of a room, with the data that a picture of the room needs.
 #[derive(Clone, Debug)]
 pub struct Shown<'a> {
     /// Name in the picture.
@@ -204,8 +205,8 @@ pub struct Shown<'a> {
     pub leaves_at: Option<f64>,
 }
 
-/// Returns the drawing of many bodies on one floor, such as those of the stacks of a room, at the times (s) of
-/// their frames. The scene across the barrels also has all bodies in three dimensions.
+/// Returns the drawing of many bodies on one floor, such as all stacks of a room, at the times (s) of their frames. The
+/// scene across the barrels also has all bodies in three dimensions.
 pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     let [right, up] = sight.page();
     let toward = right.cross(up);
@@ -280,7 +281,7 @@ fn top(run: &Run) -> impl Iterator<Item = usize> {
         .filter(move |body| levels > 0 && run.stack.parts[*body].level == levels)
 }
 
-/// Returns the traces of the centers of the barrels of the top level in a scene of the run.
+/// Returns the traces of the top-level barrels (the paths of their centers) in a scene of the run.
 pub fn traces(run: &Run, scene: &Scene) -> Vec<Trace> {
     let first = scene.bodies.len() - top(run).count();
     let trace = |(at, body): (usize, usize)| Trace {
@@ -292,7 +293,8 @@ pub fn traces(run: &Run, scene: &Scene) -> Vec<Trace> {
 }
 
 /// A strap or a tie. It is drawn between two invisible bodies at its ends. It cannot be attached to the drawings of the
-/// joined bodies: these depend on the rotation of a body, so that no point of the body has a fixed position in them.
+/// bodies that it joins: as a body rotates, one drawing replaces another, so no point of the body has a fixed position
+/// in its drawings.
 struct Band<'a> {
     link: &'a Link<Spatial>,
     drawn: Tie,
@@ -312,7 +314,8 @@ impl Band<'_> {
 /// Minimum distance (m) between the ends of a band on the page; a shorter band is in end view and is not drawn.
 const END_ON: f64 = 0.01;
 
-/// Returns the straps and ties that are not in end view. The bodies at their ends follow the first `drawings` bodies.
+/// Returns the straps and ties that are not in end view. The invisible bodies at their ends come after the first
+/// `drawings` bodies of the scene.
 fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
     let straps = run.devices().filter_map(|((element, _), fate)| match element {
         Element::Strap(strap) => Some((&strap.link, fate)),
@@ -366,8 +369,8 @@ fn slope(run: &Run) -> f64 {
     }
 }
 
-/// Returns the ground: the floor, as a line longer than any picture is wide, and the walls, ceilings and dishes of
-/// devices.
+/// Returns the drawing of the ground: the floor, as a line longer than any picture is wide, and the walls, ceilings and
+/// dishes of devices.
 ///
 /// The floor is not drawn in the view from above, nor in the view along the barrels if the ground slopes.
 fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
@@ -381,8 +384,9 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns invisible points that enlarge the picture: around the paths of all bodies, near a stack that is viewed from
-/// above, where bodies fall in all directions, and everywhere in a free scene.
+/// Returns invisible points that enlarge the picture. In a free scene, the picture then contains the paths of all
+/// bodies. In the view of a stack from above, it contains the paths near the stack, since bodies fall in all
+/// directions.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
         bounds(run, sight)
@@ -419,7 +423,7 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
     let mut events = Vec::new();
     for (body, (part, fate)) in run.stack.parts.iter().zip(&run.fates).enumerate() {
         let barrel = part.kind == PartKind::Barrel;
-        // A barrel that leaves its seat by falling is one event, not two.
+        // A barrel that counts as fallen at the moment at which it leaves its seat gets one label, not two.
         let falls_with_it = |time: f64| barrel && fate.fell_at.is_some_and(|fell| fell <= time);
         let left = fate.left_seat.filter(|(at, ..)| !falls_with_it(*at));
         if let Some((time, loss, heading)) = left.filter(|(.., heading)| sight.shows(*heading)) {

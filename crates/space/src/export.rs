@@ -1,4 +1,4 @@
-//! Output files for the result of a scenario in space.
+//! Output files for the result of a three-dimensional scenario.
 
 use std::fmt::Write as _;
 
@@ -34,8 +34,8 @@ pub fn files(answer: &Answer, resolved: &str, language: Language) -> Vec<(String
     files
 }
 
-/// Writes the parts of a rendering of the shown run. Animation and frames show the view in which the first body leaves
-/// its seat; if none does, the view across the barrels.
+/// Writes the selected renderings of the shown run. The animation and the frames are drawn in the view in which the
+/// first body leaves its seat. If no body leaves its seat, they are drawn in the view across the barrels.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -73,7 +73,7 @@ fn frames_csv(run: &Run) -> String {
     text
 }
 
-/// Returns the table of variants, with one row for each; variant 0 is the case as stated.
+/// Returns the table of variants, with one row for each variant; variant 0 is the scenario as stated.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "variant,outcome,mode,first_loss (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\

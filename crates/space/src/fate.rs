@@ -1,4 +1,4 @@
-//! Fate of every body in space: loss of seat and its direction, fall, slip, and tilt.
+//! Outcome of every body in three dimensions: loss of seat and its direction, fall, slip, and tilt.
 
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ impl Heading {
     }
 }
 
-/// Fate of one body.
+/// Outcome of one body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
     /// Position at rest (m), relative to the ground.
@@ -116,7 +116,7 @@ impl PeakMotion {
     }
 }
 
-/// Recorder of the fates of all bodies during a run; must receive every accepted step.
+/// Recorder of the outcomes of all bodies during a run. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates {
     stack: Arc<Stack>,
@@ -152,7 +152,7 @@ impl Fates {
         }
     }
 
-    /// Returns the fates of all bodies, in the order of the parts.
+    /// Returns the outcomes of all bodies so far, in the order of the parts.
     pub fn all(&self) -> &[Fate] {
         &self.all
     }
@@ -167,7 +167,7 @@ impl Fates {
         self.first_fall
     }
 
-    /// Returns the fates of all bodies at the end of a run, in the order of the parts.
+    /// Returns the outcomes of all bodies at the end of a run, in the order of the parts.
     pub fn at_end(mut self, poses: &[Pose<Spatial>]) -> Vec<Fate> {
         self.turn(poses);
         let mut slips = Vec::new();
@@ -238,7 +238,7 @@ impl Fates {
         }
     }
 
-    /// Returns the kind and the direction of the loss of seat, if a body has left its seat in the current state.
+    /// Returns the kind and the direction of the loss of seat; `None` if the body is on its seat in the current state.
     fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
@@ -259,7 +259,7 @@ impl Fates {
             let [across, along] = self.stack.reach.map(|m| m * self.thresholds.rack_slide_ratio);
             let off = |slip: &&Vec3| slip.y.abs() > along;
             if !part.supports.is_empty() {
-                // A rack that twists walks off one of its barrels first.
+                // A rack that turns about the vertical walks off one of its barrels first.
                 if let Some(slip) = slips.iter().find(off) {
                     return Some((Loss::Slid, Heading::of(Vec3::new(0.0, slip.y, 0.0))));
                 }

@@ -1,4 +1,4 @@
-//! Assembly of a free scene in space: bodies, and contact pairs with their laws.
+//! Assembly of a three-dimensional free scene: individual bodies, and contact pairs with their contact laws.
 
 use barrelstack::RunFailure;
 use barrelstack::assemble::{AssembleError, PartKind, laws_of_free};
@@ -45,7 +45,8 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     })
 }
 
-/// Returns the contact pairs of all solids of any two bodies with an interface, each pair once.
+/// Returns the contact pairs between the solids of every two bodies for which an interface is given, unless both bodies
+/// are fixed. Each pair occurs once.
 fn pairs(scene: &SpatialScene, bodies: &[Body<Spatial>]) -> Vec<ContactPair> {
     let mut list = Vec::new();
     for one in 0..bodies.len() {
@@ -76,7 +77,8 @@ fn is_unbounded(body: &Body<Spatial>) -> bool {
     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace)
 }
 
-/// Returns the index of the interface between two bodies, and `true` if the interface names the second body first.
+/// Returns the index of the interface between two bodies, and a flag that is `true` if the interface names the second
+/// body first.
 fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
     let label = |id: BodyId| match id.checked_sub(1) {
         Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),

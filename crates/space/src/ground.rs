@@ -1,19 +1,19 @@
-//! Ground motion in space: both horizontal components and the vertical component of a motion, rotated into the axes of
-//! the stack.
+//! Three-dimensional ground motion: both horizontal components and the vertical component of a motion, rotated into the
+//! axes of the stack.
 
 use barrelstack::ground::{GroundError, of_spec, other_component, turn_to_other};
 use barrelstack::scenario::{MotionSource, MotionSpec, Scenario};
 use barrelstack_dynamics::{Drive, Spatial, Vec3, math};
 
-/// Maximum deviation (degrees) of the angle between two horizontal components from a right angle.
+/// Largest accepted difference (degrees) between 90° and the angle between the two horizontal components.
 const SQUARE: f64 = 5.0;
 
-/// Ground motion of a stack in space.
+/// Ground motion of a three-dimensional stack.
 #[derive(Clone, Debug)]
 pub struct Ground {
     /// The horizontal component that the scenario names, and the vertical component if there is one.
     pub first: barrelstack::Ground,
-    /// The other horizontal component; `None` if the motion has only one.
+    /// The other horizontal component; `None` if the motion has only one horizontal component.
     pub second: Option<barrelstack::Ground>,
     /// Cosine and sine of the angle by which the stack is rotated counterclockwise.
     turn: [f64; 2],
@@ -37,8 +37,8 @@ impl Ground {
         Ok(ground)
     }
 
-    /// Returns the ground motion without rotation, for a stack built at the length scale `similitude`. The specified
-    /// component acts across the barrels.
+    /// Returns the ground motion without rotation, for a stack built at the length scale `similitude`. The component
+    /// that `motion` names acts across the barrels.
     ///
     /// # Errors
     /// As [`Ground::of`].
@@ -126,7 +126,7 @@ impl Ground {
     }
 }
 
-/// Uses a motion of a plane model in space. The horizontal component of the motion acts across the barrels.
+/// Converts a ground motion of a plane model. The horizontal component of the motion acts across the barrels.
 impl From<barrelstack::Ground> for Ground {
     fn from(first: barrelstack::Ground) -> Self {
         let warnings = first.warnings.clone();

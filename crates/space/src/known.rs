@@ -1,11 +1,12 @@
-//! Check that all features of a stack are supported in space. The error for an unsupported feature names the field of
-//! the feature.
+//! Check that all features of a stack are supported in three dimensions. The error for an unsupported feature names the
+//! field of the feature.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
-/// Returns the barrel of a stack, or rejects a feature that is not supported in space.
+/// Returns the barrel of a stack; returns an error if the stack has a feature that is not supported in three
+/// dimensions.
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;
@@ -33,9 +34,9 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
     if rack.contact != SeatContact::Rails && bases.iter().any(|basis| *basis != Basis::Seat) {
         return refuse(
             "stack.rack.contact",
-            "in space each of the two beams of a rack has a single contact element wherever it touches, so contact constants \
-             must be stated per seat: set stack.rack.contact to \"rails\", the basis of \
-             interface.rack-ground and interface.barrel-rack to \"seat\", or stack.view to \"both\""
+            "in three dimensions each of the two beams of a rack has only one contact element at every place where \
+             it touches, so contact constants must be stated per seat: set stack.rack.contact to \"rails\", the \
+             basis of interface.rack-ground and interface.barrel-rack to \"seat\", or stack.view to \"both\""
                 .into(),
         );
     }
@@ -59,8 +60,8 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
         return refuse(
             "stack.gap",
             format!(
-                "the round ends of beams of {} m reach {:.3} m beyond the line on which they bear, so racks side by \
-                 side overlap: set stack.gap to {:.3} m or more",
+                "the beams are {} m high, and their round ends reach {:.3} m beyond the straight part on which the \
+                 beams bear, so racks side by side overlap: set stack.gap to {:.3} m or more",
                 rack.beam_height,
                 tube,
                 2.0 * tube

@@ -1,7 +1,7 @@
-//! Cases in space that run side by side in the lanes of a vector register, and keep only their results.
+//! Three-dimensional cases that run side by side in the lanes of a vector register. Only their results are kept.
 //!
-//! Every case has the bits of its single run. Cases share a register if their models have one
-//! [`Topology`](lanes::Topology); a lane whose case has ended takes the next case.
+//! The results are bit-identical to those of separate runs. Cases can share a register if their models have the same
+//! [`Topology`](lanes::Topology). When the case of a lane has ended, the lane takes the next case.
 
 use std::sync::Arc;
 
@@ -17,17 +17,18 @@ use crate::ground::Ground;
 use crate::simulation::{Prepared, Watch};
 use crate::variants::Case;
 
-/// Number of steps between two polls of the request to stop.
+/// Number of steps between two calls of `stop`.
 const PATIENCE: u32 = 64;
 
-/// Fewest cases that run in lanes: fewer take longer than one after the other.
+/// Smallest number of cases that run in lanes. Fewer cases would take longer in lanes than one after the other.
 const FEWEST: usize = 3;
 
 /// A case whose stack is at rest, and its index among all cases.
 pub(crate) type Ready = (usize, Prepared);
 
-/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has AVX2; `report` receives the index and the result of each finished case, and `stop` is
-/// polled. Returns the cases that have to be run one after the other.
+/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has AVX2. `report` receives the index and
+/// the result of each finished case; the work ends when `stop` returns `true`. Returns the cases that have to be run
+/// one after the other.
 pub(crate) fn run(
     in_lanes: bool,
     ready: Vec<Ready>,
@@ -83,7 +84,7 @@ struct Batch<'a> {
     /// Index of the next case of the group.
     next: usize,
     lanes: Vec<Option<Lane<'a>>>,
-    /// Number of steps since the last poll.
+    /// Number of steps since the last call of `stop`.
     steps: u32,
     interrupted: bool,
 }
@@ -172,7 +173,7 @@ impl<'a, R: Real> lanes::Batch<'a, Spatial<R>> for Batch<'a> {
             (Ok(Finish::Stopped | Finish::EndTime), _) => Ending::of_time(&fixed.scenario),
         };
         share.end(end.time / fixed.settings.end_time);
-        // Evaluations are counted for all lanes together; the result of a case has only its steps.
+        // Evaluations are counted for all lanes together, so the result of a single case states only its steps.
         let work = Work { steps: end.steps, ..Work::default() };
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
         let run = watch.conclude(Arc::clone(fixed), state, ended, work, ending);

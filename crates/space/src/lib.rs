@@ -1,4 +1,4 @@
-//! Stacks of barrels and free scenes in space, shaken by all three components of a motion.
+//! Three-dimensional stacks of barrels and free scenes (individual bodies), shaken by all three components of a motion.
 //!
 //! ```text
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
@@ -7,8 +7,9 @@
 //!               Simulation: settle, step ─▶ Run ─▶ Summary (JSON), files, page
 //! ```
 //!
-//! `x` is across the barrels, `y` along the barrels, and `z` up; columns are counted along `x`, rows along `y`. A run
-//! in space differs from a run in the plane in geometry only: the laws, time steps, thresholds and texts are the same.
+//! `x` is across the barrels, `y` along the barrels, and `z` up; columns are counted along `x`, rows along `y`. A
+//! three-dimensional run differs from a run in a plane in geometry only: the contact laws, time steps, thresholds and
+//! texts are the same.
 
 // Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
 // (`clippy.toml`).

@@ -1,4 +1,4 @@
-//! Triangle meshes of the bodies of a run in space, for three-dimensional viewers.
+//! Triangle meshes of the bodies of a three-dimensional run, for 3D viewers.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -9,8 +9,8 @@ use barrelstack_report::{Role, SolidBody, SolidTie, Solids};
 use crate::drawing::PLATE;
 use crate::run::Run;
 
-/// Number of mesh steps per quarter circle: `FINE` for balls and barrels, `COARSE` for tubes. Racks have many tubes,
-/// and all points are written for every frame.
+/// Number of mesh steps per quarter circle: `FINE` for balls and barrels, `COARSE` for tubes. Tubes have coarser
+/// meshes, because racks have many tubes and all points are written for every frame.
 const FINE: u32 = 6;
 const COARSE: u32 = 3;
 
@@ -59,15 +59,15 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     }
 }
 
-/// Returns points (m) of the surface of a body, in the body frame, whose convex hull is nearly that of the body; the
-/// floor has none.
+/// Returns points (m) of the surface of a body, in the body frame. The convex hull of the points is nearly the convex
+/// hull of the body. The result is empty for the floor.
 pub fn points(body: &Body<Spatial>) -> Vec<Vec3> {
     let round = body.surfaces.iter().any(|placed| !matches!(placed.surface, Solid::HalfSpace));
     if round { surface(body, &[], 0.0).0 } else { Vec::new() }
 }
 
-/// Returns half the side (m) of the square that represents a half-space. The square is kept small, since viewers fit
-/// their first picture to it.
+/// Returns half the side (m) of the square that represents a half-space. The square is small, because viewers choose
+/// their first view so that the whole square is visible.
 fn floor(run: &Run) -> f64 {
     let far = |pose: &[f64; 7]| pose[..3].iter().fold(0.0_f64, |far, x| far.max(x.abs()));
     let sizes = run.stack.model.bodies().iter().map(Body::reach);
@@ -174,8 +174,8 @@ fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     profile
 }
 
-/// Returns the mesh of the surface of revolution of a profile from pole to pole about `x`; `quarter` is the number of
-/// steps per quarter circle.
+/// Returns the mesh of the surface that a profile, given from pole to pole, generates by rotation about `x`; `quarter`
+/// is the number of steps per quarter circle.
 fn revolved(profile: &[[f64; 2]], quarter: u32) -> Mesh {
     debug_assert!(profile.len() >= 3, "a profile between two poles");
     let around = 4 * quarter as usize;
@@ -234,7 +234,8 @@ mod tests {
             // measured 0.023 below: the polyhedra are inscribed
             (revolved(&rounded(0.0, 0.3, FINE), FINE), ball, 0.03),
             (revolved(&rounded(0.4, 0.3, FINE), FINE), ball + PI * 0.09 * 0.8, 0.03),
-            // A prism of twelve sides has 0.955 of the cross section of the bar, and the round ends add 0.016.
+            // A prism of twelve sides has 0.955 times the cross-sectional area of the bar, and the round ends add 0.016
+            // to the ratio.
             (bar([Vec3::default(), Vec3::new(0.0, 0.0, 1.0)]), PI * PLATE * PLATE, 0.04),
             (bar([Vec3::default(), Vec3::new(0.6, 0.0, 0.8)]), PI * PLATE * PLATE, 0.04),
         ] {

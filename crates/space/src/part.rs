@@ -1,15 +1,15 @@
-//! Descriptions of the bodies in space, and the ground.
+//! Descriptions of three-dimensional bodies, and the ground.
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{
     Body, BodyId, Motion, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Vec3,
 };
 
-/// Description of a body in space.
+/// Description of a three-dimensional body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Name in results, equal to the name of the body. It states the level, the column and, if there are several rows,
-    /// the row.
+    /// Name in results, equal to the name of the body in the model. The name contains the level, the column and, if
+    /// there are several rows, the row.
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,

@@ -25,11 +25,11 @@ use std::f64::consts::FRAC_PI_2;
 pub(crate) struct Tubes {
     /// The tubes, with masses (kg) that add up to the mass of the rack. Chocks come last and have no mass.
     pub(crate) parts: Vec<Part>,
-    /// For every beam, the row in the rack of the barrels on the beam and of those beneath it, and the index of its
+    /// For every beam, the row (counted within the rack) of the barrels above and below the beam, and the index of its
     /// tube.
     pub(crate) beams: Vec<(u32, usize)>,
-    /// For every post, the column and the row in the rack of the barrel that the post carries, and the index of the
-    /// tube.
+    /// For every post, the column and the row (both counted within the rack) of the barrel that the post carries, and
+    /// the index of its tube.
     pub(crate) posts: Vec<((u32, u32), usize)>,
 }
 
@@ -42,8 +42,8 @@ pub(crate) struct Heights {
     pub(crate) underside: f64,
 }
 
-/// Returns the radius (m), at a position (m) along the axis of a barrel, of the surface of revolution that lies at a
-/// given distance (m) outside of the stave.
+/// Returns the distance (m) from the axis of a barrel to the surface that lies `distance` (m) outside of the stave, at
+/// the position `along` (m) on the axis.
 fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding + distance;
     (arc * arc - along * along).sqrt() - barrel.stave_offset
@@ -75,7 +75,8 @@ pub(crate) fn tubes(
     let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
     let (mut beams, mut posts) = (Vec::new(), Vec::new());
     let (mut list, mut horns) = (Vec::new(), Vec::new());
-    // An upright tube on a beam beside a barrel; its upper end lies at an angle about the barrel and a gap from it.
+    // Returns an upright tube on a beam beside a barrel. The upper end of the tube is at the angle `angle` from the
+    // bottom of the barrel and at the distance `gap` from its surface.
     let beside = |[place, y]: [f64; 2], side: f64, angle: f64, gap: f64| {
         let (sin, cos) = math::sin_cos(angle);
         let away = around(barrel, BAR_RADIUS + gap, rack.rail_half_spacing);
@@ -114,7 +115,7 @@ pub(crate) fn tubes(
     Some(Tubes { parts, beams, posts })
 }
 
-/// Returns the distance (m), along the barrels, of the outermost beams of a rack from the middle of the rack.
+/// Returns the distance (m), along the barrels, from the middle of a rack to its outermost beams.
 pub(crate) fn reach_along(rack: &Rack, apart: f64) -> f64 {
     0.5 * f64::from(rack.barrels_deep - 1) * apart + rack.rail_half_spacing
 }

@@ -1,4 +1,4 @@
-//! Report of a run in space: verdict, synchronized views, collapse sequence, and tables.
+//! Report of a three-dimensional run: verdict, synchronized views, collapse sequence, and tables.
 
 use std::sync::Arc;
 
@@ -21,7 +21,8 @@ use crate::summary::Summary;
 use crate::variants::Answer;
 use crate::words::{headline, rows, sentences, tone};
 
-/// Returns the player of a run in a view that can be turned, with a scene of the run across the barrels.
+/// Returns the player of a run, in a view that can be turned. `scene` is the drawing of the run across the barrels,
+/// which also contains the three-dimensional scene.
 pub fn player(run: &Run, scene: Scene) -> Player {
     Player {
         id: "player".into(),
@@ -162,8 +163,8 @@ fn for_engineers(answer: &Answer) -> Block {
     Block::details("Energies, inputs and limits", blocks)
 }
 
-/// Returns the sections on all variants: their statistics, the constants that decide, and what would have kept the stack
-/// up.
+/// Returns the sections on all variants: their statistics, the constants that decide the outcome, and the changes that
+/// would have kept the stack up.
 fn of_variants(summary: &Summary) -> Vec<Block> {
     let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();
@@ -187,9 +188,9 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges cover 5 to 95 % of the variants. The direction of the first body is the one in \
-             which it left its seat. The direction of a barrel that fell{} leads from its position \
-             at rest to its position at the end of the variant.",
+            "Ranges span the 5th to the 95th percentile of the variants. The direction of the first body is the one \
+             in which it left its seat. The direction of a barrel that fell{} leads from its position at rest to its \
+             position at the end of the variant.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],

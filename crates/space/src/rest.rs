@@ -1,5 +1,5 @@
-//! Rest criterion in space, as in the plane. A run ends when no body is fast enough to change the outcome and the
-//! ground is still or, after a collapse, nearly still.
+//! Criterion for the end of a three-dimensional run, the same as in the plane models. A run ends when no body is fast
+//! enough to change the outcome and the ground is still or, after a collapse, nearly still.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::stack::Stack;
 /// Poses and twists of all bodies of a stack, the ground first.
 pub type Motions<'a> = (&'a [Pose<Spatial>], &'a [Twist<Spatial>]);
 
-/// Detector of the rest of all bodies.
+/// Detector of the time at which all bodies have come to rest.
 #[derive(Clone, Debug)]
 pub struct Rest {
     stack: Arc<Stack>,
@@ -58,7 +58,7 @@ impl Rest {
         (1..self.stack.parts.len()).filter(move |body| self.is_fast(bodies, *body))
     }
 
-    /// Restarts the time at rest at a time (s), for a stack that is set in motion again.
+    /// Counts the time at rest anew from a time (s), for a stack that is set in motion again.
     pub fn wake(&mut self, time: f64) {
         self.moved = time;
     }

@@ -1,4 +1,4 @@
-//! A run of a scenario in space, and its result.
+//! A three-dimensional run of a scenario, and its result.
 
 use std::ops::ControlFlow;
 
@@ -43,8 +43,8 @@ pub struct Frames {
     pub poses: Vec<Vec<[f64; 7]>>,
     /// For every frame and body, the velocity of the center of mass (m/s) and the spin (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
-    /// For every frame, each pair of surfaces that touch: the index of the pair in the model, the center of pressure (m),
-    /// and the contact force (N) on the body that it pushes up.
+    /// For every frame, all pairs of surfaces that touch. For each pair: its index in the model, the center of pressure
+    /// (m), and the contact force (N) on that body of the two which the force pushes upward.
     pub forces: Vec<Vec<(usize, [f64; 6])>>,
 }
 
@@ -61,11 +61,11 @@ pub struct Run {
     pub outcome: Outcome,
     /// The direction in which the first body left its seat.
     pub heading: Option<Heading>,
-    /// Fates of all bodies, in the order of the parts.
+    /// Outcomes of all bodies, in the order of the parts.
     pub fates: Vec<Fate>,
     /// Time (s) at which the first barrel counted as fallen.
     pub first_fall: Option<f64>,
-    /// Fates of all elements of the devices, in the order of the elements in the model.
+    /// Outcomes of all elements of the devices, in the order of the elements in the model.
     pub elements: Vec<ElementFate>,
     /// Forces at the seats.
     pub seats: Seats,
@@ -121,7 +121,7 @@ pub(crate) fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing,
         settled = Some(rest(&stack, &mut state, &mut scratch)?);
     }
     let strained = stack.fasten(&mut state).map_err(AssembleError::from)?;
-    // Elements under load press the stack together, so it settles again.
+    // Elements under load compress the stack, so the stack is settled again.
     if let Some(before) = settled.filter(|_| strained) {
         let found = rest(&stack, &mut state, &mut scratch)?;
         settled = Some(Settled { steps: before.steps + found.steps, ..found });
@@ -144,8 +144,8 @@ fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), Assemb
     }
 }
 
-/// Returns the two bodies that overlap most, and the depth (m) of their overlap, after an evaluation of the stack; `None`
-/// if no bodies touch.
+/// Returns the two bodies that overlap most, and the depth (m) of their overlap, from the contacts of the last
+/// evaluation in `scratch`; `None` if no bodies touch.
 pub fn deepest_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Option<([BodyId; 2], f64)> {
     let depth = |contact: &&Contact<Spatial>| contact.penetration;
     let contact = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)))?;
@@ -153,7 +153,7 @@ pub fn deepest_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Option<([Bo
     Some(([pair.contactor, pair.target], contact.penetration))
 }
 
-/// Runs a scenario in space under the ground motion of the scenario.
+/// Runs a scenario in three dimensions, under the ground motion of the scenario.
 ///
 /// ```
 /// use barrelstack::Scenario;
@@ -165,7 +165,7 @@ pub fn deepest_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Option<([Bo
 /// ```
 ///
 /// # Errors
-/// If the motion cannot be read, the stack cannot be built in space, or it does not stand.
+/// If the motion cannot be read, or if the stack cannot be built in three dimensions or does not stand.
 pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
     let ground = Ground::of(scenario)?;
     run_on(scenario, ground, &mut |_| ControlFlow::Continue(()))
@@ -179,20 +179,20 @@ pub(crate) fn affordable(
 ) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
-    // A frame has 13 numbers of every body: position, quaternion, velocity and spin. It has the forces of about four pairs of
-    // surfaces for every body, each with seven numbers.
+    // A frame has 13 numbers for every body: position, quaternion, velocity and spin. It also has about four contact
+    // forces for every body, each with seven numbers.
     let frames = end_time * scenario.record.frame_rate + 1.0;
     check_kept((frames, stack.parts.len(), 13 + 28), (0.0, 0))?;
     Ok(end_time)
 }
 
-/// Runs a scenario in space under a given ground motion.
+/// Runs a scenario in three dimensions, under a given ground motion.
 ///
 /// The observer receives the progress at least every 0.05 s of simulated time, and may stop the run; the results until
 /// then are returned.
 ///
 /// # Errors
-/// If the stack cannot be built in space, or does not stand.
+/// If the stack cannot be built in three dimensions, or does not stand.
 pub fn run_on(
     scenario: &Scenario,
     ground: Ground,
@@ -202,7 +202,7 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Returns every element of the devices, with its fate and the description of its device.
+    /// Returns every element of the devices, with its outcome and the description of its device.
     pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {
@@ -210,7 +210,8 @@ impl Run {
         elements.zip(self.stack.devices.iter().copied()).zip(&self.elements)
     }
 
-    /// Returns the displacement x, y, z (m) of a body from its position at rest, relative to the ground, in every frame.
+    /// Returns the displacement `[x, y, z]` (m) of a body from its position at rest, relative to the ground, in every
+    /// frame.
     pub(crate) fn path(&self, body: BodyId) -> Vec<[f64; 3]> {
         let rest = self.fates[body].rest;
         let moved = |poses: &Vec<[f64; 7]>| {
@@ -232,16 +233,16 @@ impl Run {
     }
 }
 
-/// Slip of a rack along the barrels before it tilts, as a fraction of its reach, above which the rack counts as having
-/// slid off. The value is a convention.
+/// Smallest slip with which a rack that tilts along the barrels counts as having slid off, as a fraction of
+/// [`Stack::reach`]. The value is a convention.
 const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 
-/// Returns the outcome of a run. As in the plane, the outcome depends on the first body that left its seat; only the
-/// criterion for sliding differs.
+/// Returns the outcome of a run. As in the plane models, the outcome depends on the first body that left its seat; only
+/// the criterion for sliding differs.
 ///
 /// A rack has slid off along the barrels if a beam has passed the ends of the barrels, or if the rack tilts in this
-/// direction after a slip of more than half of its reach: a round beam drops over the chime before the middle of the
-/// beam has passed the chime.
+/// direction after a slip of more than half of the reach. The reason for the second criterion is that a round beam
+/// drops over the chime before the middle of the beam has passed the chime.
 pub fn judge(stack: &Stack, fates: &Fates) -> Outcome {
     let Some((time, first)) = fates.collapse() else {
         return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };

@@ -1,4 +1,5 @@
-//! Forces at the seats and their contacts in space: the forces at rest, and the largest forces during the run.
+//! Forces at the seats and their contacts in a three-dimensional run: the forces at rest, and the largest forces during
+//! the run.
 
 use barrelstack::demand::Span;
 use barrelstack::watch::{Joint, Joints, leans_on};
@@ -27,11 +28,11 @@ impl Press {
     }
 }
 
-/// Recorder of the forces of joints and contacts of a run; must receive every accepted step.
+/// Recorder of the forces at the joints and contacts during a run. It must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Seats {
     /// Joints between every barrel and its rack, between every rack and its supports, and between other bodies that
-    /// have touched. Horizontal forces are magnitudes.
+    /// have touched. For the horizontal force, the magnitude is recorded.
     pub joints: Joints,
     /// Forces (N) on the upper bodies of the joints in the current step.
     forces: Vec<Vec3>,
@@ -47,8 +48,8 @@ struct Pair {
     bodies: [BodyId; 2],
     /// Index of the first contact element of the pair.
     first: usize,
-    /// Index of the joint between the two bodies, and `true` if the contactor is the upper body; `None` until the
-    /// bodies have touched.
+    /// Index of the joint between the two bodies, and a flag that is `true` if the contactor is the upper body. `None`
+    /// until the bodies have touched.
     joint: Option<(usize, bool)>,
 }
 
@@ -76,7 +77,8 @@ impl Seats {
         seats
     }
 
-    /// Records an accepted step of a lane at a time (s); `stands` is `true` if no seat was lost before this step.
+    /// Records an accepted step of a lane at a time (s); `stands` is `true` if no body had left its seat before this
+    /// step.
     pub fn observe<R: Real>(
         &mut self,
         (lane, time): (usize, f64),

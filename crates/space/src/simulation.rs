@@ -1,4 +1,5 @@
-//! A run in space that advances step by step, can be acted upon, and can be copied at any time.
+//! A three-dimensional run that advances step by step. Forces can be applied to its bodies, and it can be copied at any
+//! time.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -23,10 +24,10 @@ use crate::run::{Frames, Run, Standing, affordable, at_rest, judge};
 use crate::seats::Seats;
 use crate::stack::Stack;
 
-/// A run of a scenario in space, which advances by any number of steps.
+/// A three-dimensional run of a scenario, which advances by any number of steps at a time.
 ///
-/// [`run`](crate::run::run()) is a simulation that is run to its end, so that both have the same bits. A clone has the
-/// complete state and continues with the same bits. Clones share the stack and the ground motion.
+/// [`run`](crate::run::run()) runs such a simulation to its end, so the results of both are bit-identical. A clone has
+/// the complete state, so it continues exactly as the original does. Clones share the stack and the ground motion.
 ///
 /// ```
 /// use barrelstack::Scenario;
@@ -60,7 +61,8 @@ pub(crate) struct Fixed {
     pub(crate) stack: Arc<Stack>,
     settled: Option<Settled>,
     pub(crate) settings: barrelstack_dynamics::Simulation,
-    /// Numbers of evaluations and of tested contact elements before the run.
+    /// Number of evaluations, and number of contact elements that were tested, before the run (while the stack was
+    /// settled).
     before: (u64, u64),
 }
 
@@ -88,12 +90,13 @@ pub(crate) struct Watch {
     pub(crate) ending: Option<Ending>,
 }
 
-/// Maximum number of steps between two calls of the observer. Steps of many bodies take long, so their number is limited
-/// as well as the simulated time.
+/// Maximum number of steps between two calls of the observer. The number of steps is limited in addition to the
+/// simulated time, because a step with many bodies takes long.
 const PATIENCE: u32 = 16;
 
 impl Prepared {
-    /// Builds the stack of a scenario in space, settles it, and creates the observer of its run on a given ground.
+    /// Builds the three-dimensional stack of a scenario, settles the stack, and creates the observer of its run under a
+    /// given ground motion.
     ///
     /// # Errors
     /// As [`Simulation::new`].
@@ -123,7 +126,7 @@ impl Prepared {
         Ok(Self { fixed, state, scratch, watch })
     }
 
-    /// Starts the run: the ground moves.
+    /// Starts the run: from now on the ground moves.
     pub(crate) fn start(self) -> Simulation {
         let Self { fixed, mut state, mut scratch, mut watch } = self;
         let Fixed { ground, stack, settings, .. } = &*fixed;
@@ -133,23 +136,26 @@ impl Prepared {
         Simulation { fixed, state, scratch, stepper, watch, failure: None }
     }
 
-    /// Returns `true` if the run can share its steps with other runs: the method has fixed steps, and the run cannot end
-    /// before its first step.
+    /// Returns `true` if the run can share its steps with other runs, that is, if the method has fixed time steps and
+    /// the run cannot end before its first step.
     pub(crate) fn can_share_steps(&self) -> bool {
         !self.fixed.settings.method.is_adaptive() && self.watch.after_collapse > 0.0
     }
 }
 
 impl Simulation {
-    /// Builds the stack of a scenario in space, settles it, and prepares its run on a given ground.
+    /// Builds the three-dimensional stack of a scenario, settles the stack, and prepares its run under a given ground
+    /// motion.
     ///
     /// # Errors
-    /// If the stack cannot be built in space or does not stand, or the run would be too long or need too much memory.
+    /// If the stack cannot be built in three dimensions or does not stand, or if the run would be too long or need too
+    /// much memory.
     pub fn new(scenario: &Scenario, ground: Ground) -> Result<Self, RunFailure> {
         Ok(Prepared::new(scenario, ground)?.start())
     }
 
-    /// Advances by up to `most` steps, less if the run ends before. Impacts divide a step into several.
+    /// Advances by `most` steps, or by fewer if the run ends earlier. During impacts, a time step is divided into
+    /// several steps.
     ///
     /// Returns the number of steps that were taken.
     pub fn step(&mut self, most: u64) -> u64 {
@@ -229,12 +235,13 @@ impl Simulation {
         watch.conclude(fixed, state, ended, work, ending)
     }
 
-    /// Sets the force from outside on a body, in place of an earlier one; it acts until it is changed.
+    /// Sets the external force on a body. It replaces the previous external force on this body, and acts until it is
+    /// changed.
     ///
     /// The work of such forces is part of the energy balance.
     ///
     /// # Errors
-    /// If there is no such body, it follows the ground, or a number is not finite.
+    /// If there is no such body, if the body follows the ground, or if a number is not finite.
     pub fn apply(&mut self, applied: Applied<Spatial>) -> Result<(), ApplyError> {
         let model = &self.fixed.stack.model;
         self.stepper.apply(model, &mut self.state, &mut self.scratch, applied)
@@ -245,7 +252,8 @@ impl Simulation {
         self.state.time
     }
 
-    /// Returns the time (s) at which the run ends unless it ends earlier, at rest or after a collapse.
+    /// Returns the latest time (s) at which the run ends. The run may end earlier, when all bodies are at rest or after
+    /// a collapse.
     pub fn end_time(&self) -> f64 {
         self.fixed.settings.end_time
     }
@@ -289,7 +297,7 @@ impl Simulation {
         self.stepper.energy.summary(0)
     }
 
-    /// Returns the fates of all bodies so far.
+    /// Returns the outcomes of all bodies so far.
     pub fn fates(&self) -> &Fates {
         &self.watch.fates
     }
@@ -337,7 +345,7 @@ impl Watch {
             };
             self.frames.twists.push(state.twists.iter().map(twist).collect());
             let push = |(pair, center): (PairForce<Spatial>, Vec3)| {
-                // Each force is that on the body that it pushes up.
+                // The recorded force is the one on that body of the pair which is pushed upward.
                 let force = if pair.force.z < 0.0 { -pair.force } else { pair.force };
                 let numbers = [center.x, center.y, center.z, force.x, force.y, force.z];
                 (pair.pair, numbers)
@@ -347,8 +355,8 @@ impl Watch {
         }
     }
 
-    /// Observes an accepted step of one lane, without frames. `own` is the state of the lane, of which only time, poses
-    /// and twists are current, with the wrenches on its bodies.
+    /// Observes an accepted step of one lane, without recording frames. `own` is the state of the lane, in which only
+    /// time, poses and twists are current; `wrenches` are the wrenches on the bodies of the lane.
     pub(crate) fn observe_lane<R: Real>(
         &mut self,
         lane: usize,
@@ -356,7 +364,7 @@ impl Watch {
         state: &State<Spatial<R>>,
         scratch: &Scratch<Spatial<R>>,
     ) {
-        // The state in which the first loss of seat is found still counts as standing.
+        // The stack still counts as standing in the first state in which a body has left its seat.
         let standing = self.fates.collapse().is_none();
         self.fates.observe_bodies(own.time, &own.poses, wrenches);
         self.elements.observe_lane(lane, state, standing, scratch);
@@ -372,7 +380,7 @@ impl Watch {
         work: Work,
         ending: Ending,
     ) -> Run {
-        // Other simulations may share the stack.
+        // The stack is copied if other simulations share it.
         let Fixed { scenario, ground, stack, settled, settings, .. } = Arc::unwrap_or_clone(fixed);
         let Self { fates, elements, seats, frames, .. } = self;
         let judge = || judge(&stack, &fates);
@@ -408,7 +416,7 @@ impl Watch {
         }
     }
 
-    /// Ends the run if one of its criteria is met in the state that was observed last.
+    /// Ends the run if the last observed state meets one of the criteria for the end of a run.
     pub(crate) fn end(&mut self, state: &State<Spatial>) {
         if self.ending.is_some() {
             return;

@@ -1,4 +1,4 @@
-//! Assembly of the stack or the free scene of a scenario in space.
+//! Assembly of the three-dimensional stack or free scene of a scenario.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::known::known;
 pub use crate::part::Part;
 use crate::rack::Heights;
 
-/// A stack in space, or the bodies of a free scene in space.
+/// A three-dimensional stack, or the bodies of a three-dimensional free scene.
 #[derive(Clone, Debug)]
 pub struct Stack {
     /// The model.
@@ -71,8 +71,8 @@ impl Stack {
     /// ```
     ///
     /// # Errors
-    /// If the scenario has a feature that is not supported in space (the error names its field), or if the stack cannot
-    /// be built.
+    /// If the scenario has a feature that is not supported in three dimensions (the error names its field), or if the
+    /// stack cannot be built.
     pub fn of(scenario: &Scenario) -> Result<Self, RunFailure> {
         if let Scene::Spatial(scene) = &scenario.scene {
             return crate::free::assemble(scenario, scene);
@@ -112,19 +112,19 @@ impl Stack {
     }
 }
 
-/// Returns the specification of the stack of a scenario; fails if the scenario has no stack in space.
+/// Returns the specification of the stack of a scenario; fails if the scenario has no three-dimensional stack.
 fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     match &scenario.scene {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
         Scene::Stack { .. } | Scene::Free(_) | Scene::Spatial(_) => Err(AssembleError::NotInSpace {
             field: "stack.view",
-            reason: "this needs a stack in space, but the scenario has none: set stack.view to \"spatial\""
+            reason: "this needs a three-dimensional stack, but the scenario has none: set stack.view to \"spatial\""
                 .into(),
         }),
     }
 }
 
-/// Returns the scenario with its stack in a plane view.
+/// Returns the scenario with the stack as a plane model in the given view.
 pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     let mut plane = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut plane.scene {
@@ -133,8 +133,8 @@ pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     plane
 }
 
-/// Substepping for fast contacts in space, where barrels hit the floor with their rims and light racks bounce on their
-/// own barrels.
+/// Substepping for fast contacts. They occur in three dimensions, where barrels hit the floor with their rims and light
+/// racks bounce on their own barrels.
 const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 
 /// Time stepping of a stack, and reach of its racks; both are taken from its plane models.
@@ -143,7 +143,7 @@ struct Pace {
     step: f64,
     /// Number of substeps during impacts.
     substeps: f64,
-    /// Largest penetration (m) that steps of full length resolve, by the name of the contact law.
+    /// For each contact law, by name: the largest penetration (m) at which time steps of full length are short enough.
     depths: BTreeMap<String, f64>,
     /// [`Substepping::resting_allowance`]: the smallest value of all plane models.
     resting_allowance: f64,
@@ -167,8 +167,8 @@ impl Pace {
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                // Laws are matched by name: a plane model that represents several seats by one numbers its laws
-                // differently.
+                // Contact laws are matched by name, because a plane model that represents several seats by one numbers
+                // its contact laws differently.
                 for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
                     let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);
@@ -181,7 +181,7 @@ impl Pace {
         Ok(Self { step, substeps, depths, resting_allowance, reach })
     }
 
-    /// Returns the substepping for a model with the given laws.
+    /// Returns the substepping for a model with the given contact laws.
     fn substepping(&self, laws: &[Interface<Spatial>]) -> Substepping<f64> {
         let depth = |law: &Interface<Spatial>| self.depths.get(&law.name).copied();
         let depths = laws.iter().map(|law| depth(law).unwrap_or(f64::INFINITY));
@@ -195,9 +195,9 @@ impl Pace {
     }
 }
 
-/// Returns plane models of a stack, each with the overrides that apply to its section: one for every row in the view
-/// across the barrels, or one for every column in the view along the barrels. Without overrides of single columns or
-/// rows, one model is enough.
+/// Returns the scenarios of the plane models of a stack in a view: one for every row in the view across the barrels, or
+/// one for every column in the view along the barrels. Each has the overrides that apply to its row or column. If no
+/// override names a column or a row, one model is enough.
 fn cuts(scenario: &Scenario, spec: &StackSpec, view: View) -> Vec<Scenario> {
     let rack = &spec.rack;
     let (count, per_rack) = match view {

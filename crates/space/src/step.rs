@@ -1,4 +1,4 @@
-//! Time step of a free scene in space, derived from its contacts and initial spins.
+//! Time step of a three-dimensional free scene, derived from its contacts and initial spins.
 
 use barrelstack::RunFailure;
 use barrelstack::scenario::{Method, Scenario};
@@ -8,20 +8,20 @@ use barrelstack_dynamics::{
     Body, ContactPair, Interface, Model, Motion, Nodes, NormalLaw, Rotation3, Spatial, Vec3,
 };
 
-/// Time step as a fraction of the critical time step, as in the plane.
+/// Time step as a fraction of the critical time step, as in the plane models.
 const SHARE: f64 = 0.3;
 
-/// Time step as a fraction of the time in which dampers stop a body, as in the plane.
+/// Time step as a fraction of the time in which dampers stop a body, as in the plane models.
 const DAMPING_SHARE: f64 = 0.33;
 
-/// Penetration (m) at which nonlinear laws are linearized, as in the plane.
+/// Penetration (m) at which nonlinear contact laws are linearized, as in the plane models.
 const REFERENCE: f64 = 0.01;
 
-/// Maximum step (s), used if nothing requires a shorter one.
+/// Largest time step (s), used if no contact and no spin requires a shorter one.
 const LONGEST: f64 = 1e-3;
 
-/// Maximum rotation (rad) of a body in a step at its initial spin. With this limit, the relative error of the energy of
-/// a tumbling block stays below 3e-9.
+/// Largest rotation (rad) of a body during a time step at its initial spin. With this limit, the relative energy error
+/// of a tumbling block stays below 3e-9.
 const TURN: f64 = 5e-3;
 
 /// Returns the time step (s) that a scenario states or, by default, a step derived from its contacts and initial spins.
@@ -61,9 +61,9 @@ fn adapts(method: Method) -> bool {
     matches!(method, Method::BogackiShampine { .. })
 }
 
-/// Returns the largest ratio, over all pairs and their free bodies, of a contact constant (stiffness or damping) to the
-/// effective mass of the body. The effective mass accounts for rotation about the center of mass with the longest
-/// lever.
+/// Returns the largest ratio of a contact constant (stiffness or damping) to the effective mass of a body, over all
+/// contact pairs and their free bodies. The effective mass accounts for rotation about the center of mass with the
+/// longest lever.
 ///
 /// A body may have contacts both below and above, so every constant counts twice.
 fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f64 {
@@ -78,8 +78,8 @@ fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f6
     most
 }
 
-/// Returns twice the number of contacts of a node set that can bear at the same time, divided by the effective mass
-/// (kg) of the body at a contact.
+/// Returns a ratio (1/kg): twice the number of contacts of a node set that can bear at the same time, divided by the
+/// effective mass of the body at a contact.
 fn bearing(body: &Body<Spatial>, nodes: &Nodes<Spatial>) -> f64 {
     2.0 * contacts(nodes) * (1.0 / body.mass + turned(body))
 }
@@ -119,7 +119,8 @@ fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     }
 }
 
-/// Returns the largest ratio, over the principal axes, of the squared longest lever to the moment of inertia (1/kg).
+/// Returns the largest ratio (1/kg), over the principal axes, of the square of the longest lever to the moment of
+/// inertia.
 fn turned(body: &Body<Spatial>) -> f64 {
     let upright = Rotation3::identity();
     let mut most: Vec3 = Vec3::default();

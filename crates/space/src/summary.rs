@@ -1,4 +1,4 @@
-//! Summary of a run in space as one JSON document, with the same numbers as the printed results.
+//! Summary of a three-dimensional run as one JSON document, with the same numbers as the printed results.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
@@ -17,7 +17,7 @@ use crate::fate::Heading;
 use crate::run::Run;
 use crate::variants::{Case, demands};
 
-/// Summarizes a run; `stated` is the scenario as stated, of which the run may be a variant.
+/// Summarizes a run. `stated` is the scenario as stated; the run may be a variant of it.
 pub fn of(run: &Run, stated: &Scenario) -> Summary {
     let sound = !matches!(run.outcome, Outcome::Invalid { .. });
     let motion = |ground: &barrelstack::Ground| ground.motion.as_ref().map(MotionSummary::of);
@@ -76,7 +76,8 @@ fn settings(run: &Run) -> RunInSpace {
     }
 }
 
-/// Counts variants and barrels that fall in each direction.
+/// Counts, for each direction, the variants whose first body leaves its seat in this direction and the barrels that
+/// fall in it.
 pub fn directions(cases: &[Case]) -> Directions {
     let first = |heading| count(cases, |case| usize::from(case.first == Some(heading)));
     let debris =
@@ -133,7 +134,7 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             peak_slip_along: fate.peak_slip[1],
             peak_uplift: fate.peak_uplift,
             peak_tilt: (part.kind == PartKind::Rack).then_some(fate.until_loss.tilt),
-            // One more, since the first body, the ground, is omitted.
+            // The index is larger by one, because the ground, which is the first body, is omitted from the list.
             stress_amplification: run.seats.amplification(at + 1, Span::UntilLoss),
             mean_stress_amplification: run.seats.mean_amplification(at + 1, Span::UntilLoss),
         })

@@ -1,5 +1,5 @@
-//! Variants of a stack in space. They are sampled and evaluated as in a plane, and the directions of falls are recorded
-//! in addition.
+//! Variants of a three-dimensional stack. They are sampled and evaluated like those of a plane model; in addition, the
+//! directions of falls are recorded.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -28,10 +28,10 @@ use crate::simulation::Prepared;
 use crate::stack::Stack;
 use crate::summary::{self, Summary};
 
-/// Result of one variant in space.
+/// Result of one variant of a three-dimensional stack.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The same results as for a case in a plane, but without trails.
+    /// The same results as for a case of a plane model, but without the paths of the barrels.
     pub result: CaseResult,
     /// Direction in which the first body left its seat, if any body did.
     pub first: Option<Heading>,
@@ -39,7 +39,7 @@ pub struct Case {
     pub debris: Vec<Heading>,
 }
 
-/// Result of a scenario in space.
+/// Result of a three-dimensional scenario.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The scenario as stated, with its records in memory.
@@ -178,7 +178,8 @@ pub fn demands(run: &Run, span: Span) -> Demands {
 /// returned as interrupted.
 ///
 /// The first result is that of the scenario as stated, followed by those of the variants in the order of their numbers.
-/// Unlike in a plane, no variant exchanges the horizontal components: all variants keep the azimuth of the scenario.
+/// Unlike in a plane model, no variant exchanges the horizontal components: all variants keep the azimuth of the
+/// scenario.
 ///
 /// # Errors
 /// If the motion cannot be read, or the stack as stated cannot be built or does not stand.
@@ -194,8 +195,8 @@ pub fn run_all(
     Ok(run_some(&plane, &ground, &numbers, &|done| observer(done, numbers.len())))
 }
 
-/// Runs variants by their numbers on all cores; the observer receives the number of finished variants, and may stop the
-/// work.
+/// Runs the variants with the given numbers on all cores. The observer receives the number of finished variants, and
+/// may stop the work.
 fn run_some(
     plane: &Plane,
     ground: &Ground,
@@ -205,10 +206,11 @@ fn run_some(
     run_each(numbers, &|number| (plane.trial(*number), ground.clone()), observer)
 }
 
-/// Runs cases, each of which `build` makes from an item, on all cores; the observer receives the number of finished
-/// cases, and may stop the work. Unfinished cases are returned as interrupted.
+/// Runs one case for each item, on all cores; `build` creates the case from the item. The observer receives the number
+/// of finished cases, and may stop the work. Unfinished cases are returned as interrupted.
 ///
-/// Cases of one topology run side by side in the lanes of a vector register, with the bits of single runs.
+/// Cases with the same topology run side by side in the lanes of a vector register. The results are bit-identical to
+/// those of separate runs.
 pub fn run_each<T: Sync>(
     items: &[T],
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
@@ -217,7 +219,7 @@ pub fn run_each<T: Sync>(
     run_all_of(true, items, build, observer)
 }
 
-/// Runs like [`run_each`], but each core runs one case after the other.
+/// Runs cases as [`run_each`] does, but each core runs one case after the other.
 pub fn run_each_alone<T: Sync>(
     items: &[T],
     build: &(dyn Fn(&T) -> (Scenario, Ground) + Sync),
@@ -258,7 +260,7 @@ fn run_all_of<T: Sync>(
     pool::map(&chunks, work, &|_| ()).concat()
 }
 
-/// Largest number of cases that a thread takes at once: enough to fill its lanes for most of the time.
+/// Largest number of cases that a thread takes at once; with this number, its lanes are full for most of the time.
 const BATCH: usize = 32;
 
 /// Runs cases on one core: those that can share their steps in lanes, and all others one after the other.
@@ -296,7 +298,7 @@ fn run_chunk<T>(
     }
 }
 
-/// A stack in space to which a change is applied as a possible remedy, and its variants.
+/// A three-dimensional stack to which a change is applied as a possible remedy, and its variants.
 struct InSpace {
     plane: Plane,
     ground: Ground,
@@ -338,13 +340,13 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, as_it_is, &prepare, observer)
 }
 
-/// Returns the variants of a scenario in space, with its records in memory.
+/// Returns the variants of a three-dimensional scenario, with its records in memory.
 fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {
     let mut all = planes(scenario)?;
     Ok(all.swap_remove(0))
 }
 
-/// Runs all variants of a scenario in space, and then the run that is shown.
+/// Runs all variants of a three-dimensional scenario, and then the run that is shown.
 ///
 /// The observer may stop the work; the results until then are returned.
 ///
@@ -358,7 +360,8 @@ pub fn answer(
     answered(scenario, choice, None, observer)
 }
 
-/// Builds an [`answer`]; `known` has the cases of the scenario as stated and of all its variants, if they were run.
+/// Builds an [`answer`]. `known` contains the cases of the scenario as stated and of all its variants, if these were
+/// already run.
 pub(crate) fn answered(
     scenario: &Scenario,
     choice: RunChoice,

@@ -1,4 +1,4 @@
-//! Repeats of a run in space.
+//! Repeats of a three-dimensional run with small changes, which show how far its result can be trusted.
 
 use std::ops::ControlFlow;
 

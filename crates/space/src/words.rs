@@ -1,4 +1,4 @@
-//! Sentences about a stack in space: the sentences of a plane model, with the addition of directions.
+//! Sentences about a three-dimensional stack: the sentences about a plane model, with the addition of directions.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -55,7 +55,7 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
     }
 }
 
-/// Returns the words for a direction, in the form that follows a verb.
+/// Returns the words for a direction, such as "across the barrels, to the right".
 pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
@@ -90,8 +90,8 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall{}, {} end up across the barrels from their position at \
-                 rest, and {} along the barrels.",
+                "Of the barrels that fall{}, {} move mainly across the barrels from their position at rest to their \
+                 final position, and {} mainly along the barrels.",
                 summary
                     .ensemble
                     .as_ref()

@@ -1,5 +1,5 @@
-//! Problems from files. Each file is the scenario of a free scene, followed by a table `[expect]` with the requested
-//! quantity and the exact answer.
+//! Problems from files. Each file contains a scenario of individual bodies that do not form a stack (a *free scene*),
+//! followed by a table `[expect]` with the requested quantity and the exact answer.
 //!
 //! ```toml
 //! [expect]
@@ -48,7 +48,8 @@ impl Quantity {
         }
     }
 
-    /// Returns the rotation (rad) beyond which the boundary counts as exceeded.
+    /// Returns the rotation (rad) above which the body counts as overturned or lifted; `None` for quantities that are
+    /// not boundaries.
     fn beyond(self) -> Option<f64> {
         match self {
             Self::FirstUpright | Self::Displacement => None,

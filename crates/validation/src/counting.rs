@@ -136,7 +136,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Runs a case with counting numbers.
+    /// Runs a case, and counts its steps, touching nodes and arithmetic operations.
     pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, Planar, D>) -> Self {
         let mut one = One { case: Some(case), touching: 0, steps: 0 };
         let operations = Operations::of(|| run_batch::<Planar<Counting>, _>(method, &mut one));

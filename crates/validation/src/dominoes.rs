@@ -24,13 +24,15 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns the speed of the wave in the last third of the row, as a fraction of the root of gravity and height.
+    /// Returns the speed of the wave in the last third of the row, as a multiple of √(g h), where `h` is the height of
+    /// a domino.
     ///
     /// # Errors
     /// If the room cannot be run, or if the wave does not reach the last domino.
     pub fn speed(&self) -> Result<f64, Failure> {
         let pitch = self.spacing + DOMINO;
-        // The closer the dominoes, the more of them the first one must lift over their edges.
+        // The closer the dominoes are, the more of them the first domino must push over, so it starts with a higher
+        // spin.
         let spin = if self.spacing < 0.15 { 3.0 } else { 1.5 };
         let domino = |spin: f64| {
             // The first domino turns about its lower edge.
@@ -77,19 +79,19 @@ impl Row {
     }
 }
 
-/// Returns the speed of the wave for dominoes that are rigid, smooth and do not rebound, as a fraction of the root of
-/// gravity and height.
+/// Returns the speed of the wave for rigid, smooth dominoes that do not rebound, as a multiple of √(g h), where `h` is
+/// the height of a domino.
 pub fn theory(thickness: f64, spacing: f64) -> f64 {
     theory_by(thickness, spacing, 2000)
 }
 
-/// Returns the speed like [`theory`], from an integral with a given number of steps.
+/// Returns the same speed as [`theory`], from a numerical integral with a given number of steps.
 ///
-/// All dominoes behind the front lean on each other, so the row has one degree of freedom, the angle θ₁ of its front:
-/// `sin(θᵢ₊₁ − θᵢ) = (s + d) cos θᵢ − d` in heights (van Leeuwen 2010). With `J = Σ (dθᵢ/dθ₁)²`, the energy
-/// `½ I ω² J + V` is constant until the front reaches the next domino, at `sin θ₁ = s`. There the motion is projected
-/// on that of a row which is longer by one, so `ω` becomes `ω J/(J + 1)`. In a steady wave the loss equals the energy
-/// that one domino releases.
+/// All dominoes behind the front lean on each other, so the row has one degree of freedom, the angle θ₁ of its front
+/// domino: `sin(θᵢ₊₁ − θᵢ) = (s + d) cos θᵢ − d`, where the spacing `s` and the thickness `d` are fractions of the
+/// height (van Leeuwen 2010). With `J = Σ (dθᵢ/dθ₁)²`, the energy `½ I ω² J + V` is constant until the front domino
+/// reaches the next domino, at `sin θ₁ = s`. The impact adds one domino to the moving row and changes `ω` to
+/// `ω J/(J + 1)`. In a steady wave the energy lost at an impact equals the energy that one domino releases as it falls.
 fn theory_by(thickness: f64, spacing: f64, steps: u32) -> f64 {
     let pitch = spacing + thickness;
     // Units: mass, gravity and height are one.
@@ -102,7 +104,7 @@ fn theory_by(thickness: f64, spacing: f64, steps: u32) -> f64 {
         (angle + asin(reach), rate)
     };
     let last = acos(thickness / pitch);
-    // J and V of the row with its front at an angle; the dominoes behind are as in an endless row.
+    // J and V of an endless row whose front domino is at an angle.
     let row = |front: f64| {
         let (mut angle, mut rate) = (front, 1.0);
         let (mut sum, mut potential) = (0.0, 0.0);
@@ -147,10 +149,9 @@ mod tests {
 
     #[test]
     fn the_theory_has_the_limits_that_follow_by_hand() {
-        // A domino that stands alone: at a large spacing the train behind the front is short, and the front falls under
-        // its own weight and the push of one more.
+        // At a large spacing only few dominoes lean on the front domino and push it, so the wave is slower.
         assert!(theory(DOMINO, 0.7) < theory(DOMINO, 0.2));
-        // Halving the steps of the integral changes nothing.
+        // Halving the steps of the integral hardly changes the result.
         let (fine, coarse) = (theory_by(DOMINO, 0.3, 4000), theory_by(DOMINO, 0.3, 2000));
         assert!((fine / coarse - 1.0).abs() < 1e-6, "{fine} {coarse}");
     }

@@ -191,7 +191,7 @@ mod tests {
     use super::*;
     use crate::drive::Shake;
 
-    /// Returns the least strength that overturns the block, in units of g tan α.
+    /// Returns the strength of the pulse at the boundary between safe and overturned, in units of g tan α.
     fn border(
         rocker: &Rocker,
         pulse: impl Fn(f64) -> Shake,

@@ -19,10 +19,9 @@ pub const LIMITS: [&str; 7] = [
      convergence is meaningless for errors that small.",
     "The calibrated damping is valid for one stiffness, one slenderness and one mass; it hardly \
      depends on the amplitude (see the notes of restitution/rocking-target).",
-    "Nodes between the corners change the impact: with three nodes on the base, a block of α = \
-     0.25 has η between 0.92 and 0.96 instead of 0.908, with eleven nodes between 0.94 and 0.97, \
-     depending on the damping. More nodes on a flat face do not make the ratio converge to \
-     Housner's, so the rocking problems use two nodes.",
+    "Nodes between the corners change the impact. For a block of α = 0.25, Housner's η is 0.908; with three nodes on \
+     the base, η is between 0.92 and 0.96, and with eleven nodes between 0.94 and 0.97, depending on the damping. \
+     More nodes on a flat face do not make the ratio converge to Housner's, so the rocking problems use two nodes.",
     "Overturning boundaries are valid for blocks that cannot slide and whose contact is stiff. Ranges \
      of strength that overturn a block after many impacts under slow pulses (ω/p below 1.5) are \
      too narrow for a comparison and are left out.",
@@ -69,7 +68,7 @@ pub const ABSENT: [(&str, &str); 10] = [
     ("arch of 27 blocks with friction modes", "its published modes were not available."),
     (
         "heavy top, Euler disc",
-        "only steady precession and steady rolling are covered, by the problems in space.",
+        "only steady precession and steady rolling are covered, by the three-dimensional problems.",
     ),
     (
         "contact suites of Kratos (9 cases) and of Chung and Ooi (8 tests)",

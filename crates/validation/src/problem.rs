@@ -229,8 +229,8 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// Adds a bisection between two brackets (see [`border`]). The brackets lie on both sides of the exact answer;
-    /// their distance from the answer is a fraction of the answer.
+    /// Adds a bisection between two brackets (see [`border`]), which are `1 - share` and `1 + share` times the exact
+    /// answer.
     pub fn at_border(
         self,
         share: f64,

@@ -1,9 +1,9 @@
-//! Isolators in space: a platform under every bottom rack. At each corner, the platform has a bearing that slides on a
-//! flat surface or in a dish.
+//! Isolators of three-dimensional stacks: a platform under every bottom rack. At each corner, the platform has a
+//! bearing that slides on a flat surface or in a dish.
 //!
-//! Springs and stops act at the middles of the four sides of the platform, so that they resist the rotation of the
-//! platform as well. Since they act separately across and along the barrels, the platform may move farther than the
-//! stroke in a diagonal direction.
+//! Springs and stops act at the middles of the four sides of the platform, so they also resist rotation of the platform
+//! about the vertical. The stops limit the displacements across and along the barrels separately, so the platform may
+//! move farther than the stroke in a diagonal direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Isolators, Path};
@@ -41,8 +41,8 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
             }
         }
         for (side, end) in builder.sides(half.x, half.y) {
-            // The guides at the left and right ends act along the barrels, those at the near and far ends across
-            // them.
+            // The guides at the left and right sides act along the barrels. The guides at the near and far sides act
+            // across the barrels.
             let across = end.x == 0.0;
             let axis = if across { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
             let link = Link {

@@ -1,5 +1,5 @@
-//! Lids in space. The lids are round: a barrel is released as soon as it has moved out from under its lid in any
-//! direction.
+//! Lids of three-dimensional stacks. The lids are round: a barrel is released as soon as it has moved out from under
+//! its lid in any direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Lids, lowest};

@@ -1,8 +1,8 @@
-//! Attachment of devices to a stack in space; each device has a file of its own.
+//! Attachment of devices to a three-dimensional stack; each device has a file of its own.
 //!
 //! The definition, loads, cost and descriptions of a device are those of the plane models. A device that acts in both
-//! plane models acts in both directions in space. Chocks are part of the racks ([`tubes`](crate::rack::tubes)), and
-//! pads are part of the contact laws.
+//! plane models acts in both horizontal directions here. Chocks are part of the racks ([`tubes`](crate::rack::tubes)),
+//! and pads are part of the contact laws.
 
 mod isolator;
 mod lid;
@@ -24,7 +24,7 @@ use crate::stack::Stack;
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
-    /// Length (m) of the unloaded element less the distance between its ends; negative for a pretensioned element.
+    /// Length (m) of the unloaded element minus the distance between its ends; negative for a pretensioned element.
     give: f64,
     /// `true` for a guide on a body that may turn about the axis of the guide.
     about_axis: bool,
@@ -96,7 +96,7 @@ impl Builder<'_> {
         if self.spec.mirror { [right, left, near, away] } else { [left, right, near, away] }
     }
 
-    /// Returns the rack on the same level at an offset of columns and rows from another rack.
+    /// Returns the rack on the same level that is a number of columns and rows away from another rack.
     fn beside(&self, rack: BodyId, [columns, rows]: [i64; 2]) -> Option<BodyId> {
         let at = |id: BodyId| {
             let part = &self.parts[id];

@@ -1,5 +1,5 @@
-//! Straps in space: the straps of both plane models, each at a position where the strap is vertical on the undeformed
-//! stack.
+//! Straps of three-dimensional stacks: the straps of both plane models, each placed so that it is vertical on the
+//! undeformed stack.
 //!
 //! A strap over a barrel runs around the barrel at the middle of its length, as in the plane across the barrels: the
 //! strap is attached at the ends of the horizontal diameter, and runs from there straight down to the rack. Where

@@ -1,6 +1,6 @@
-//! Ties in space, from the middles of the four sides of a rack. The ties on the left and right sides are as in the
-//! plane across the barrels. The ties on the near and far sides are as in the plane along the barrels, whose left side
-//! is the near side.
+//! Ties of three-dimensional stacks, from the middles of the four sides of a rack. The ties on the left and right sides
+//! are those of the plane model across the barrels. The ties on the near and far sides are those of the plane model
+//! along the barrels, in which the near side is on the left.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};

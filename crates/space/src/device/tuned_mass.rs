@@ -1,5 +1,5 @@
-//! Tuned masses in space. A mass swings in both horizontal directions, with the spring, damper and stops of the plane
-//! model in each direction.
+//! Tuned masses of three-dimensional stacks. A mass swings in both horizontal directions. In each direction it has the
+//! spring, damper and stops of the plane model.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::TunedMass;

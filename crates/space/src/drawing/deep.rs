@@ -10,10 +10,10 @@ use super::{PLATE, Sight, events, moment, top};
 use crate::part::Part;
 use crate::run::Run;
 
-/// Number of steps into which the profile of a barrel is divided.
+/// Number of intervals into which the profile of a barrel is divided.
 const PARTS: u32 = 12;
 
-/// Returns the bodies of a run at some frames, with the events of all views.
+/// Returns the three-dimensional scene of a run in the given frames, with the events of all views.
 pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
     let bodies = run.stack.parts.iter().zip(run.stack.model.bodies());
     let own: Vec<usize> = (0..run.stack.parts.len()).collect();
@@ -68,8 +68,8 @@ pub(super) fn of_bodies<'a>(
     }
 }
 
-/// Returns the contact forces in some frames, each as its point and its components. A pair keeps its place in the list
-/// while it touches; a place without a pair has a force of zero.
+/// Returns the contact forces in the given frames, each as its point and its components. A contact pair keeps its place
+/// in the list while it touches; a place without a contact pair has a force of zero.
 fn forces(run: &Run, frames: &[usize]) -> Vec<Vec<[Point3; 2]>> {
     let mut places: Vec<Option<usize>> = Vec::new();
     let list = |frame: &usize| {
@@ -98,8 +98,8 @@ fn point(of: Vec3) -> Point3 {
     [of.x, of.y, of.z]
 }
 
-/// Returns a body with its solids. Half-spaces are left out because the picture has a floor of its own, and dishes
-/// because they lie in the floor.
+/// Returns a body with its solids. Half-spaces are left out because the picture has a floor of its own; dishes are left
+/// out because they lie in the floor.
 fn drawn(part: &Part, body: &Body<Spatial>) -> DepthBody {
     let mut volumes: Vec<Volume> = Vec::new();
     let mut barrel = false;

@@ -1,4 +1,5 @@
-//! Drawing of a body in a view direction: the outlines of its solids, and lines that show its rotation.
+//! Drawing of a three-dimensional body in a view direction: the outlines of its solids, and lines that show its
+//! rotation.
 
 use std::f64::consts::TAU;
 
@@ -18,8 +19,8 @@ pub(super) struct BodyView {
 }
 
 impl BodyView {
-    /// Creates the view of a body, given the axes of the page that point right and up, in the body frame, and the number
-    /// of steps of the view direction per right angle.
+    /// Creates the view of a body. `page` holds the axes of the page that point right and up, in the body frame;
+    /// `steps` is the number of steps per right angle to which the view direction is rounded.
     pub(super) fn of(kind: PartKind, page: [Vec3; 2], steps: f64) -> Self {
         let toward = page[0].cross(page[1]);
         let axis = Vec3::new(1.0, 0.0, 0.0);
@@ -32,7 +33,7 @@ impl BodyView {
             let around = side.unit_or(Vec3::new(0.0, 0.0, 1.0));
             let (sin, cos) = math::sin_cos(tilt);
             let from = axis * sin + around * cos;
-            // In a view of its head, the drawing shows its rolling.
+            // Only in a view of its head does the drawing show how the body rolls.
             let head = sin.abs() > 0.999;
             let from = if head { axis * tilt.signum() } else { from };
             (from, if head { Vec3::new(0.0, 1.0, 0.0) } else { axis })
@@ -99,7 +100,7 @@ impl BodyView {
                         rings.flat_map(ring).map(|p| flat(place(p))).collect(),
                     )));
                     if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
-                        // Same marks as in the plane.
+                        // The marks are the same as in the drawings of plane models.
                         marks = SceneBody::barrel(name, radius(0.0)).marks;
                     } else if self.kind == PartKind::Barrel {
                         // Hoops, on the visible side.

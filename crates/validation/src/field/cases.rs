@@ -1,4 +1,4 @@
-//! Simulated cases of a study, as its CSV file holds them.
+//! Simulated cases of a study, as stored in its CSV file.
 
 use super::FieldError;
 
@@ -29,7 +29,7 @@ pub const UNKNOWNS: usize = 4;
 pub struct FieldCase {
     /// Number of levels.
     pub levels: usize,
-    /// Azimuth (rad) of a stack in space.
+    /// Azimuth (rad) of the stack in a three-dimensional simulation; `None` in a plane.
     pub azimuth: Option<f64>,
     /// Unknowns: barrel–rack friction, rack–ground friction, stiffness of a seat (MN/m), and factor on the motion.
     pub unknowns: [f64; UNKNOWNS],
@@ -39,7 +39,7 @@ pub struct FieldCase {
     pub mode: String,
     /// Share of the barrels of the stack that fell.
     pub fallen: f64,
-    /// Direction in which the first body left its seat, for a stack in space.
+    /// Direction in which the first body left its seat, in a three-dimensional simulation.
     pub heading: String,
 }
 
@@ -48,9 +48,9 @@ pub struct FieldCase {
 pub struct FieldCases {
     /// Name of the study.
     pub study: String,
-    /// The cases with a verdict.
+    /// The cases whose simulation has an outcome (the stack falls or stands).
     pub cases: Vec<FieldCase>,
-    /// Number of cases without a verdict.
+    /// Number of cases whose simulation has no outcome.
     pub unjudged: usize,
 }
 
@@ -104,7 +104,7 @@ impl FieldCases {
         Ok(Self { study: study.to_owned(), cases, unjudged })
     }
 
-    /// Returns the cases of a height.
+    /// Returns the cases with a given number of levels.
     pub fn of(&self, levels: usize) -> impl Iterator<Item = &FieldCase> {
         self.cases.iter().filter(move |case| case.levels == levels)
     }
@@ -114,8 +114,8 @@ impl FieldCases {
         cases.fold((0, 0), |(falls, all), case| (falls + u32::from(case.falls), all + 1))
     }
 
-    /// Returns the share of the barrels that fell in the stacks of a height that fell. If no stack of this height
-    /// fell, returns the share over all heights; if no stack fell at all, returns 0.
+    /// Returns the mean share of barrels that fell, over the stacks of this height that fell. If no stack of this
+    /// height fell, returns the mean over all stacks that fell; if no stack fell at all, returns 0.
     pub fn fallen(&self, levels: usize) -> f64 {
         let mean = |cases: &mut dyn Iterator<Item = &FieldCase>| {
             let (mut sum, mut count) = (0.0, 0.0);

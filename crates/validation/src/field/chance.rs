@@ -1,4 +1,4 @@
-//! Chance that a stack falls as a function of its height and the unknowns, fitted to single cases.
+//! Probability that a stack falls, as a function of its height and the unknowns, fitted to individual cases.
 
 use barrelstack_motion::Random;
 
@@ -8,23 +8,23 @@ use super::cases::{FieldCase, FieldCases, UNKNOWNS};
 /// and factor on the motion.
 pub const MEDIANS: [f64; UNKNOWNS] = [0.30, 0.50, 3.0, 1.0];
 
-/// Units (of the natural logarithm) in which unknowns enter the polynomial.
+/// Units in which the natural logarithms of the unknowns enter the polynomial.
 const UNITS: [f64; UNKNOWNS] = [0.35, 0.2, 0.6, 0.25];
 
 /// Standard deviations of the normal priors of the coefficients: constant, linear, and all others.
 const LOOSE: [f64; 3] = [5.0, 3.0, 1.0];
 
-/// Logistic regression of second degree in the logarithms of the unknowns and in the height; for stacks in space also
-/// in the second harmonic of the azimuth.
+/// Logistic regression of second degree in the logarithms of the unknowns and in the height. For three-dimensional
+/// simulations, the regression also contains the cosine and the sine of twice the azimuth.
 ///
 /// ```text
 /// ln(p / (1 − p)) = β · f(levels, u, φ)
 /// ```
 ///
-/// The coefficients maximize the posterior density under independent normal priors, whose standard deviations are 5
-/// for the constant, 3 for the linear terms and 1 for all other terms, in units in which the simulated range is about
-/// ±1.3. Their uncertainty is sampled by a Metropolis chain, whose steps have the covariance of the Laplace
-/// approximation.
+/// The coefficients maximize the posterior density under independent normal priors. The standard deviations of the
+/// priors are 5 for the constant, 3 for the linear terms and 1 for all other terms, in units in which the simulated
+/// range of an unknown is about ±1.3. The uncertainty of the coefficients is sampled by a Metropolis chain, whose steps
+/// have the covariance of the Laplace approximation.
 #[derive(Clone, Debug)]
 pub struct Chance {
     /// Coefficients that maximize the posterior density.
@@ -112,7 +112,7 @@ impl Chance {
             unknowns: case.unknowns,
             azimuth: case.azimuth.unwrap_or(std::f64::consts::FRAC_PI_4),
         };
-        // Planes have no azimuth: their harmonics are zero.
+        // A stack in a plane has no azimuth, so the terms of the azimuth are zero.
         let row = |case: &FieldCase| {
             let mut row = features(case.levels, &point(case));
             if case.azimuth.is_none() {
@@ -135,7 +135,7 @@ impl Chance {
         };
         let mut coefficients = vec![0.0; size];
         let mut factor = vec![];
-        // Newton's method: the density is log-concave, and the prior keeps steps short.
+        // Newton's method converges, because the density is log-concave and the prior keeps the steps short.
         for _ in 0..60 {
             let mut slope: Vec<f64> =
                 coefficients.iter().enumerate().map(|(at, c)| -penalty(at) * c).collect();
@@ -194,8 +194,8 @@ impl Chance {
         Self { coefficients, draws }
     }
 
-    /// Returns the chance that a stack falls, with the coefficients of a draw (`draw` modulo the number of draws) or,
-    /// if `draw` is `None`, with those that maximize the posterior density.
+    /// Returns the probability that a stack falls. The coefficients are those of a draw (`draw` modulo the number of
+    /// draws) or, if `draw` is `None`, those that maximize the posterior density.
     pub fn of(&self, levels: usize, point: &Point, in_space: bool, draw: Option<usize>) -> f64 {
         let mut row = features(levels, point);
         if !in_space {
@@ -237,7 +237,7 @@ mod tests {
             let point = Point { unknowns: [friction, 0.5, 3.0, 1.0], azimuth: 0.0 };
             let found = fit.of(levels, &point, false, None);
             let expected = truth(levels, friction);
-            // Measured: 0.02 at most.
+            // The measured difference is 0.02 at most.
             assert!((found - expected).abs() < 0.05, "{levels} {friction}: {found} {expected}");
         }
     }

@@ -16,8 +16,8 @@ const HEAD: &str = "\
 
 This page compares what was observed of barrel stacks in real earthquakes with what the model predicts for the same \
 stacks, and states what follows for the constants that nobody has measured.
-No count by height, direction or floor has been published for any earthquake, so the observations give a likelihood \
-of the constants, but no calibration.
+Nobody has published counts of fallen stacks by height, direction or floor for any earthquake. The observations \
+therefore give likelihoods of the constants, but no calibration.
 
 ```sh
 cargo xtask field --records DIR    # runs what is not yet run, and writes this page
@@ -29,7 +29,7 @@ The results are data as well: [shares by height](field/shares.csv), [posteriors]
 [likelihoods](field/likelihood.csv), and every simulated stack (`field/cases/`), from the studies in \
 `field/studies/`.
 The record of Napa College comes with the program. The records of the other stations may not be distributed with it; \
-without `--records` the command skips their hindcasts, and names them.
+without `--records` the command skips the hindcasts of these stations, and lists them.
 ";
 
 const METHOD: &str = "\
@@ -37,30 +37,34 @@ const METHOD: &str = "\
 
 **Stacks.** The stacks are those of `demo-napa`: the rack `two-barrel`, two full Bordeaux barrels side by side, one \
 rack deep, two to six levels, each stack alone on an open floor.
-In the planes across and along the barrels, a horizontal component and the vertical component act. In space all three \
-components act, and the stack is turned by a random angle, since the orientation of the rows is not known.
+In the simulations in the planes across and along the barrels, one horizontal component and the vertical component \
+act. In the three-dimensional simulations (“in space” in the tables), all three components act, and the stack is \
+turned by a random angle, because the orientation of the rows is not known.
 Fallen barrels are counted 4 s after the first loss of a seat.
 
-**Unknowns.** Each case has its own draw of four unknowns, uniform in the logarithm: friction barrel–rack 0.12 to \
-0.75, friction rack–ground 0.30 to 0.85, stiffness of a seat 0.7 to 13 MN/m, and the motion at half to twice the \
-record.
-The prior of the first three is that of `[unknowns]`: medians of 0.30, 0.50 and 3 MN/m, with standard deviations of \
-the logarithm of 0.35, 0.20 and 0.6. The motion in a cellar differs from that at the station by a factor with a \
-median of 1 and a standard deviation of its logarithm of 0.3 (0.4 for Maule); this is an assumption.
+**Unknowns.** Each case has its own values of four unknowns, whose logarithms are uniformly distributed: barrel–rack \
+friction from 0.12 to 0.75, rack–ground friction from 0.30 to 0.85, stiffness of a seat from 0.7 to 13 MN/m, and a \
+factor on the motion from 0.5 to 2.
+The prior of the first three unknowns is that of `[unknowns]`: medians of 0.30, 0.50 and 3 MN/m, and standard \
+deviations of the natural logarithm of 0.35, 0.20 and 0.6, in the same order. The motion in a cellar differs from \
+that at the station by a factor with a median of 1 and a standard deviation of its logarithm of 0.3 (0.4 for Maule); \
+this is an assumption.
 
-**Probability of a fall.** In each study, this probability is fitted by a logistic regression of second degree in the \
-height and in the logarithms of the four unknowns, in space also with cos 2φ and sin 2φ of the azimuth φ. The \
-coefficients have a weak prior; their uncertainty is represented by draws from a Metropolis chain.
-The share of the barrels of a fallen stack that lie on the floor is the mean over the cases of that height that fell.
-Studies of only 10 to 60 cases (Concord, Waiau, and space at Curicó) determine the coefficients poorly, so the ranges \
-of their results mainly show the uncertainty of the fit.
+**Probability of a fall.** In each study, this probability is fitted by a logistic regression of second degree in \
+the height and in the logarithms of the four unknowns. For three-dimensional simulations, the regression also \
+contains cos 2φ and sin 2φ of the azimuth φ. The coefficients have a weak prior; their uncertainty is represented by \
+draws from a Metropolis chain.
+If a stack of a given height falls, the share of its barrels that fall is taken as the mean over the simulated \
+stacks of this height that fell.
+Studies of only 10 to 60 cases (Concord, Waiau, and the three-dimensional study of Curicó) determine the \
+coefficients poorly, so the ranges of their results mainly show the uncertainty of the fit.
 
 **Likelihoods.** Let p(h, u, a, φ) be the probability that a stack of height h falls with unknowns u, motion a and \
-azimuth φ, let w(h) be the proportions of the heights, of which every mixture is equally likely, and let d(h) be the \
-share of the barrels that fall with a stack. Then
+azimuth φ. Let w(h) be the proportion of the stacks that have the height h; all mixtures of heights are equally \
+likely. Let d(h) be the share of the barrels that fall with a stack of height h. Then
 
 ```text
-S = Σ w(h) p(h, u, a, φ) d(h)                       share of barrels, or without d of stacks
+S = Σ w(h) p(h, u, a, φ) d(h)                       share of barrels; without d(h), share of stacks
 barrels:  L(u) = E exp(−(S − value)² / 2 σ²)         over w, a, φ and the uncertainty of p
 most:     L(u) = E Φ((S − value) / σ)
 few:      L(u) = E Φ((value − S) / σ)
@@ -81,21 +85,21 @@ pub(super) fn page(observations: &Statements, cases: &[FieldCases], results: &Re
     text.push_str(METHOD);
     let _ = writeln!(
         text,
-        "For “half”, σ is 0.077, so that 35 to 65 % is the 95 % interval. An error of the model itself of \
-         {MODEL_ERROR:.2} is added to every σ in quadrature, for neighbors, walls and empty barrels that are not \
-         simulated; the posterior without this error is stated for comparison.\nAll results are from {DRAWS} draws of \
-         the unknowns. The two statements on Napa Barrel Care share the factor on the motion."
+        "For “half”, σ is 0.077, so that 35 to 65 % is the 95 % interval. A model error of {MODEL_ERROR:.2} is added \
+         to every σ in quadrature, because neighboring stacks, walls and empty barrels are not simulated. The \
+         posterior without this error is shown for comparison.\nAll results are from {DRAWS} draws of the unknowns. \
+         The factor on the motion is the same for both statements on Napa Barrel Care."
     );
     text.push_str(
-        "\n## What the model predicts\n\nTwo columns are untuned. “Catalog medians” is the probability of a fall with \
-         the medians of the catalog, under the record as it is. “Prior” is the mean over the prior, with the central \
-         90 % over the unknowns and over the uncertainty of the fit.\nThe column “given half” is tuned: it is the same \
-         mean over the posterior given half of the barrels. It is never stated without the untuned values.\nAt Napa \
-         College, prior and posterior include the factor on the motion; at the other stations the record is taken as \
-         it is.\n“Fall over the design” counts the cases that fall over the whole range of the unknowns, which is \
-         wider than the prior. It shows how the simulations were designed, and is not a share to be compared with a \
-         cellar.\nThe table [shares by height](field/shares.csv) also states the mean fitted probability of these \
-         cases, for comparison with their count.\n",
+        "\n## What the model predicts\n\nTwo columns are untuned. “Catalog medians” is the probability of a fall \
+         with the medians of the catalog, under the unscaled record. “Prior” is the mean over the prior, with the \
+         central 90 % over the unknowns and over the uncertainty of the fit.\nThe column “given half” is tuned: it \
+         is the same mean, but over the posterior given the statement “half” (half of the barrels are on the floor). \
+         It is always shown beside the untuned values.\nAt Napa College, prior and posterior include the factor on \
+         the motion; at the other stations the record is not scaled.\n“Fall over the design” counts the cases that \
+         fall over the whole range of the unknowns, which is wider than the prior. It shows how the simulations were \
+         designed, and is not a share to be compared with a cellar.\nThe table [shares by height](field/shares.csv) \
+         also states the mean fitted probability of these cases, for comparison with their count.\n",
     );
     for quake in &observations.earthquake {
         shares(&mut text, quake, results);
@@ -137,7 +141,8 @@ fn observed(text: &mut String, quake: &Earthquake) {
     }
 }
 
-/// Returns the view of a study: across, along, or in space.
+/// Returns the words for the view of a study: across the barrels, along the barrels, or in three dimensions ("in
+/// space").
 fn view(study: &str) -> &'static str {
     match study.rsplit('-').next() {
         Some("across") => "across",
@@ -204,7 +209,11 @@ fn posterior(text: &mut String, results: &Results) {
         };
         let _ = writeln!(text, "| {given} | {} | {:.0} |", cells.join(" | "), one.effective);
     }
-    text.push_str("\nThe factor on the motion given “maule” is that at Curicó.\nThe effective number of draws is (Σ L)² / Σ L²; if a statement gave no information, it would be the number of all draws.\n\n![Share of barrels on the floor against friction, and friction before and after the observations](field.svg)\n\nThe next tables give the likelihood of each statement if one unknown lies in a bin, averaged over everything else (the largest possible likelihood is 1):\n\n");
+    text.push_str("\nIn the row “maule”, the factor on the motion is that at Curicó.\nThe effective number of draws \
+                   is (Σ L)² / Σ L²; if a statement gave no information, it would equal the number of all \
+                   draws.\n\n![Share of barrels on the floor against friction, and friction before and after the \
+                   observations](field.svg)\n\nThe next tables give the likelihood of each statement if one unknown \
+                   lies in a bin, averaged over all other unknowns (the largest possible likelihood is 1):\n\n");
     let edges: [(usize, &str, &[f64]); 3] = [
         (0, "friction barrel–rack", &FRICTION),
         (1, "friction rack–ground", &GROUND),
@@ -248,7 +257,8 @@ fn predictions(text: &mut String, observations: &Statements, results: &Results) 
     }
 }
 
-/// Counts the falls of a study in space: those in which the first body left its seat along the barrels, and all.
+/// Returns two counts for a three-dimensional study: the falls in which the first body left its seat along the barrels,
+/// and all falls.
 fn along(cases: &[FieldCases], study: &str) -> (u32, u32) {
     let all = cases.iter().filter(|one| one.study == study).flat_map(|one| &one.cases);
     all.filter(|case| case.falls).fold((0, 0), |(along, all), case| {
@@ -257,7 +267,10 @@ fn along(cases: &[FieldCases], study: &str) -> (u32, u32) {
 }
 
 fn direction(text: &mut String, cases: &[FieldCases]) {
-    text.push_str("\n## Direction\n\nThe table counts the stacks in space, turned by random angles, whose first body left its seat along the barrels, among all that fall:\n\n| station | along the barrels | share, 95 % | first mode (cases) |\n| :--- | ---: | :--- | :--- |\n");
+    text.push_str("\n## Direction\n\nThe table is for the three-dimensional simulations, in which the stacks are \
+                   turned by random angles. Of all stacks that fall, it counts those whose first body leaves its \
+                   seat along the barrels:\n\n| station | along the barrels | share, 95 % | first mode (cases) |\n| \
+                   :--- | ---: | :--- | :--- |\n");
     for (study, name) in
         [("south-napa-space", "Napa College"), ("curico-space", "Curicó"), ("waiau-space", "Waiau")]
     {
@@ -279,10 +292,15 @@ fn direction(text: &mut String, cases: &[FieldCases]) {
             modes.join(", ")
         );
     }
-    text.push_str("\nThe statement “Racks slid off the ends of the barrels below” names this direction, and most stacks of the model fall in it; since nobody counted, no likelihood is given.\nThe mode agrees less well: at Napa College more stacks of the model lose a barrel first (“ejection”) than a rack, which no report mentions. However, a barrel on a leaning rack counts as fallen once it is low enough, so the distinction between the two modes is a convention (see [space.md](space.md)).\n");
+    text.push_str("\nThe statement “Racks slid off the ends of the barrels below” names this direction, and most \
+                   stacks of the model fall in this direction. Since nobody counted the cases, no likelihood is \
+                   given.\nThe collapse mode agrees less well. At Napa College, the first body that leaves its seat \
+                   in the model is more often a barrel (“ejection”) than a rack; no report mentions this. However, a \
+                   barrel on a leaning rack counts as fallen once it is low enough, so the distinction between the \
+                   two modes is a convention (see [space.md](space.md)).\n");
 }
 
-/// Returns the shares of a study at a height.
+/// Returns the shares of a study for stacks of a number of levels.
 fn share<'a>(results: &'a Results, study: &str, levels: usize) -> Option<&'a Share> {
     results.shares.iter().find(|one| one.study == study && one.levels == levels)
 }
@@ -301,18 +319,18 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, posterior)) = range("half") {
         let _ = writeln!(
             text,
-            "- **South Napa.** Half of 18,000 barrels were on the floor. The untuned model predicts {} on the floor, and {} \
-             once it is conditioned on this observation (“given half”). In parentheses, here and below, is the central \
-             90 % over the unknowns.",
+            "- **South Napa.** Half of 18,000 barrels were on the floor. The untuned model predicts {} of the \
+             barrels on the floor. Conditioned on this observation (“given half”), it predicts {}. Here and below, \
+             the numbers in parentheses are the central 90 % over the unknowns.",
             of_share(prior),
             of_share(posterior)
         );
     }
     let _ = writeln!(
         text,
-        "- **Friction of barrels on racks.** The median is {} without any observation, {} given half, and {} given all \
-         statements. The observations hardly change it, so the default of the catalog, 0.30, is kept; the paper's 0.22 \
-         lies within all three ranges.",
+        "- **Friction of barrels on racks.** The median is {} without any observation, {} given half, and {} given \
+         all statements. The observations hardly change it, so the default of the catalog, 0.30, is kept; the value \
+         of Candia et al. (2008), 0.22, lies within all three ranges.",
         unknown(results.given("prior"), 0),
         unknown(results.given("half"), 0),
         unknown(results.given("all statements"), 0),
@@ -328,9 +346,10 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, posterior)) = range("room") {
         let _ = writeln!(
             text,
-            "- **The smaller room.** Almost every stack in it fell. The model predicts that {} of its stacks fall, and \
-             {} given half. The observation is possible if the stacks of this room were higher, or at another angle to \
-             the motion; nobody states that they were.",
+            "- **The smaller room.** Almost every stack in the smaller room of Napa Barrel Care fell. The model \
+             predicts that {} of these stacks fall, and {} given half. The observation is possible if the stacks of \
+             this room were higher than the others, or at another angle to the motion; no report says whether they \
+             were.",
             of_share(prior),
             of_share(posterior)
         );
@@ -338,17 +357,17 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     if let Some((prior, _)) = range("posts") {
         let _ = writeln!(
             text,
-            "- **Racks on posts.** Racks that stand on racks lost next to nothing. The model, with a rack that was not \
-             tuned to this observation, predicts that {} of their stacks fall.",
+            "- **Racks on posts.** Stacks whose racks stand on each other with posts lost next to nothing. The \
+             model, with a rack that was not tuned to this observation, predicts that {} of such stacks fall.",
             of_share(prior)
         );
     }
     if let (Some(before), Some(after)) = (results.given("prior"), results.given("half")) {
         let _ = writeln!(
             text,
-            "- **What the observation of half of the barrels contributes.** It contributes little. The factor on the \
-             motion changes from {} to {}. The mean likelihood is {} with a friction between 0.12 and 0.18, and {} \
-             with a friction between 0.25 and 0.35.",
+            "- **What follows from the fall of half of the barrels.** This observation hardly changes the unknowns. \
+             The factor on the motion changes from {} to {}. The mean likelihood of the observation is {} for a \
+             barrel–rack friction between 0.12 and 0.18, and {} for a friction between 0.25 and 0.35.",
             of_value(&before.unknowns[3]),
             of_value(&after.unknowns[3]),
             likelihood(results, "half", 0.12),
@@ -358,11 +377,12 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     let (along, all) = along(cases, "south-napa-space");
     let _ = writeln!(
         text,
-        "- **Direction.** In {along} of {all} falls in space, the first body leaves its seat along the barrels, the \
-         direction that the reports name.\n- **Maule.** Averaged over the prior, {} of stacks of four levels fall \
-         along the barrels at Curicó and {} at Hualañé. The model thus explains that barrels fell, but no report says \
-         that nearly all did.\n- **Kaikōura.** No cellar had the motion that was recorded; under it, {} of stacks of \
-         four levels fall in space.\n- **Far away.** {}",
+        "- **Direction.** In {along} of {all} falls in three-dimensional simulations, the first body leaves its seat \
+         along the barrels. This is the direction that the reports name.\n- **Maule.** Averaged over the prior, {} \
+         of stacks of four levels fall along the barrels at Curicó and {} at Hualañé. The model thus explains that \
+         barrels fell, but no report says that nearly all did.\n- **Kaikōura.** No cellar experienced the motion \
+         that was recorded. Under this motion, {} of stacks of four levels fall in three-dimensional simulations.\n- \
+         **Far away.** {}",
         mean(results, "curico-along", 4),
         mean(results, "hualane-along", 4),
         mean(results, "waiau-space", 4),
@@ -370,13 +390,13 @@ fn in_short(text: &mut String, cases: &[FieldCases], results: &Results) {
     );
 }
 
-/// Returns the mean likelihood of a statement in the bin of friction barrel–rack that begins at a value.
+/// Returns the mean likelihood of a statement for barrel–rack friction in the bin whose lower edge is `from`.
 fn likelihood(results: &Results, given: &str, from: f64) -> String {
     let is = |bin: &&Bin| bin.given == given && bin.unknown == 0 && bin.range[0] == from;
     results.bins.iter().find(is).map_or_else(String::new, |bin| format!("{:.2}", bin.likelihood))
 }
 
-/// Describes what falls at the far station.
+/// Describes the stacks that fall at the distant station (Concord).
 fn far(cases: &[FieldCases]) -> String {
     let all: Vec<_> = cases
         .iter()
@@ -410,24 +430,24 @@ fn far(cases: &[FieldCases]) -> String {
 const UNEXPLAINED: &str = "
 ## What remains unexplained
 
-- **Friction and stiffness.** With four to six levels, most stacks of the model fall with nearly every friction, and \
-a fallen stack leaves at least its bottom level standing. About half of the barrels are therefore on the floor with \
-almost any constants. Counts of stacks of two and three levels would narrow the constants, since it depends on \
-friction whether these fall; nobody has published such a count.
+- **Friction and stiffness.** Of the stacks with four to six levels, most fall in the model for nearly every \
+friction, and at least the bottom level of a fallen stack remains standing. About half of the barrels are therefore \
+on the floor with almost any constants. Counts of fallen stacks of two and three levels would narrow the ranges of \
+the constants, because the friction decides whether such stacks fall. Nobody has published such counts.
 - **Why half fell and half did not.** In the model this depends on the motion in the cellar and on the direction of \
 the rows, neither of which is known. Heights by room, the direction of the rows and a record inside the building \
 would reveal more than any test of friction.
 - **The smaller room and the rest of the cellar.** One set of constants explains both only if the height or the \
-direction of the stacks in the smaller room was different. Stacks that knock others over would also explain both, but \
-are not simulated: each stack stands alone on an open floor, without neighbors, walls or aisles. The error of 0.10 \
-that is added for this is a guess.
+direction of the stacks in the smaller room was different. Stacks that knock others over would also explain both, \
+but are not simulated: each stack stands alone on an open floor, without neighbors, walls or aisles. The model error \
+of 0.10, which is meant to allow for this, is a guess.
 - **Empty barrels.** Many barrels were empty in August 2014 (Press Democrat 2014, above). In the model all are full.
-- **Long motions.** Under both records of Maule, racks walk until they fall off, and the first loss of a seat comes \
-after 30 to 50 s. If stacks in Chile were of the simulated kind, nearly all stacks near Curicó must have fallen, \
-which nobody reports; it is not known which racks were used there, and how high they were stacked. Walking over many \
-cycles is the part of the model with the least evidence ([rack-walk.md](rack-walk.md)).
-- **Height.** In the model, the share of stacks that fall grows from two to five levels, but not beyond. It has not \
-been published either whether stacks of six levels fell more often than stacks of four.
+- **Long motions.** Under both records of Maule, racks walk until they fall off, and the first loss of a seat occurs \
+after 30 to 50 s. If the stacks in Chile were of the simulated kind, nearly all stacks near Curicó must have fallen, \
+but nobody reports this. It is not known which racks were used there, or how high they were stacked. Walking over \
+many cycles is the part of the model with the least evidence ([rack-walk.md](rack-walk.md)).
+- **Height.** In the model, the share of stacks that fall grows from two to five levels, but not beyond. Whether \
+stacks of six levels fell more often than stacks of four has not been published.
 - **Posts.** Racks on posts stand in the model as they did in the earthquake, but no number supports the words “next \
 to nothing”, and the posts of the model are an assumption.
 
@@ -440,9 +460,10 @@ const ELSEWHERE: &str = "\n## Earthquakes and records without a hindcast
 | record or earthquake | nearest wine country | why there is none |
 | :--- | :--- | :--- |
 | San Simeon 2003 | Paso Robles | close to 20 wineries lost stacks, but no record is at hand |
-| Yountville 2000 | Napa | accelerations are published, neither a record nor what stacks did |
+| Yountville 2000 | Napa | accelerations are published, but neither a record nor what happened to stacks |
 | Seddon 2013 | Marlborough | no record at hand, no statement on barrels |
-| Maule 2010, Santiago Centro | Maipo, 15 to 30 km | a city; no statement on barrels there, and its drift needs more than the usual filter |
+| Maule 2010, Santiago Centro | Maipo, 15 to 30 km | a city; no statement on barrels there, and the drift of its \
+record needs more than the usual filter |
 | South Napa 2014, BK.CMB (Columbia) | Sierra foothills | 0.0005 g, 150 km away |
 | Virginia 2011, Reston (0.04 g, one component) | Loudoun, 30 km | no statement on barrels |
 | Northridge, El Centro, Chi-Chi, Kobe, Ridgecrest, Anchorage | none within 50 km | no barrels |

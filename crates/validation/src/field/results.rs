@@ -10,13 +10,13 @@ use super::chance::{MEDIANS, Point};
 use super::weigh::{self, Fitted, Range};
 use barrelstack_calibration::shares::{Earthquake, MODEL_ERROR, Statements};
 
-/// Bins of friction barrel–rack in which likelihoods are stated.
+/// Edges of the bins of the barrel–rack friction; the page gives a likelihood for each bin.
 pub(super) const FRICTION: [f64; 7] = [0.12, 0.18, 0.25, 0.35, 0.45, 0.55, 0.75];
 
-/// Bins of friction rack–ground.
+/// Edges of the bins of the rack–ground friction.
 pub(super) const GROUND: [f64; 5] = [0.30, 0.42, 0.50, 0.60, 0.85];
 
-/// Bins of the stiffness of a seat (MN/m).
+/// Edges of the bins of the stiffness of a seat (MN/m).
 pub(super) const STIFFNESS: [f64; 6] = [0.7, 1.5, 2.5, 4.0, 7.0, 13.0];
 
 /// Names of the unknowns.
@@ -27,7 +27,7 @@ pub(super) const NAMES: [&str; UNKNOWNS] = [
     "factor on the motion",
 ];
 
-/// Share of the stacks of a height that fall in a study.
+/// Share of the stacks with a given number of levels that fall in a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Share {
     /// Name of the study.
@@ -36,21 +36,21 @@ pub struct Share {
     pub levels: usize,
     /// Number of cases that fall, and number of all cases.
     pub count: (u32, u32),
-    /// Share of the cases of the design that fall, with its 95 % interval.
+    /// 95 % interval of the share of the simulated cases that fall.
     pub design: Interval,
-    /// Mean fitted chance of the same cases.
+    /// Mean fitted probability that the same cases fall.
     pub fitted: f64,
-    /// Chance to fall with the medians of the catalog, under the unscaled record.
+    /// Probability of a fall with the medians of the catalog, under the unscaled record.
     pub medians: f64,
-    /// Chance to fall, over the prior.
+    /// Probability of a fall, over the prior.
     pub prior: Range,
-    /// Chance to fall, over the posterior given the statement "half of the barrels".
+    /// Probability of a fall, over the posterior given the statement "half of the barrels".
     pub posterior: Range,
-    /// Share of the barrels of fallen stacks that fell.
+    /// Mean share of barrels that fell, over the stacks that fell.
     pub fallen: f64,
 }
 
-/// Ranges of the unknowns given a set of statements.
+/// Posterior ranges of the unknowns, given a set of statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posterior {
     /// Names of the statements.
@@ -63,7 +63,7 @@ pub struct Posterior {
     pub unknowns: [Range; UNKNOWNS],
 }
 
-/// Mean likelihood of a statement in a bin of an unknown.
+/// Mean likelihood of a statement if an unknown lies in a bin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bin {
     /// Name of the statement.
@@ -87,8 +87,8 @@ pub struct Results {
     pub bins: Vec<Bin>,
     /// Predicted value of each statement, over the prior and over the posterior given the statement "half".
     pub predictions: Vec<(String, Range, Range)>,
-    /// For each value of the barrel–rack friction, mean and central 90 % of the share of barrels on the floor, over
-    /// all other unknowns.
+    /// For each value of the barrel–rack friction: the share of barrels on the floor, as mean and central 90 % over all
+    /// other unknowns.
     pub curve: Vec<(f64, Range)>,
     /// Densities of the barrel–rack friction per unit of ln μ: value of the friction, then its density in the prior,
     /// given the statement "half", and given all statements.
@@ -123,7 +123,7 @@ impl Results {
         Ok(results)
     }
 
-    /// Weighs the draws by every statement that has a likelihood.
+    /// Weights the draws by the likelihoods of all statements for which a likelihood is defined.
     fn weigh(
         &mut self,
         observations: &Statements,
@@ -186,7 +186,7 @@ impl Results {
         Ok(weighed)
     }
 
-    /// Computes the share of barrels on the floor and the densities along friction barrel–rack.
+    /// Computes the share of barrels on the floor and the densities, both as functions of the barrel–rack friction.
     fn along_friction(&mut self, draws: &[[f64; UNKNOWNS]], weighed: &Weighed) {
         let even = vec![1.0; draws.len()];
         for edges in bins(24).windows(2) {
@@ -215,7 +215,7 @@ impl Results {
         }
     }
 
-    /// Returns a posterior by the statements that it is given.
+    /// Returns the posterior whose `given` equals a name; `None` if there is no such posterior.
     pub fn given(&self, name: &str) -> Option<&Posterior> {
         self.posteriors.iter().find(|one| one.given == name)
     }
@@ -297,7 +297,8 @@ struct Weighed {
 /// Number of draws from which shares by height are computed.
 const FEW: usize = 4000;
 
-/// Returns the shares of a study by height; `at_napa` if the draws of the factor on the motion are those of its station.
+/// Returns the shares of a study by height. `at_napa` is `true` for the station to which the drawn factors on the
+/// motion apply; at the other stations the factor is 1.
 fn shares(one: &Fitted<'_>, at_napa: bool, draws: &[[f64; UNKNOWNS]], half: &[f64]) -> Vec<Share> {
     let turn = |at: usize| std::f64::consts::TAU * (at as f64 / 64.0).fract();
     let own = |draw: &[f64; UNKNOWNS]| {
@@ -341,7 +342,7 @@ fn posterior(given: &str, draws: &[[f64; UNKNOWNS]], weights: &[f64]) -> Posteri
     }
 }
 
-/// Edges of bins, with equal ratios, over the range of the friction of barrels on racks.
+/// Returns the edges of bins that divide the range of the barrel–rack friction in equal ratios.
 fn bins(count: usize) -> Vec<f64> {
     let [low, high] = weigh::RANGES[0];
     (0..=count).map(|at| low * libm::pow(high / low, at as f64 / count as f64)).collect()

@@ -6,8 +6,8 @@ use super::cases::{FieldCases, UNKNOWNS};
 use super::chance::{Chance, FITS, MEDIANS, Point};
 use barrelstack_calibration::shares::{Kind, Likelihood, Statement};
 
-/// Standard deviations of the natural logarithm in the prior: those of `[unknowns]`; the factor on the motion is
-/// that of the earthquake.
+/// Standard deviations of the natural logarithms of the first three unknowns in the prior, the same as in `[unknowns]`
+/// of a scenario. The standard deviation for the fourth unknown, the factor on the motion, depends on the earthquake.
 const SPREADS: [f64; 3] = [0.35, 0.2, 0.6];
 
 /// Ranges of the simulations, at which the prior is cut off.
@@ -22,9 +22,9 @@ pub(super) const DRAWS: usize = 20_000;
 pub(super) struct Fitted<'a> {
     /// Cases of the study.
     pub(super) cases: &'a FieldCases,
-    /// Chance of a fall.
+    /// Fitted probability of a fall.
     pub(super) chance: Chance,
-    /// Share of the barrels of a fallen stack that fell, by height from 2 to 6 levels.
+    /// Mean share of barrels that fell, over the stacks that fell, for heights of 2 to 6 levels.
     pub(super) fallen: [f64; 5],
     in_space: bool,
 }
@@ -40,14 +40,14 @@ impl<'a> Fitted<'a> {
         }
     }
 
-    /// Returns the chance that a stack falls, with the coefficients of a draw or, if `draw` is `None`, with those
+    /// Returns the probability that a stack falls. The coefficients are those of a draw or, if `draw` is `None`, those
     /// that maximize the posterior density.
     pub(super) fn share(&self, levels: usize, point: &Point, draw: Option<usize>) -> f64 {
         self.chance.of(levels, point, self.in_space, draw)
     }
 
-    /// Returns the mean chance to fall over the cases of a height and over all draws of the coefficients; it is close
-    /// to the share of these cases that fell.
+    /// Returns the mean probability of a fall over the cases of a height and over all draws of the coefficients. It is
+    /// close to the share of these cases that fell.
     pub(super) fn over_the_design(&self, levels: usize) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for draw in 0..FITS {
@@ -71,8 +71,8 @@ fn lognormal(median: f64, spread: f64, range: [f64; 2], random: &mut Random) -> 
     }
 }
 
-/// Returns draws of the unknowns from the prior; `motion` is the standard deviation of the natural logarithm of the
-/// factor on the motion of an earthquake.
+/// Draws values of the unknowns from the prior. `motion` is the standard deviation of the natural logarithm of the
+/// factor on the motion.
 pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
     let mut random = Random::new(seed);
     (0..DRAWS)
@@ -85,8 +85,9 @@ pub(super) fn prior(motion: f64, seed: u64) -> Vec<[f64; UNKNOWNS]> {
         .collect()
 }
 
-/// Returns the share that a statement is about, for each draw of the unknowns. For each of them, the azimuth, the
-/// mixture of heights (all mixtures are equally probable) and the coefficients of the fit are drawn, too.
+/// Returns, for each draw of the unknowns, the share (of barrels or of stacks) to which a statement refers. For each
+/// draw of the unknowns, an azimuth, a mixture of heights (all mixtures are equally probable) and coefficients of the
+/// fit are also drawn.
 pub(super) fn predicted(
     statement: &Statement,
     studies: &[&Fitted<'_>],

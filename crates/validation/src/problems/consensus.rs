@@ -1,8 +1,8 @@
 //! Eight barrels on four levels: a scene for which five independent codes agree.
 //!
 //! The scene exists in two versions. *Bodies* is exactly the scene of the five codes, with one contact point between
-//! the crown of a barrel and a flat underside. *Scenario* is the most similar stack that a scenario can state; its
-//! undersides are rows of nodes, several of which press on the same crown, so its contacts are stiffer.
+//! the crown of a barrel and a flat underside. *Scenario* is the most similar stack that a scenario can describe. The
+//! undersides of its racks are rows of nodes, several of which press on the same crown, so its contacts are stiffer.
 //!
 //! The displacement of the ground is A sin ωt from the start, so the ground starts suddenly. This is how the
 //! description "sine base motion of 0.1016 m" is interpreted here. The codes do not document their definition of a
@@ -52,7 +52,8 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn first_fall() -> Problem {
     setting("consensus/a-bodies", "scene A (±20°) from bodies", SOURCE)
-        // The five codes give 1.64, 1.73, 1.75 to 1.85, 2.0 and 1.69 s: the middle of this range, and half its width.
+        // The five codes give 1.64, 1.73, 1.75 to 1.85, 2.0 and 1.69 s. The reference is the middle of the range of
+        // these values, and the tolerance is half of its width.
         .quantity("first fall of a barrel", "s", absolute(1.82, 0.18))
         .by(move |_| match bodies(20.0, 3.0)? {
             [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(
@@ -62,7 +63,7 @@ fn first_fall() -> Problem {
         })
 }
 
-/// Creates the problem of scene A from a file: a free scene whose racks have explicit nodes.
+/// Creates the problem of scene A, read from a file that describes each body and the nodes of the racks.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),

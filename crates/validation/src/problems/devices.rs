@@ -180,7 +180,8 @@ pub(super) fn period(samples: &[(f64, f64)], after: f64) -> Option<f64> {
 }
 
 fn slides() -> Problem {
-    // Newmark's block: relative to the ground it ends a v/2 (a − μg)/(μg) further back.
+    // Under a push `a` of duration `t`, Newmark's block slides backward relative to the ground, by
+    // `a t²/2 · (a − μg)/(μg)`.
     let (push_g, seconds, friction) = (0.15, 0.4, 0.05);
     let over: f64 = push_g - friction;
     let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;
@@ -289,8 +290,8 @@ fn between_stops() -> Problem {
 /// Natural frequency (rad/s) of the structure to which a mass is tuned: the square root of stiffness divided by mass.
 const OMEGA: f64 = TAU;
 
-/// Returns the largest dynamic amplification of the displacement of a structure with a tuned mass, over all frequencies
-/// of a harmonic force.
+/// For a structure with a tuned mass, returns the largest dynamic amplification of its displacement, over all
+/// frequencies of a harmonic force.
 ///
 /// The tuned mass is `share` times the mass of the structure. The response to an impulse, which excites all
 /// frequencies, is transformed to the frequency domain.

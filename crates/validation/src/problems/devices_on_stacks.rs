@@ -84,7 +84,7 @@ fn lid_breaks() -> Problem {
 }
 
 fn strap() -> Problem {
-    // A strap on each side of the barrel; without friction it turns until both pull equally.
+    // There is a strap on each side of the barrel. Without friction the barrel turns until both straps pull equally.
     let exact = 0.5 * holding(0.9);
     setting(
         "devices/strap",
@@ -112,8 +112,8 @@ fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
     counted.map(|(_, body)| body.mass).sum()
 }
 
-/// Creates the problems in which the upper level of two slides without friction between the stops on the two barrels
-/// below.
+/// Creates the problems of a stack of two levels whose upper level slides without friction between stops on the two
+/// barrels below.
 fn walking_stop() -> [Problem; 2] {
     let (gap, stiffness) = (0.01, 1e5);
     let (push_g, seconds) = (0.1, 0.1);
@@ -244,8 +244,8 @@ fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
 
-/// Creates the problem of the largest dynamic amplification of the displacement of a platform with a mass tuned by Den
-/// Hartog's formula, over all frequencies of the ground.
+/// Creates the problem of a platform with a mass that is tuned by Den Hartog's formula. The quantity is the largest
+/// dynamic amplification of the displacement of the platform, over all frequencies of the ground motion.
 ///
 /// The exact answer is a closed form. The program's answer is computed from the response to an impulse, which excites
 /// all frequencies.

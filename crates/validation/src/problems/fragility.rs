@@ -24,7 +24,7 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// Creates the problem of one number of the fit to the eight stripes. The tolerance is half a unit of the last
+/// Creates the problem of one result of the fit to the eight stripes. The tolerance is half a unit of the last
 /// published digit.
 fn number(
     id: &str,
@@ -78,7 +78,7 @@ fn covered(
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,
 ) -> Problem {
     setting(format!("fragility/{id}"), title, source)
-        // Sixty campaigns at five correlated intensities scatter by some 0.02.
+        // With sixty campaigns, the mean coverage over five correlated intensities scatters by about 0.02.
         .quantity(
             "share of 95 % bands that contain the true curve, mean over five intensities",
             "",

@@ -178,7 +178,7 @@ fn rectangular(product: f64) -> Problem {
         relative(exact, 1e-2).fast(2.5e-2),
     )
     .by(move |effort| {
-        // The sudden push excites the springs; stiffer springs less.
+        // The sudden push makes the contact springs vibrate; the stiffer the springs, the smaller the vibration.
         refine(effort, exact, |level| {
             let softer = if effort == Effort::Full { 2 } else { 0 };
             let block = slender(effort, 1.0).refined(level - softer);

@@ -100,7 +100,7 @@ fn short_period() -> Problem {
     )
     .quantity("Sa divided by PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
     .by(|_| {
-        // Twelve samples per cycle are steps of 42 ms, so the recursion has to divide them.
+        // With twelve samples per cycle, a sample step is 42 ms, so the recursion has to divide it.
         let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
         let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
         let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };

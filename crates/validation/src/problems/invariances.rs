@@ -13,7 +13,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 const SOURCE: &str = "symmetry of mechanics";
 const BALANCE: &str = "balance of energy";
 
-/// Returns the number of heaps that a problem computes.
+/// Returns the number of random heaps of bodies for which a problem is computed.
 fn seeds(effort: Effort) -> u64 {
     match effort {
         Effort::Fast => 2,
@@ -201,7 +201,7 @@ fn order(seed: u64) -> Result<f64, Failure> {
             nodes.reverse();
         }
     }
-    // The same pairs of bodies in the same roles, whatever their numbers.
+    // Each pair keeps its bodies and their roles (contactor or target), although the bodies have new numbers.
     let pairs = all_pairs(&bodies)
         .into_iter()
         .map(|p| ContactPair { contactor: place(p.contactor), target: place(p.target), ..p })

@@ -319,8 +319,8 @@ fn own_lean() -> Problem {
     })
 }
 
-/// Creates the problem that verifies the same integrator for a block that starts at rest: uplift, one swing under a
-/// half-sine, and the peak rotation, which follows from the energy.
+/// Creates the problem that verifies the rigid-block integrator for a block that starts at rest: uplift, one swing
+/// under a half-sine, and the peak rotation, which follows from the energy.
 fn own_peak() -> Problem {
     let rigid = rigid();
     let omega = 2.0 * rigid.rate;

@@ -25,7 +25,7 @@ pub(super) fn problem() -> Problem {
             let scenario = random_stack(case, &records)?;
             let run = match scenario.run() {
                 Ok(run) => run,
-                // A stack whose rails are too steep for the staves does not come to rest; it is counted as such.
+                // A stack whose rails are too steep for the staves does not come to rest; it is counted as unstable.
                 Err(barrelstack::RunFailure::Settle(_)) => {
                     unstable += 1;
                     continue;
@@ -96,7 +96,8 @@ impl Survey {
     }
 }
 
-/// Returns the records of horizontal motion that cannot be distributed, if they are present next to the working copy.
+/// Returns those records of horizontal motion that may not be distributed with the program but are present in a folder
+/// next to the working copy.
 fn records() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     [

@@ -1,5 +1,5 @@
-//! Overturning of a block by pulses: without an impact, after an impact, and the strengths in between at which the
-//! block is safe.
+//! Overturning of a block by pulses: the strengths that overturn the block after an impact or without one, and the safe
+//! strengths in between.
 
 use crate::drive::Shake;
 use crate::problem::{border, halvings, relative, setting};

@@ -39,7 +39,7 @@ fn scenario(settings: &[String]) -> Result<Scenario, Failure> {
     Ok(Scenario::parse("racks.toml", &text, settings)?)
 }
 
-/// Distance (m) of the outer end of the flat top of a post from the middle of the rack: 44 cm to the axis of the post,
+/// Distance (m) from the middle of the rack to the outer end of the flat top of a post: 44 cm to the axis of the post,
 /// plus half its width of 5 cm, minus the corner radius of 12 mm.
 const EDGE: f64 = 0.44 + 0.025 - 0.012;
 
@@ -86,7 +86,8 @@ fn posts() -> Problem {
     })
 }
 
-/// Returns the height (m) of the center of mass of the upper levels above the posts that carry them.
+/// Returns the height (m) of the center of mass of the second and third levels, measured from the tops of the posts
+/// that carry these levels.
 fn height_of_upper_levels() -> Result<f64, Failure> {
     let assembly = assemble(&scenario(&towers())?).map_err(absent)?;
     let (mut mass, mut moment) = (0.0, 0.0);

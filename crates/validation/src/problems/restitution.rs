@@ -1,4 +1,4 @@
-//! Restitution of a normal law alone, of a mass under gravity, and of a rocking block.
+//! Restitution of a normal contact law without gravity, of a mass under gravity, and of a rocking block.
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -110,8 +110,8 @@ fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f
 
 /// Returns the time step (s) of a refinement.
 ///
-/// A refinement halves only the step and keeps the stiffness, since the exact answer is the restitution of the law
-/// itself.
+/// A refinement halves only the time step and keeps the stiffness, because the exact answer is the restitution of the
+/// contact law with this stiffness.
 fn step(level: i32) -> f64 {
     1e-4 / OMEGA / 2.0_f64.powi(level)
 }
@@ -213,7 +213,7 @@ fn stays(zeta: f64) -> Problem {
     })
 }
 
-/// Creates the problem of the longest stable step of symplectic Euler for a mass on its node.
+/// Creates the problem of the longest stable time step of symplectic Euler for a mass on the spring of its node.
 fn stability(zeta: f64) -> Problem {
     let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
     setting(

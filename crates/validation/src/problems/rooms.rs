@@ -49,7 +49,8 @@ fn wall(x: f64, normal: NormalLaw) -> Obstacle {
     Obstacle { name, center: [x + 0.1, 0.0, 1.0], half: [0.1, 3.0, 1.0], azimuth: 0.0, interface }
 }
 
-/// Name of a problem, quantity, unit, reference, and the quantity of a run.
+/// Name of a problem, name and unit of its quantity, reference value, and the function that computes the quantity from
+/// a run.
 type Measure = (&'static str, &'static str, &'static str, Reference, fn(&RoomRun) -> Option<f64>);
 
 /// Creates the problems of one run, which is computed once.
@@ -67,7 +68,7 @@ fn measured(
     measures.into_iter().map(problem).collect()
 }
 
-/// Returns the run of a cell, computed by the first caller.
+/// Returns the run that is stored in a cell; the first caller computes it.
 fn once(
     cell: &'static OnceLock<Result<RoomRun, String>>,
     compute: fn() -> Result<RoomRun, Failure>,
@@ -216,10 +217,11 @@ fn pounding() -> Vec<Problem> {
 /// Mass (kg) and speed (m/s) of a barrel that rolls, its distance (m) from the wall, and its radius (m).
 const BARREL: [f64; 4] = [280.0, 0.9, 0.1, 0.345];
 
-/// Stiffness (N/m^1.5) of the wall, coefficient of restitution, and speed (m/s) below which the law returns more.
+/// Stiffness (N/m^1.5) of the wall, coefficient of restitution, and speed (m/s) below which the restitution is higher.
 const REBOUND: [f64; 3] = [1.2e9, 0.4, 0.05];
 
-/// Runs a barrel that rolls into a wall on a smooth floor: its spin is that of rolling, and does not change.
+/// Runs a barrel that moves into a wall on a smooth floor. The barrel spins as if it rolled; since nothing has
+/// friction, the spin does not change.
 fn thrown_back() -> Result<RoomRun, Failure> {
     let ([mass, speed, gap, radius], [stiffness, restitution, slow]) = (BARREL, REBOUND);
     let text = format!(
@@ -263,7 +265,7 @@ fn history(times: impl IntoIterator<Item = f64>) -> impl Iterator<Item = [f64; 2
     })
 }
 
-/// Returns the largest of numbers that are not negative; NaN if one of them is NaN, or if there is none.
+/// Returns the largest of nonnegative numbers; NaN if a number is NaN or if there are no numbers.
 fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     let larger = |one: f64, other: f64| if other > one || other.is_nan() { other } else { one };
     numbers.into_iter().reduce(larger).unwrap_or(f64::NAN)
@@ -320,7 +322,7 @@ fn rebound() -> Vec<Problem> {
                 absolute(0.0, 1e-4),
                 apart,
             ),
-            // The law returns a little more at low speed; measured 0.044.
+            // The restitution of the law is slightly higher at low speed; measured 0.044.
             (
                 "rebound-speed",
                 "speed after the impact, divided by the speed before it",
@@ -414,8 +416,8 @@ fn glancing(turn: f64, own: f64, side: f64) -> Result<Room, Failure> {
     Ok(room)
 }
 
-/// Runs a room of [`glancing`] blocks; an error if the blocks do not touch each other, or the second block does not
-/// touch the wall.
+/// Runs a room of [`glancing`] blocks. Returns an error if the blocks do not touch each other, or if the second block
+/// does not touch the wall.
 fn met(room: &Room, threads: usize) -> Result<RoomRun, Failure> {
     let run = run(room, threads)?;
     let all = !run.meetings.is_empty() && run.obstacles[0].first.is_some();

@@ -1,4 +1,4 @@
-//! Waves in a partly filled barrel: frequencies and moving masses, compared with published values and with a
+//! Sloshing in a partly filled barrel: frequencies and sloshing masses, compared with published values and with a
 //! finite-element solution in the plane of the cross-section.
 
 use barrelstack::slosh::{across, along, filled_to};
@@ -29,7 +29,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Returns `ω² R/g` for the wave in a cylinder of radius 1 m that is filled to a depth (m).
+/// Returns `ω² R/g` of the first transverse sloshing mode in a horizontal cylinder of radius 1 m that is filled to a
+/// depth (m).
 fn number(depth: f64) -> f64 {
     1.0 / across(1.0, filled_to(depth)).length
 }
@@ -91,7 +92,8 @@ fn mass(depth: f64) -> Problem {
     .by(move |_| Ok(across(1.0, filled_to(depth)).share))
 }
 
-/// Returns `ω²/g` and the mass fraction of the first antisymmetric wave in a segment of the unit circle.
+/// Returns `ω²/g` and the mass fraction of the first antisymmetric sloshing mode of a liquid whose cross-section is a
+/// segment of the unit circle.
 ///
 /// Bilinear elements between the liquid surface and the wall give the eigenvalue problem `K φ = κ M φ`, where `M` has
 /// entries for the surface only.
@@ -213,7 +215,7 @@ fn long() -> Problem {
     })
 }
 
-/// Creates the problem of a wave in the wine of a barrel in its cradle, excited by a short push.
+/// Creates the problem of the sloshing wine in a barrel in its cradle, excited by a short push.
 fn in_a_stack(filled: f64) -> Problem {
     let wave = scenario(filled)
         .ok()

@@ -59,8 +59,8 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Returns the smallest ratio, among all joints, of the half-width of a joint to the height of the center of mass of
-/// the blocks above that joint; and the index of the joint with this ratio.
+/// Computes a ratio for every joint: the half-width of the joint divided by the height of the center of mass of all
+/// blocks above, measured from the joint. Returns the smallest ratio, and the index of the joint that has it.
 fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
     let joint = |k: usize| {
         // Equal masses: the mean of the heights of the centers above the joint.

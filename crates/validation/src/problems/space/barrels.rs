@@ -167,7 +167,7 @@ fn disc(degrees: f64, exact: f64) -> Problem {
     .by(move |_| {
         let (mass, radius) = (20.0, 0.3);
         let square = mass * radius * radius;
-        // So thin that the thickness has no effect.
+        // The disc is so thin that its thickness has no effect.
         let shape = shaped(2e-5, radius, radius + 1.6e-10, 0.0)?;
         let bulk = (mass, 0.5 * square, 0.25 * square);
         let mut scene = running_round(shape, bulk, degrees.to_radians(), exact)?;

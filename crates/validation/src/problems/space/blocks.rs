@@ -1,4 +1,4 @@
-//! Bodies on feet and boxes in space: load distribution, tipping and rocking.
+//! Three-dimensional bodies on feet, and boxes: load distribution, tipping and rocking.
 
 use std::ops::ControlFlow;
 
@@ -144,7 +144,7 @@ fn first_impact(turned: f64) -> Result<Impact, Failure> {
         ControlFlow::Continue(())
     })?;
     let (time, rate) = struck.ok_or_else(|| Failure::Absent("the box does not strike".into()))?;
-    // Half the square of the angular velocity in the upright position, over p².
+    // Half the square of the angular velocity in the upright position, divided by p².
     let energy = |lean: f64| cos(alpha - lean) - cos(alpha);
     let ratio = (energy(asin(peak)) / energy(0.5 * alpha)).sqrt();
     Ok(Impact { time, rate, ratio })

@@ -1,4 +1,4 @@
-//! Bodies in space that lie on a face or along a line: rest, rocking and rolling.
+//! Three-dimensional bodies that touch the floor or each other with a face or along a line: rest, rocking and rolling.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
@@ -78,7 +78,7 @@ fn stands(count: u32) -> Problem {
     })
 }
 
-/// Returns the period (s) of the oscillation of one component of the axis of body 1.
+/// Returns the period (s) with which one component of the axis of body 1 oscillates.
 fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<f64, Failure> {
     let through =
         run_crossings(&mut scene, 1e-5, 5.3 * guess, |state| of(axis(state.poses[1].orientation)))?;

@@ -1,4 +1,4 @@
-//! Bodies in space: free rotation, rolling, sliding, bodies on feet, and barrels.
+//! Three-dimensional bodies: free rotation, rolling, sliding, bodies on feet, and barrels.
 
 mod barrels;
 mod blocks;
@@ -31,7 +31,7 @@ enum Role {
     Target,
 }
 
-/// Returns the problems of all modules about bodies in space.
+/// Returns the problems of all modules about three-dimensional bodies.
 pub(super) fn problems() -> Vec<Problem> {
     let theories = [
         free::problems(),
