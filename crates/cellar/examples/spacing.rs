@@ -74,12 +74,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("# At which spacing do stacks no longer knock each other over?\n");
     println!(
         "Two rows of five stacks of the built-in scenario `demo-napa` (ten barrels on five levels, two-barrel racks) \
-         are computed in space, without walls, under all three components of Napa College 2014. The distance between \
-         neighboring stacks is the same within a row and between the rows. Each spacing is computed with {variants} \
-         variants, in which every stack has imperfections of its own, and all stacks share the unknown constants. A \
-         stack is knocked over if a body of another stack touched it before its first loss of seat. Shares are those \
-         of all stacks; their 95 % intervals are computed from the scatter between the variants, since the stacks of \
-         a room share their constants and their motion.\n"
+         are computed in three dimensions, without walls, under all three components of the record of Napa College \
+         2014. The distance between neighboring stacks is the same within a row and between the rows. Each spacing \
+         is computed with {variants} variants, in which every stack has imperfections of its own, and all stacks share \
+         the unknown constants. A stack is knocked over if a body of another stack touched it before its first loss \
+         of seat. Shares are those of all stacks; their 95 % intervals are computed from the scatter between the \
+         variants, since the stacks of a room share their constants and their motion.\n"
     );
     println!(
         "`cargo run --release -p barrelstack-cellar --example spacing -- {variants}` computes this page.\n"
@@ -123,8 +123,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [low, high] = [f64::min, f64::max].map(|of| in_all.iter().copied().fold(in_all[0], of));
     if high - low < 0.05 {
         println!(
-            "Alone and at every spacing, {} to {} of the stacks fall: under this motion the spacing decides whether a \
-             stack falls by itself or is knocked over, but not whether it falls.\n",
+            "Whether stacks stand alone or at any of these spacings, {} to {} of them fall. Under this motion, the \
+             spacing decides whether a stack falls by itself or is knocked over, but not whether it falls.\n",
             percent(low),
             percent(high)
         );
