@@ -92,7 +92,9 @@ pub enum Problem {
         offset: usize,
     },
     /// The file is far larger than any valid file.
-    #[error("the file has {size} bytes, but at most {limit} bytes are read; is it a motion record?")]
+    #[error(
+        "the file has {size} bytes, but at most {limit} bytes are read; is it a motion record?"
+    )]
     TooLarge {
         /// Size in bytes.
         size: usize,

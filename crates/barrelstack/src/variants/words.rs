@@ -552,8 +552,9 @@ mod tests {
             "Falls. Shaken across the barrels, all 64 variants fall (at least 94 %); along them, 1 of 64 falls (0.3–8 %)."
         );
         assert!(
-            both(3, 20)
-                .starts_with("Not safe. Shaken along the barrels, 20 of 64 variants fall (21–43 %)")
+            both(3, 20).starts_with(
+                "Not safe. Shaken along the barrels, 20 of 64 variants fall (21–43 %)"
+            )
         );
         let none =
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 64))]);

@@ -310,7 +310,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                         frame.relative,
                         self.near,
                         #[inline(always)]
-                        |patch| self.patch(group.first + patch.first, &patch),
+                        |patch| {
+                            S::Real::scope(
+                                #[inline(always)]
+                                || self.patch(group.first + patch.first, &patch),
+                            );
+                        },
                     );
                 }
             }
@@ -354,6 +359,13 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
+        if S::SOLIDS_SHARE {
+            // Compiled once for all callers.
+            return S::Real::scope(
+                #[inline(always)]
+                || self.press(element, node, gap, share, None),
+            );
+        }
         self.press(element, node, gap, share, None)
     }
 

@@ -210,25 +210,30 @@ impl<S: Space> Stages<S> {
     /// Sets the state to the initial state of the step plus the weighted sum of the rates multiplied by the step `dt`
     /// (s).
     fn combine(&mut self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: S::Real) {
-        for i in free(model) {
-            let mut velocity = Twist::default();
-            let mut reached = self.momenta[i];
-            for (rates, weight) in self.rates.iter().zip(weights) {
-                let share = S::Real::splat(*weight) * dt;
-                velocity = velocity.plus(rates.velocities[i], share);
-                reached = reached.plus(rates.kicks[i], share);
-            }
-            state.poses[i] = self.poses[i].moved(velocity, S::Real::splat(1.0));
-            state.twists[i] = of_momentum(model, i, state.poses[i].orientation, reached);
-            self.turned[i] = velocity.angular;
-        }
-        for (element, stick) in state.contact_elements.sticks.iter_mut().enumerate() {
-            let mut displacement = self.sticks[element].displacement;
-            for (rates, weight) in self.rates.iter().zip(weights) {
-                displacement += rates.slip_rates[element] * (S::Real::splat(*weight) * dt);
-            }
-            *stick = Stick { displacement, ..self.sticks[element] };
-        }
+        S::Real::scope(
+            #[inline(always)]
+            || {
+                for i in free(model) {
+                    let mut velocity = Twist::default();
+                    let mut reached = self.momenta[i];
+                    for (rates, weight) in self.rates.iter().zip(weights) {
+                        let share = S::Real::splat(*weight) * dt;
+                        velocity = velocity.plus(rates.velocities[i], share);
+                        reached = reached.plus(rates.kicks[i], share);
+                    }
+                    state.poses[i] = self.poses[i].moved(velocity, S::Real::splat(1.0));
+                    state.twists[i] = of_momentum(model, i, state.poses[i].orientation, reached);
+                    self.turned[i] = velocity.angular;
+                }
+                for (element, stick) in state.contact_elements.sticks.iter_mut().enumerate() {
+                    let mut displacement = self.sticks[element].displacement;
+                    for (rates, weight) in self.rates.iter().zip(weights) {
+                        displacement += rates.slip_rates[element] * (S::Real::splat(*weight) * dt);
+                    }
+                    *stick = Stick { displacement, ..self.sticks[element] };
+                }
+            },
+        );
     }
 
     /// Returns the largest difference (m) between the result of a step and its embedded result; differences of
@@ -290,6 +295,7 @@ fn momentum<S: Space>(
 }
 
 /// Converts back from [`momentum`] to a twist, for a body with this orientation.
+#[inline(always)]
 fn of_momentum<S: Space>(
     model: &Model<S>,
     body: usize,

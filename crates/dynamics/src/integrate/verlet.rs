@@ -21,12 +21,17 @@ pub(super) fn semi_implicit_euler<S: Space>(
     until: S::Real,
 ) {
     let step = until - state.time;
-    for i in free(model) {
-        state.twists[i] = state.twists[i].plus(scratch.accelerations[i], step);
-        let inertia = model.inert[i].inertia;
-        (state.poses[i], state.twists[i]) = state.poses[i].coasted(inertia, state.twists[i], step);
-    }
-    advance_sticks(state, &scratch.slip_rates, step);
+    S::Real::scope(
+        #[inline(always)]
+        || {
+            for i in free(model) {
+                let twist = state.twists[i].plus(scratch.accelerations[i], step);
+                let inertia = model.inert[i].inertia;
+                (state.poses[i], state.twists[i]) = state.poses[i].coasted(inertia, twist, step);
+            }
+            advance_sticks(state, &scratch.slip_rates, step);
+        },
+    );
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
     state.time = until;
     place_prescribed(model, drive, state);

@@ -139,8 +139,15 @@ pub(crate) mod units {
         static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());
         match *AVX2 {
             Some(unit) => unit.vectorize(work),
-            None => work(),
+            None => unaided(work),
         }
+    }
+
+    /// Runs scalar work with the basic instructions of the architecture, compiled once per kind of work: inlined, it
+    /// would be compiled again at every call.
+    #[inline(never)]
+    fn unaided<T>(work: impl FnOnce() -> T) -> T {
+        work()
     }
 
     pub(super) fn run_avx2<T: Task>(task: T) -> Option<T::Output> {

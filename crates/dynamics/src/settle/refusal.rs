@@ -90,9 +90,7 @@ pub enum Lack {
     #[error("it is pushed out of place")]
     Place,
     /// The forces do not balance, but the body stays in place.
-    #[error(
-        "after {steps} steps, its residual acceleration is still {unbalanced:.0e} of gravity"
-    )]
+    #[error("after {steps} steps, its residual acceleration is still {unbalanced:.0e} of gravity")]
     Time {
         /// Number of steps.
         steps: u64,

@@ -215,7 +215,9 @@ impl Host {
                 && view.value != Value::Text("spatial".to_owned())
         });
         if stated.is_some() {
-            let message = "the stacks of a room are always three-dimensional: leave `stack.view` out".to_owned();
+            let message =
+                "the stacks of a room are always three-dimensional: leave `stack.view` out"
+                    .to_owned();
             return Err(self.error(&["stack.view"], message));
         }
         let origin = self.node("stack").map_or(Origin::Whole(0), |stack| stack.origin);
