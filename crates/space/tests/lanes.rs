@@ -28,7 +28,7 @@ fn cases_in_lanes_have_the_bits_of_single_runs() {
         let plane = planes(&soft_demo(&changes)).unwrap().remove(0);
         let ground = Ground::of(&plane.scenario).unwrap();
         // Every thread has enough cases for its lanes.
-        let numbers: Vec<u32> = (1..=4 * u32::try_from(threads).unwrap()).collect();
+        let numbers: Vec<u32> = (1..=6 * u32::try_from(threads).unwrap()).collect();
         let build = |number: &u32| (plane.trial(*number), ground.clone());
         let texts =
             |cases: Vec<Case>| cases.iter().map(|case| format!("{case:?}")).collect::<Vec<_>>();

@@ -23,6 +23,13 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let placed = |error| super::placed(error, &scenario, &typed);
     let mut answer = super::run::answered(&scenario, selection, true).map_err(placed)?;
     if !args.no_remedy {
+        // The search takes several times as long as the runs, so the page is already written without its result.
+        answer.files(args.language.of()).and_then(|files| folder.write_files(&files))?;
+        printer::note(&answer.headline());
+        printer::note(&format!(
+            "{} shows the result so far; if the stack falls, changes that would keep it up are now searched for",
+            folder.report().display()
+        ));
         let command = Command::of(&typed, args.variants);
         super::run::remedied(&mut answer, &command, true).map_err(placed)?;
     }

@@ -311,6 +311,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                         self.near,
                         #[inline(always)]
                         |patch| {
+                            if S::Real::LANES == 1 {
+                                return self.patch(group.first + patch.first, &patch);
+                            }
+                            // Compiled once for all kinds of pairs.
                             S::Real::scope(
                                 #[inline(always)]
                                 || self.patch(group.first + patch.first, &patch),
@@ -359,7 +363,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
-        if S::SOLIDS_SHARE {
+        if S::SOLIDS_SHARE && S::Real::LANES > 1 {
             // Compiled once for all callers.
             return S::Real::scope(
                 #[inline(always)]
