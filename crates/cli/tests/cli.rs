@@ -193,6 +193,8 @@ fn a_demo_replaces_what_a_demo_wrote_and_nothing_else() {
     for _ in 0..2 {
         let output = demo();
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        // The page is there before the search for changes.
+        assert!(stderr(&output).contains("report.html shows the result so far"));
     }
     // Changed by its owner some time later.
     let mine = fs::File::options().append(true).open(out.join("scenario.toml")).unwrap();

@@ -31,7 +31,7 @@ const FEWEST: usize = 6;
 /// A case whose stack is at rest, and its index among all cases.
 pub(crate) type Ready = (usize, Prepared);
 
-/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has AVX2. `report` receives the index and
+/// Runs cases on one core, in lanes if `in_lanes` is `true` and the machine has a vector unit. `report` receives the index and
 /// the result of each finished case; the work ends when `stop` returns `true`. Returns the cases that have to be run
 /// one after the other.
 pub(crate) fn run(
@@ -55,10 +55,10 @@ pub(crate) fn run(
         }
     }
     for (_, method, group) in groups {
-        if group.len() < FEWEST || !in_lanes || !Width::Avx2.is_here() {
+        if group.len() < FEWEST || !in_lanes || Width::widest() == Width::Scalar {
             alone.extend(group);
         } else {
-            Width::run_avx2(InLanes { method, group: &group, report, stop });
+            Width::run_in_bundles(InLanes { method, group: &group, report, stop });
         }
     }
     alone

@@ -22,14 +22,15 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let typed = ScenarioArgs { scenario: NAME.to_owned(), set, record: None };
     let placed = |error| super::placed(error, &scenario, &typed);
     let mut answer = super::run::answered(&scenario, selection, true).map_err(placed)?;
-    if !args.no_remedy {
+    if !args.no_remedy && !answer.is_stopped() {
         // The search takes several times as long as the runs, so the page is already written without its result.
-        answer.files(args.language.of()).and_then(|files| folder.write_files(&files))?;
         printer::note(&answer.headline());
+        answer.files(args.language.of()).and_then(|files| folder.write_files(&files))?;
+        let shows = format!("{} shows the result so far", folder.report().display());
         printer::note(&format!(
-            "{} shows the result so far; if the stack falls, changes that would keep it up are now searched for",
-            folder.report().display()
+            "{shows}; if the stack falls, changes that would keep it up are now searched for"
         ));
+        crate::interrupt::keeps(shows);
         let command = Command::of(&typed, args.variants);
         super::run::remedied(&mut answer, &command, true).map_err(placed)?;
     }

@@ -79,12 +79,11 @@ impl Width {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }
 
-    /// Runs a task with the bundles of AVX2; `None` if this machine does not support AVX2.
+    /// Runs a task with the widest bundles that this machine supports; `None` if it has no vector unit.
     ///
-    /// Unlike [`Width::run`], this compiles the task for one vector unit only, which saves time for tasks that take
-    /// long to compile.
-    pub fn run_avx2<T: Task>(task: T) -> Option<T::Output> {
-        units::run_avx2(task)
+    /// Unlike [`Width::run`], this does not compile the task for scalars.
+    pub fn run_in_bundles<T: Task>(task: T) -> Option<T::Output> {
+        units::run(Self::widest(), task)
     }
 
     /// Runs a task with the bundles of this width; `None` if this machine does not support the width.
@@ -150,13 +149,10 @@ pub(crate) mod units {
         work()
     }
 
-    pub(super) fn run_avx2<T: Task>(task: T) -> Option<T::Output> {
-        has_avx2().then(|| task.run::<Bundle<Avx2>>())
-    }
-
+    /// Runs a task with the bundles of a width; `None` for scalars, and if this machine does not support the width.
     pub(super) fn run<T: Task>(width: Width, task: T) -> Option<T::Output> {
         match width {
-            Width::Scalar => Some(task.run::<f64>()),
+            Width::Scalar => None,
             Width::Avx2 => has_avx2().then(|| task.run::<Bundle<Avx2>>()),
             Width::Avx512 => has_avx512().then(|| task.run::<Bundle<Avx512>>()),
         }
@@ -179,10 +175,6 @@ pub(crate) mod units {
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         work()
-    }
-
-    pub(super) fn run_avx2<T: Task>(_task: T) -> Option<T::Output> {
-        None
     }
 
     pub(super) fn run<T: Task>(_width: Width, _task: T) -> Option<T::Output> {
