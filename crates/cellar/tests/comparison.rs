@@ -279,7 +279,7 @@ fn what_was_not_run_is_listed_with_its_reason() {
     let found = compared(&three, Vec::new(), vec![not]);
     let said = words::sentences(&found).join(" ");
     assert!(said.contains("One level less was not run: it does not fit."), "{said}");
-    assert!(said.contains("of all these differences together"), "{said}");
+    assert!(said.contains("of all these differences jointly"), "{said}");
     let lines = table(&found).to_lines();
     assert_eq!(lines.len(), 5);
     assert!(lines[4].ends_with("not run: it does not fit"), "{lines:?}");

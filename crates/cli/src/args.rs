@@ -48,7 +48,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Safe height: how often stacks of two to six levels collapse, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// Protection with the best benefit for its cost: fewer levels, other racks, devices, or pairs of these.
+    /// Protection with the best benefit for its cost: levels, racks, devices, or pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
