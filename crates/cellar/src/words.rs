@@ -4,7 +4,7 @@ use barrelstack::motion::STANDARD_GRAVITY;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::Range;
 use barrelstack::variants::words::{ENOUGH, percent};
-use barrelstack_report::{Tone, capital, listed, measured};
+use barrelstack_report::{Tone, capital, listed, measured, significant};
 
 use crate::plan::liters;
 use crate::summary::{AisleAnswer, CellarSummary, Count, Mean, ShockAnswer, ShownShock};
@@ -438,9 +438,9 @@ pub fn sentences(summary: &CellarSummary) -> Vec<String> {
     }) && let Some(peak) = &most.peak
     {
         all.push(format!(
-            "The largest momentary force on a wall or column is {:.0} kN, on the {}; it grows with the assumed \
+            "The largest momentary force on a wall or column is {} kN, on the {}; it grows with the assumed \
              stiffness of the contact.",
-            1e-3 * peak.most,
+            significant(1e-3 * peak.most, 2),
             most.name
         ));
     }
