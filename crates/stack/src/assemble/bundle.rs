@@ -18,7 +18,7 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack, or of its posts, that stand one behind the other in the plane across the barrels.
+/// Number of rails of a rack that coincide in the planar model across the barrels; the same holds for its posts.
 const RAILS: f64 = 2.0;
 
 /// The kind of model that represents a stack.
