@@ -1,4 +1,4 @@
-//! Tables and documents for programs: columns, fields with unit and meaning, JSON Schema, and numbers as text.
+//! Machine-readable tables and documents: columns, fields with unit and meaning, JSON Schema, and numbers as text.
 //!
 //! A [`column::Column`] has a name, a unit, a role and values. This crate writes columns as CSV; other crates can write
 //! them in other formats. [`described!`] declares a document: each field once, with its unit and meaning. JSON, JSON

@@ -1,4 +1,4 @@
-//! Numbers as text: significant digits for readers, full precision for programs.
+//! Numbers as text: significant digits for readers, full precision for machine-readable files.
 
 /// Text that is shown in place of a number that is missing, NaN or infinite.
 pub const MISSING: &str = "–";

@@ -20,7 +20,7 @@ pub fn listed(words: impl IntoIterator<Item = impl Into<String>>) -> String {
     }
 }
 
-/// Appends the unit to a name, if there is one, such as `pga (m/s2)`.
+/// Appends the unit, if there is one, to a name: `pga (m/s2)`.
 pub fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }

@@ -66,7 +66,7 @@ pub(crate) fn compare(
     py.detach(|| Page::of(&Comparison::of(&compared, Vec::new()), document(&compared)))
 }
 
-/// Runs the study of safe heights.
+/// Computes the probability of collapse of stacks by height, direction and strength of shaking.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn heights(

@@ -56,7 +56,7 @@ pub(crate) fn scenario(error: &ScenarioError) -> PyErr {
     raise("ScenarioError", error.to_string(), Spot::of(error.place()))
 }
 
-/// Creates the error that a field of the scenario contradicts the request.
+/// Creates the error for a field of the scenario that contradicts the request.
 pub(crate) fn inconsistent(message: String) -> PyErr {
     raise("ScenarioError", message, Spot::default())
 }

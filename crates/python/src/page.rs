@@ -77,7 +77,7 @@ impl Page {
     }
 }
 
-/// Returns the language of a code.
+/// Returns the language with the given code.
 pub(crate) fn language_of(code: &str) -> PyResult<Language> {
     code.parse().map_err(|error: UnknownLanguage| PyValueError::new_err(error.to_string()))
 }
@@ -92,7 +92,7 @@ pub(crate) fn html_in<D: Borrow<Document>>(
     Ok(py.detach(|| html(&document().borrow().in_language(language))))
 }
 
-/// Returns the PDF of a document on a paper size and in a language, both given by name.
+/// Returns the PDF of a document in a paper size and in a language, both given by name.
 pub(crate) fn pdf_in<'py, D: Borrow<Document>>(
     py: Python<'py>,
     (paper, language): (&str, &str),
@@ -103,7 +103,7 @@ pub(crate) fn pdf_in<'py, D: Borrow<Document>>(
     Ok(bytes(py, &pdf))
 }
 
-/// Returns the paper size of a name.
+/// Returns the paper size with the given name.
 pub(crate) fn paper_of(name: &str) -> PyResult<Paper> {
     match name {
         "a4" => Ok(Paper::A4),

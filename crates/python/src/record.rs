@@ -153,7 +153,7 @@ impl Record {
         Ok((array(motion.velocity()), array(motion.displacement())))
     }
 
-    /// Returns the index of a channel by its usual name.
+    /// Returns the index of the channel for the component with the given name.
     fn find(&self, name: &str) -> PyResult<usize> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let found = self.inner.component(&wanted).map_err(errors::motion)?;

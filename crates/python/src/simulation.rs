@@ -115,7 +115,9 @@ fn applied<S: Listed>(
     })
 }
 
-/// All contacts: the two bodies of each, the length of a row, and the rows: point, force on the first body, penetration.
+/// All contacts: the names of the two bodies of each contact, the number of values per row, and the values of all rows.
+///
+/// Each row holds the point of a contact, the force on the first body, and the penetration.
 type Contacts = (Vec<(String, String)>, usize, Vec<f64>);
 
 fn contacts<S: Listed>(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Contacts {
@@ -358,7 +360,7 @@ impl Simulation {
         PyArray1::from_vec(py, masses)
     }
 
-    /// Takes up to `count` steps; returns their number.
+    /// Takes up to `count` steps; returns the number of steps taken.
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<u64> {
         let mut taken = 0;
         loop {
@@ -398,7 +400,7 @@ impl Simulation {
         PyArray1::from_vec(py, all).reshape([running.bodies(), running.widths()[1]])
     }
 
-    /// Returns the bodies of every contact, and one row for each: point, force on the first body, penetration.
+    /// Returns the bodies of every contact, and one row per contact: point, force on the first body, penetration.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<(Vec<(String, String)>, Rows<'py>)> {
         let (pairs, width, rows) = match &*lock(&self.running) {
             Running::Plane(one) => contacts(&one.assembly().model, one.state(), one.scratch()),
@@ -439,7 +441,7 @@ impl Simulation {
         }
     }
 
-    /// Returns the energies (J).
+    /// Returns the terms of the energy balance (J), in the order of the fields of `EnergySummary` below.
     fn energy(&self) -> [f64; 11] {
         let EnergySummary {
             kinetic,
@@ -587,12 +589,12 @@ impl Simulations {
         self.all.first().map_or_else(Vec::new, |one| lock(one).names())
     }
 
-    /// Takes up to `count` steps of every simulation; returns their numbers.
+    /// Takes up to `count` steps of every simulation; returns the number of steps that each simulation took.
     fn step(&self, py: Python<'_>, count: u64) -> PyResult<Vec<u64>> {
         let mut taken = vec![0; self.all.len()];
         let mut left = count;
         while left > 0 {
-            // Few simulations of few bodies are faster than the start of a thread.
+            // Steps of few simulations with few bodies take less time than the start of a thread.
             let pace = *lock(&self.pace);
             let portion = left.min(PORTION);
             let now = py.detach(|| {

@@ -454,7 +454,7 @@ pub(crate) fn ensemble(
             known.push(kind.map_err(|error| (error, row))?);
         }
         if count > 0 {
-            // A problem of all cases is reported once, not in every row.
+            // A problem that affects all cases is reported once, not in every row.
             let first = all.scenario(0).map_err(|error| (error, 0))?;
             all.grounds.of(&first).map_err(|error| (CaseError::Ground(error), 0))?;
         }

@@ -1,4 +1,4 @@
-//! Planar test scenes of floors, blocks and discs, and the runner of planar and spatial scenes.
+//! Planar test scenes of floors, blocks and discs, and the runner of planar and three-dimensional scenes.
 
 use std::ops::ControlFlow;
 

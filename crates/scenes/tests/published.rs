@@ -11,7 +11,7 @@ const TABLE_GRAVITY: f64 = 9.81;
 
 #[test]
 fn a_block_let_go_falls_back_in_housners_quarter_period() {
-    // For each amplitude, the slender and the exact value of p T / 4 at α = 0.25.
+    // Initial rotation divided by α; then p T / 4 of a slender block, and the exact p T / 4 for α = 0.25.
     for (share, slender, exact) in [
         (0.10, 0.46715, 0.46920),
         (0.25, 0.79537, 0.79798),

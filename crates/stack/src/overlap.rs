@@ -1,4 +1,4 @@
-//! Overlap depths of bodies, computed from their outlines alone, independently of contact elements and laws.
+//! Overlap depths of bodies, computed from their outlines alone, independently of contact elements and contact laws.
 
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{Body, BodyId, Linear as _, Planar, Pose, Shape, State, Vec2};
@@ -202,8 +202,8 @@ fn parting(a: &Outline, b: &Outline) -> f64 {
     }
 }
 
-/// Returns the shortest displacement (m), along the outward normal of a side of one polygon, that separates another
-/// polygon from it; zero or less if they are apart.
+/// Returns the shortest displacement (m) along an outward normal of the polygon `sides` that separates the polygon
+/// `corners` from it; zero or less if the polygons are apart.
 fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     let mut least = f64::INFINITY;
     for (i, from) in sides.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::{Lack, SettleError};
 
-/// Error of a stack that does not stand by itself, with a remedy.
+/// Reason why a stack does not stand by itself, with a remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}; {}", remedy(&error.lack))]
 pub struct Restless {

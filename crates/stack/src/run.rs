@@ -276,9 +276,9 @@ pub fn thresholds(scenario: &Scenario) -> Thresholds {
     }
 }
 
-/// Returns the latest time (s) at which a run ends, from the scenario and, if there is a motion, the time (s) at which
-/// the motion ends.
+/// Returns the latest time (s) at which a run of the scenario ends.
 ///
+/// `motion_end` is the time (s) at which the motion ends, if there is a motion.
 /// `time_scale` is the time scale of similitude.
 ///
 /// # Errors
@@ -327,7 +327,7 @@ pub(crate) fn check_memory(
     end_time: f64,
     (frame_rate, history_rate): (f64, f64),
 ) -> Result<(), RunFailure> {
-    // A frame holds the pose and the stress of every body, and the forces of about four contacts of each.
+    // A frame holds the pose and the stress of every body, and the forces of about four contacts per body.
     let frame = (end_time * frame_rate + 1.0, assembly.parts.len(), 3 + 1 + 4 * 4);
     let channels = Recording::histories(assembly);
     check_kept(frame, (end_time * history_rate + 1.0, channels))

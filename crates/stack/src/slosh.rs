@@ -30,8 +30,9 @@ const POINTS: usize = 400;
 /// the given fraction of its volume.
 ///
 /// In linear potential theory, the cross-section of the liquid, a segment of a circle, is mapped to a strip by `x + i z
-/// = b tanh(w/2)`, where `b` is half the width of the surface. In the strip, the normal derivative of a function `sin k
-/// ξ` on the surface is the function multiplied by `k tanh k β`, where `β` is the angle between surface and wall. The
+/// = b tanh(w/2)`, where `b` is half the width of the surface and `w` is the complex coordinate in the strip. Along the
+/// surface, the coordinate in the strip is `ξ`, the real part of `w`. The normal derivative of a function `sin k ξ` on
+/// the surface is the function multiplied by `k tanh k β`, where `β` is the angle between surface and wall. The
 /// remaining eigenvalue problem on the surface has a rapidly converging basis. For a half-full cylinder, the result is
 /// `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960). The limit for a nearly empty cylinder is
 /// `ω² R/g = 1`, and the limit for a nearly full cylinder is the ice-fishing problem with `ω² b/g = 2.0061` (Fox and
@@ -54,7 +55,8 @@ pub fn across(radius: f64, filled: f64) -> Wave {
         let sum = |i: usize| amplitudes.iter().zip(&functions).map(|(a, f)| a * f[i]).sum();
         (0..POINTS).map(sum).collect()
     };
-    // Power iteration for the largest 1/κ. It converges fast, since the next eigenvalue is less than half as large.
+    // Power iteration for the largest eigenvalue 1/κ, where κ = ω² R/g. It converges fast, since the next eigenvalue is
+    // less than half as large.
     let mut amplitudes = vec![0.0; TERMS];
     amplitudes[0] = 1.0;
     let mut inverse = 0.0;

@@ -19,7 +19,7 @@ const SHARE: f64 = 0.3;
 /// thousand random stacks that had come to rest (`tests/settling.rs`) drifted by millimeters.
 const DAMPING_SHARE: f64 = 0.33;
 
-/// Penetration (m) at full scale at which nonlinear laws are linearized.
+/// Penetration (m) at full scale at which nonlinear normal laws are linearized.
 const REFERENCE: f64 = 0.01;
 
 /// Time step during impacts, which last a few milliseconds, as a fraction of the critical time step of impacts.
@@ -204,8 +204,8 @@ fn loaded(model: &Model<Planar>) -> f64 {
 /// Returns the critical time step (s) of an assembly whose steps are divided in impacts; infinity if nothing can touch.
 ///
 /// For an explicit method, this step is 2/ω with ω² = Σk/m for the stiffest body. The sum covers the springs of all
-/// nodes on one boundary of the body that face one target, and the force elements of the body. Nonlinear laws are
-/// linearized at a penetration of 1 cm at full scale; `time_scale` is the time scale of similitude.
+/// nodes on one boundary of the body that face one target, and the force elements of the body. Nonlinear normal
+/// laws are linearized at a penetration of 1 cm at full scale; `time_scale` is the time scale of similitude.
 pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let model = &assembly.model;
     let depth = REFERENCE * time_scale * time_scale;
@@ -216,7 +216,7 @@ pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     seats.min(model.substepping().substeps * impacts)
 }
 
-/// Returns the critical time step (s) of the pairs that `of` selects at a penetration (m); `held` (1/s²) is the
+/// Returns the critical time step (s), at a penetration (m), of the pairs that `of` selects; `held` (1/s²) is the
 /// contribution of force elements to ω².
 fn critical(
     model: &Model<Planar>,
@@ -243,7 +243,8 @@ fn of_elements<'a>(
     let mut rates = vec![0.0; model.bodies().len()];
     let place = |id: BodyId| model.bodies()[id].pose.position;
     for element in loose.chain(model.elements()) {
-        // Some elements act on both bodies at the point of the second one, which may be far from the first.
+        // Some elements act on both bodies at the attachment point of the second body, which may be far from the first
+        // body.
         let [first, second] = element.link().bodies;
         let apart = place(second) - place(first);
         for (id, point) in element.ends() {
@@ -271,9 +272,9 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
         for id in contactors.iter().filter(free) {
             most = most.max(2.0 * rate(&met(*id, pair.target), &bodies[*id]));
         }
-        // A contactor with a larger rate for one target also has a larger rate for every other target. Of many
-        // contactors, the two with the largest rates for a common yardstick therefore suffice: two, since one of them
-        // may be the target itself.
+        // If one contactor has a larger rate than another for one target, it has a larger rate for every target. All
+        // contactors are therefore compared for the same target (the yardstick), and the two with the largest rates are
+        // kept: two, since one of them may itself be the target of a pair.
         let yardstick = (contactors.len() > 1).then(|| bodies[pair.target].clone());
         let mut largest: [Option<(f64, BodyId)>; 2] = [None; 2];
         for id in contactors {

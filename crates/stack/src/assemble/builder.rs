@@ -25,7 +25,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) cradle_law: usize,
     /// Contact laws of devices, numbered after the contact laws of the stack.
     pub(super) laws: Vec<Interface<Planar>>,
-    /// Contact pairs of devices, which use the laws of devices.
+    /// Contact pairs of devices, which use the contact laws in `laws`.
     pub(crate) pairs: Vec<ContactPair>,
     /// Force elements that act from the start because the stack does not stand without them. Each element is stored
     /// with the description of its device.
@@ -80,7 +80,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the number of equal slices into which a rack is divided, of which the planar model contains one.
+    /// Returns the number of equal slices into which a rack is divided; the planar model contains one slice.
     ///
     /// The number is 1 in the plane across the barrels. In the plane along the barrels, it is the number of barrels
     /// that a rack carries side by side.

@@ -8,9 +8,9 @@
 //! |---|---|---|---|
 //! | a rail on the crown of a barrel | both rails | one rail | one rail |
 //! | a support of a cradle | both rails | both supports on a rail, which wedge the barrel | one support |
-//! | an end of a rail on the ground | both rails | both ends, divided by the barrels side by side | one end |
+//! | an end of a rail on the ground | both rails | both ends, divided by the number of barrels side by side | one end |
 //! | a foot on the ground | both rails, half at each corner | like an end of a rail | – |
-//! | a post | two posts, half at each corner | the same, divided by the barrels side by side | – |
+//! | a post | two posts, half at each corner | the same, divided by the number of barrels side by side | – |
 
 use barrelstack_dynamics::math;
 
@@ -18,7 +18,7 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack, or of its posts, that stand one behind the other in the plane across the barrels.
+/// Number of rails of a rack that coincide in the planar model across the barrels; the same holds for its posts.
 const RAILS: f64 = 2.0;
 
 /// The kind of model that represents a stack.
@@ -57,7 +57,7 @@ impl Bundle {
                 View::Longitudinal => 1.0,
             });
         }
-        // The plane along the barrels is a slice one barrel wide.
+        // The planar model along the barrels is a slice one barrel wide.
         let behind = match view {
             View::Transverse => RAILS,
             View::Longitudinal => RAILS / f64::from(rack.barrels),

@@ -338,7 +338,7 @@ fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, Asse
     })
 }
 
-/// Returns the nodes of one part by a rule, in the body frame; `None` if the points of the nodes are chosen
+/// Returns the nodes that a rule places on one part, in the body frame; `None` if the points of the nodes are chosen
 /// individually.
 fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option<Nodes<Planar>> {
     let shape = &placed.surface;
@@ -356,7 +356,7 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
             let around = std::f64::consts::TAU * circle.radius;
             shape.nodes(around / f64::from((*count).max(1)))
         }
-        // On curved shapes, the count divides the whole boundary; without a count, 64 parts resolve it.
+        // On a curved shape, the count is the number of parts of the whole boundary; without a count, there are 64.
         (scenario::Nodes::Count(count), _) => {
             shape.nodes(boundary_length(shape) / f64::from((*count).max(1)))
         }

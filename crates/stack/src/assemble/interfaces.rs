@@ -10,13 +10,13 @@ use crate::scenario;
 /// Penetration (m) at which a nonlinear normal law is linearized to obtain the stiffness of the tangential spring.
 const STICK_REFERENCE: f64 = 2e-4;
 
-/// Damping ratio of the tangential spring of a rebound law, at a contact that carries the mass [`STICK_MASS`].
+/// Damping ratio of the tangential spring under a rebound law, for a contact that carries the mass [`STICK_MASS`].
 const STICK_DAMPING_RATIO: f64 = 0.1;
 
-/// Mass (kg) with which the tangential spring of a rebound law has the damping ratio [`STICK_DAMPING_RATIO`].
+/// Mass (kg) with which the tangential spring under a rebound law has the damping ratio [`STICK_DAMPING_RATIO`].
 const STICK_MASS: f64 = 50.0;
 
-/// Converts a contact law to an interface of the model, whose contacts each represent a bundle of seats.
+/// Converts a contact law to an interface of the model; each contact of the interface represents a bundle of seats.
 pub(super) fn interface<S: Space<Real = f64>>(
     name: &str,
     law: &scenario::Interface,

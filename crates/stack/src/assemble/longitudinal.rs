@@ -120,8 +120,8 @@ fn add_rack(
         body: name.clone(),
         problem: problem.to_string(),
     };
-    // The rails of a rack with posts lie above the underside of its frame by the stroke of the seats, and carry load
-    // once the stroke is used up.
+    // In a rack with posts, the rails lie above the underside of the frame, at a distance equal to the stroke of the
+    // seats. The rails carry load once the stroke is used up.
     let lift = rack.posts.map_or(0.0, |_| rack.seat_stroke.min(rack.beam_height));
     let on_barrels = rack.posts.is_none() && level > 1;
     let rail = |(barrel, place, side): (usize, f64, f64)| {

@@ -77,7 +77,8 @@ pub struct Part {
     pub kind: PartKind,
     /// Level, 1 at the bottom; `None` in a free scene.
     pub level: Option<u32>,
-    /// Column, 1 at the left. The column of a rack counts racks; the column of any other body counts barrels.
+    /// Column, 1 at the left: the number of a barrel among the barrels of its level, or the number of a rack among the
+    /// racks of its level. A device under or on a rack has the column of the rack.
     pub column: Option<u32>,
     /// Body that carries this body: the rack that carries a barrel or a tuned mass, the barrel that contains wine, or
     /// the platform under a rack.
@@ -256,7 +257,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
 /// Returns the contact laws of a three-dimensional stack, in the order of
 /// [`StackPair::ALL`](crate::scenario::StackPair::ALL).
 ///
-/// The laws are the same as in a planar model, except that every seat is a separate contact.
+/// These contact laws are the same as in a planar model, except that every seat is a separate contact.
 pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
     stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }

@@ -1,11 +1,11 @@
 //! Contact pairs of a stack: the boundaries that can touch, each pair with its contact law.
 //!
-//! A barrel and its rack touch at the supports of the cradle, and a rack and its support at the underside of the rack:
-//! these are the seats. All other boundaries of these bodies, and any other two bodies, touch in impacts only. A
-//! circular barrel is tested against other solids at its deepest point. Two solids with corners are each tested against
-//! the other, and every contact belongs to one round piece (a corner or an arc). A face with nodes is tested at its
-//! nodes while the body that it carries lies in front of the face. Once that body has moved beside the face, the
-//! contact between the two is tested exactly, so that no contact counts twice.
+//! A barrel touches its rack at the supports of the cradle. The underside of a rack touches the bodies on which the
+//! rack stands. These contacts are the seats. All other boundaries of these bodies, and any other two bodies, touch in
+//! impacts only. A circular barrel is tested against other solids at its deepest point. Two solids with corners are
+//! each tested against the other, and every contact belongs to one round piece (a corner or an arc). A face with nodes
+//! is tested at its nodes while the body that it carries lies in front of the face. Once that body has moved beside the
+//! face, the contact between the two is tested exactly, so that no contact counts twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 

@@ -53,7 +53,7 @@ impl Seat {
     }
 }
 
-/// Contact data of a solid, with the same index as its surface.
+/// Contact data of a solid, stored at the same index as the surface of the solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) seat: Seat,

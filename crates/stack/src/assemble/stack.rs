@@ -94,7 +94,7 @@ pub(super) fn laws<S: Space<Real = f64>>(
     };
     let laws = &spec.interfaces;
     let law = |pair: &StackPair| {
-        // At the end of its stroke, a seat also follows the impact law of the same bodies.
+        // Beyond the stroke of a seat, the impact law of the same two bodies also acts.
         let stop = match pair {
             StackPair::RackGround => &laws.fallen_rack_ground,
             StackPair::BarrelRack => &laws.fallen_barrel_rack,

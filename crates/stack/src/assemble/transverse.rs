@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!      ( B2.1 )   ( B2.2 )
-//!      __|_|________|_|__      two bars to a cradle, their round ends at ± the support angle; a beam
-//!         [_]        [_]       feet, where the rack has them, over each crown
+//!      __|_|________|_|__      two bars per cradle, with round ends at ± the support angle; a beam
+//!         [_]        [_]       feet, if the rack has any, over each crown
 //!      ( B1.1 )   ( B1.2 )
 //!      __|_|________|_|__
 //!         [_]        [_]

@@ -242,7 +242,8 @@ impl Isolators {
         let surface = match self.path {
             Path::None | Path::Flat => 0,
             Path::Dish => {
-                // The dish is drawn up to the stops; its surface continues beyond them, so that no impact leaves it.
+                // The dish is drawn up to the stops. Its surface extends beyond them, so that the bearing stays on the
+                // dish when the platform hits a stop.
                 let dish =
                     |half_angle| Shape::Cradle(Cradle::new(self.dish_radius * length, half_angle));
                 let offset = Vec2::new(x + end, self.dish_radius) * length;

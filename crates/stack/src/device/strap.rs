@@ -129,8 +129,8 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// Returns one strap over a vertical distance (m) on the stack as drawn, and its slack (m) after it is tightened on
-    /// the stack at rest.
+    /// Returns one strap that spans a vertical distance (m) on the stack as drawn, and its slack (m) after it is
+    /// tightened on the stack at rest.
     ///
     /// The slack is the length of the strap minus the distance between its ends; it is negative under pretension.
     ///

@@ -100,7 +100,7 @@ impl WalkingStops {
         self.levels > 0
     }
 
-    /// Returns the stops between the bodies of a link along an axis of the first body.
+    /// Returns the stops between the two bodies of a link; they act along an axis of the first body.
     ///
     /// The stops disengage once the rack has risen above the lips.
     pub fn guide<S: Space<Real = f64>>(

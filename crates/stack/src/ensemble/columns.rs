@@ -229,7 +229,7 @@ fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|number| plain(*number)).collect::<Vec<_>>().join(";")
 }
 
-/// Returns the largest magnitude of all forces of a case.
+/// Returns the largest magnitude of the force that `of` selects, over all joints of a case.
 fn force(case: &CaseResult, of: fn(&Joint) -> f64) -> Option<f64> {
     case.joints.iter().map(|(_, joint)| of(joint).abs()).reduce(f64::max)
 }

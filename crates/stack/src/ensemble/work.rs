@@ -65,7 +65,7 @@ impl Work {
 
 /// Total time that all threads have spent on one kind of work, including work in progress.
 struct Clock {
-    /// Number of threads that are now at work of this kind.
+    /// Number of threads that are doing this kind of work now.
     threads: AtomicI64,
     /// Sum of all end times minus the sum of all start times (ns).
     sum: AtomicI64,

@@ -9,7 +9,7 @@ use crate::rest::Restless;
 /// Maximum memory (bytes) of the results of a run.
 pub(super) const MOST_KEPT: f64 = 2e9;
 
-/// Error of a run.
+/// Reason why a scenario cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunFailure {
     /// The ground motion cannot be read or generated.

@@ -130,8 +130,8 @@ const STICK_ON_FLOOR: f64 = 4.0;
 /// 0.05 s, the error of the energy balance is 1.4e-3. With a ratio of two, this error is 2e-12.
 const STICK_ON_POST: f64 = 2.0;
 
-/// Contact constants of the seats of a rack. The constants are the medians over the variants of a stack;
-/// `validation/seats.md` derives them.
+/// Contact constants of the seats of a rack. Each constant is the median of its values in the variants of a stack.
+/// `validation/seats.md` derives the constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
     /// Seat of a rack on a barrel: one rail on the crown of a barrel below, or one support of a cradle under a barrel.

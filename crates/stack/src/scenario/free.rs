@@ -95,7 +95,7 @@ pub struct Boundary {
     pub nodes: Nodes,
 }
 
-/// The contact law between two kinds of a free scene.
+/// The contact law between two kinds of bodies or boundaries of a free scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeInterface {
     /// The two kinds: the first has the nodes (contactor), the second the surface (target).

@@ -2,9 +2,9 @@
 
 /// Declares a type whose fields in a file override the fields of a catalog entry.
 ///
-/// Members without a field in files come first. The fields follow as in [`section!`](barrelstack_input::section), each
-/// with the key in files if the key differs from the name of the member. A field that a file leaves out takes the value
-/// of the catalog.
+/// Members that are not fields in files come first. The fields follow, in the form of
+/// [`section!`](barrelstack_input::section); `as` states the key of a field in files if it differs from the name of the
+/// member. A field that a file leaves out takes the value of the catalog.
 macro_rules! known {
     (
         $(#[$about:meta])*

@@ -124,8 +124,8 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Sources of the values of a scenario, which give the place of an error in a file, and warnings about the text of the
-/// scenario. Ignored in comparisons.
+/// Where the values of a scenario were written, so that errors can state their place; then warnings about the text of
+/// the scenario. Comparisons of scenarios ignore both.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>, Vec<String>);
 

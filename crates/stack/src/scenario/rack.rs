@@ -60,8 +60,8 @@ named! {
 }
 
 impl SeatContact {
-    /// Returns the number of elements, each with the constants of a node, that coincide in the plane across the barrels
-    /// and are represented by one element.
+    /// Returns the number of contact elements that one element of the model across the barrels represents. These
+    /// elements coincide in that plane, and each has the constants of a node.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,
@@ -180,7 +180,7 @@ static BASES: [Variant; catalog::RACKS.len()] = {
     bases
 };
 
-/// Returns the seat constants of the catalog rack that a table names as the base of its rack.
+/// Returns the seat constants of the catalog rack that a table names in its field `base`.
 pub(super) fn seats(reader: &Reader<'_>) -> Result<catalog::Seats, ScenarioError> {
     let known = catalog::rack(reader.chosen()?).ok_or_else(|| reader.missing("base"))?;
     Ok(known.seats)

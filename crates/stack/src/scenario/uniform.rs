@@ -108,7 +108,7 @@ fn compound(parts: &[PartShape]) -> Uniform {
     Uniform { centroid, square_radius: placed().map(about).sum() }
 }
 
-/// Returns the polar moment of area of a rectangle with rounded corners divided by its area (m²).
+/// Returns the polar moment of area of a rectangle with rounded corners, divided by its area (m²).
 fn rounded_rectangle(w: f64, h: f64, r: f64) -> f64 {
     let (square, quarter) = (r * r, 0.25 * PI * r * r);
     // Each square corner is replaced by a quarter of a disk; the moments of both are shifted from their own centroids.

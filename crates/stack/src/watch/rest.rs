@@ -9,7 +9,7 @@ use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::scenario::{Scenario, Until};
 
-/// Largest height (m), at full scale, by which the kinetic energy of a body at rest could lift the body.
+/// Height (m), at full scale: a body counts as at rest if its kinetic energy could lift it by at most this height.
 ///
 /// This height corresponds to a speed of 0.31 m/s, and is a tenth of the height that lifts a barrel out of the
 /// shallowest cradle of the catalog. With less kinetic energy, stacks can sway on their round barrels for minutes,
@@ -86,7 +86,7 @@ pub struct Rest<R: Real = f64> {
     still_from: R,
     /// Time (s) from which the ground is calm; infinite if the run ends by its duration only.
     calm_from: R,
-    /// Largest kinetic energy of a body at rest divided by its mass (m²/s²).
+    /// Largest kinetic energy, divided by the mass, with which a body counts as at rest (m²/s²).
     slow: R,
     /// Duration (s) for which all bodies must be slow.
     hold: R,
@@ -143,8 +143,8 @@ impl Rest {
 
 /// Returns the times (s) from which a standing stack and a collapsed stack may be at rest.
 ///
-/// `end` is the end of the motion (s), and `calm` returns the time (s) from which the ground is calm. Both times are
-/// infinite if the run ends by its duration only.
+/// `end` is the end of the motion (s), and `calm` returns the time (s) from which the ground is calm. Both returned
+/// times are infinite if the run ends by its duration only.
 pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f64) {
     match until {
         Until::Rest => (end, calm()),
@@ -175,7 +175,7 @@ impl<R: Real> Rest<R> {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
-            // Once a body moves in every lane, the other bodies need no test.
+            // Once every lane has a body that moves, the other bodies need no test.
             if moves.all() {
                 break;
             }

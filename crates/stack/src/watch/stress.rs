@@ -94,8 +94,8 @@ impl StressEnvelope {
         self.at_rest.iter().zip(&self.lengths).map(|(stress, length)| stress * length).sum()
     }
 
-    /// Returns the largest stress until the first loss of seat divided by the largest stress at rest, which may occur
-    /// at a different point; `None` without load at rest.
+    /// Returns the largest stress until the first loss of seat, divided by the largest stress at rest; `None` without
+    /// load at rest. The two stresses may occur at different points.
     pub fn amplification(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak)
     }

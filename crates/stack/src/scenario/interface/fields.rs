@@ -196,7 +196,7 @@ pub static IMPACT: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// The contact law between two kinds of a free scene.
+/// The contact law between two kinds of bodies or boundaries of a free scene.
 pub static FREE_INTERFACE: Section = Section {
     name: "free-interface",
     help: "The contact law between two kinds of bodies.",

@@ -56,7 +56,7 @@ pub(in crate::scenario) fn read(
         }
         Law::Hertz | Law::Rebound => 1.5,
     };
-    // The constants of the paper belong together, and apply to its laws only.
+    // The constants of the paper belong together, and apply to its contact laws only.
     let is_linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt);
     let node = (is_linear && basis == Basis::Node && defaults.is_some()).then_some(NODE);
     let known = match law {
@@ -109,8 +109,8 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
-/// Dimension of the damping of a law; then the field name and the dimension of the reference mass or speed for which
-/// its restitution is stated.
+/// Dimension of the damping of a normal law; then the name and the dimension of its field for the reference mass or
+/// speed, which belongs to a stated restitution.
 type DampingUnits = (Dimension, &'static str, Dimension);
 
 const HUNT_CROSSLEY: DampingUnits =
