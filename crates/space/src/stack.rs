@@ -167,8 +167,8 @@ impl Pace {
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                // Contact laws are matched by name, because a plane model that represents several seats by one numbers
-                // its contact laws differently.
+                // Contact laws are matched by name, because their indices are different in a plane model that merges
+                // several seats into one.
                 for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
                     let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);

@@ -165,7 +165,7 @@ impl<S: Space> Stick<S> {
         let limit = static_coefficient * normal_force;
         let limit = S::Real::select(self.slipping, kinetic, limit);
         let broken = (limit * limit).lt(trial.dot(trial));
-        // A slipping node sticks again when the slip turns against the stretched spring.
+        // A slipping node sticks again when its slip reverses, so that the slip relaxes the stretched spring.
         let follows = S::Real::zero().le(spring.dot(slip_rate));
         let slipping = broken | (self.slipping & follows);
         let held = S::Real::select(slipping, kinetic, limit);

@@ -199,7 +199,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         rotation: Self::Rotation,
         spins: [Self::Spin; 2],
     ) -> Self::Tangent;
-    /// Adds the rate returned by [`Space::stick_turn`] to a tangent, in lanes of the mask.
+    /// Adds the rate returned by [`Space::stick_turn`] to a tangent, in lanes where the mask is set.
     fn add_turn(
         mask: <Self::Real as Real>::Mask,
         tangent: Self::Tangent,
