@@ -71,7 +71,7 @@ impl Frame {
 }
 
 /// Contact kind of a body: how many of its node sets and how many of its surfaces may touch bodies of other parties.
-/// They come first in the body's lists of node sets and surfaces.
+/// These node sets and surfaces come first in the lists of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContactKind {
     /// Number of node sets.

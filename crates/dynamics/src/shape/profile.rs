@@ -90,8 +90,9 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// Returns, for a point inside the core, the stave or the head, whichever is nearer and the point can bear on as
-    /// part of another body's boundary; elsewhere returns `nearest`. See [`Surface::bearing`](super::Surface::bearing).
+    /// Returns, for a point inside the core, the nearest part of the boundary, stave or head, on which the point can
+    /// bear as part of another body's boundary; elsewhere returns `nearest`. See
+    /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,
