@@ -17,8 +17,8 @@ pub enum FrictionLaw<R = f64> {
     /// f_t     = spring + c_t v_t held within ± μ fₙ
     /// ```
     ///
-    /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state, with the slip
-    /// rate as its rate of change, and is limited to the capacity of the spring only when a step is accepted
+    /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state; its rate of
+    /// change is the slip rate. It is limited to the capacity of the spring only when a step is accepted
     /// ([`Stick::commit`]). So a body at rest on a slope does not creep. The law `f_t = μ fₙ` of Candia et al. (2008)
     /// is the sliding part of this law. μ is the static coefficient until the force exceeds the static limit, and then
     /// the kinetic coefficient until the slip reverses.
