@@ -90,11 +90,10 @@ pub(crate) const PLATE: f64 = 0.012;
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
-/// Resolution of view directions in a [`scene`]: the view direction of a body is rounded to this number of steps per
-/// right angle.
+/// Resolution of the view directions of bodies in a [`scene`], in steps per right angle.
 const STEPS: f64 = 6.0;
 
-/// The same as `STEPS`, for a [`coarse_scene`].
+/// Resolution of the view directions of bodies in a [`coarse_scene`], in steps per right angle.
 const COARSE_STEPS: f64 = 3.0;
 
 /// Returns the drawing of a run in a view direction.
