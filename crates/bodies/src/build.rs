@@ -210,7 +210,8 @@ mod tests {
 
     #[test]
     fn turns_are_about_axes_that_stand_still() {
-        // The rotation about x takes the local z axis to -y, that about y is zero, and that about z takes it to x.
+        // The rotation about x takes the local z axis to -y; there is no rotation about y; the rotation about z takes
+        // -y to x.
         let quarter = std::f64::consts::FRAC_PI_2;
         let up = turn([quarter, 0.0, quarter]).matrix().apply(Vec3::new(0.0, 0.0, 1.0));
         assert!((up - Vec3::new(1.0, 0.0, 0.0)).length() < 1e-15, "{up:?}");

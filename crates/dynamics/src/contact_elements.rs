@@ -340,8 +340,8 @@ impl<S: Space> ContactElements<S> {
         !self.exhaustive && (round.greatest_depth + travels).lt(depth).all()
     }
 
-    /// Adds the elements of a pair that are within reach to the list; returns the smallest gap (m) of these elements in
-    /// every lane.
+    /// Adds to the list those elements of a pair that are within reach. Returns the smallest gap (m) of these elements
+    /// in every lane.
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
         let mut least = S::Real::splat(f64::INFINITY);

@@ -48,15 +48,16 @@ impl EnergySummary {
 
 /// Energy balance of every lane, summed over the accepted steps of a run.
 ///
-/// The work of a force in a step is the mean of the forces at the start and at the end of the step, multiplied by the
-/// displacement of the body. This is the discrete energy balance of the central difference method. Velocity Verlet
-/// satisfies this balance to rounding, except for the difference between the velocities at the ends and in the middle
-/// of a step, which does not accumulate. So a linear spring returns all its energy, and the works of dampers, friction
-/// and the ground are exact, however abruptly these forces set in.
+/// The work of a force in a step is the displacement of the body, multiplied by the mean of the force at the start of
+/// the step and the force at its end. This is the discrete energy balance of the central difference method. Velocity
+/// Verlet satisfies this balance to rounding, except for the difference between the velocities at the ends and in the
+/// middle of a step, which does not accumulate. So a linear spring returns all its energy, and the works of dampers,
+/// friction and the ground are exact, however abruptly these forces set in.
 ///
-/// The residual is the error of the time integration alone. Its sources are springs that engage or release within a
-/// step, nonlinear laws, and changes of geometry. Stored energies are computed from the state alone, so a force that is
-/// not the derivative of its energy, or that differs between the motion and the balance, leaves a residual, too.
+/// The residual is the error of the time integration. Its sources are springs that engage or release within a step,
+/// nonlinear laws, and changes of geometry. Mistakes in the force laws also show in the residual: stored energies are
+/// computed from the state alone, so a residual remains if a force is not the derivative of its energy, or if the
+/// motion and the balance use different forces.
 #[derive(Clone, Debug)]
 pub struct EnergyLedger<S: Space> {
     initial: S::Real,

@@ -71,7 +71,7 @@ impl Frame {
 }
 
 /// Contact kind of a body: how many of its node sets and how many of its surfaces may touch bodies of other parties.
-/// They come first in the body's lists of node sets and surfaces.
+/// These node sets and surfaces come first in the lists of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContactKind {
     /// Number of node sets.
@@ -85,8 +85,9 @@ pub struct ContactKind {
 pub struct Rule {
     /// `true` if the body of the second contact kind is the contactor.
     pub reversed: bool,
-    /// Indices of the contact law among the interfaces of the first body's party and of the second body's party. The
-    /// index that applies is that of the party that supplies the law ([`Party::rank`]).
+    /// Two indices of the contact law: one among the interfaces of the first body's party, and one among the interfaces
+    /// of the second body's party. The party that supplies the contact law ([`Party::rank`]) determines which of them
+    /// is used.
     pub laws: [InterfaceId; 2],
 }
 
@@ -192,7 +193,7 @@ pub struct Source<'a> {
     pub state: &'a State<Spatial>,
     /// The forces of the state.
     pub scratch: &'a Scratch<Spatial>,
-    /// The run.
+    /// Time stepping and energy balance of the run.
     pub stepper: &'a Stepper<Spatial>,
     /// Placement of the frame of this run in the frame of the new model.
     pub frame: Frame,
@@ -218,7 +219,7 @@ pub struct Running {
     pub state: State<Spatial>,
     /// The forces of the state.
     pub scratch: Scratch<Spatial>,
-    /// The run.
+    /// Time stepping and energy balance of the run.
     pub stepper: Stepper<Spatial>,
 }
 

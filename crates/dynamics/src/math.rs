@@ -8,7 +8,7 @@ pub use libm::{
 
 /// Returns sine and cosine of an angle (rad) for one number or a bundle of lanes.
 ///
-/// The angle is reduced to the nearest multiple of π/2 in three parts (Cody and Waite) and sine and cosine of the
+/// The angle is reduced to the nearest multiple of π/2 in three parts (Cody and Waite), and sine and cosine of the
 /// remainder are evaluated with the minimax polynomials of the FreeBSD mathematics library. The measured error is below
 /// 1 ulp for |angle| up to 1e5 rad, which exceeds the rotation of any barrel.
 #[inline(always)]
@@ -39,7 +39,7 @@ pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
                             + z * (R::splat(2.087_572_321_298_175e-9)
                                 + z * R::splat(-1.135_964_755_778_819_5e-11))))));
 
-    // The quadrant, k mod 4, by arithmetic so that lanes need no integers.
+    // The quadrant, k mod 4, is computed with floating-point numbers, so that lanes need no integers.
     let half = (quarters * R::splat(0.5) + R::splat(ROUNDER)) - R::splat(ROUNDER);
     let odd = R::zero().lt((quarters - half * R::splat(2.0)).abs());
     let quarter_floor = R::select(odd, quarters - R::splat(1.0), quarters);

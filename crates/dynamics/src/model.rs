@@ -329,8 +329,7 @@ impl<S: Space> Model<S> {
         self.pairs.get(number)
     }
 
-    /// Returns the lowest number of the contact pairs between different parties of a [joined](crate::join::joined)
-    /// model.
+    /// Returns the number of the first contact pair between different parties of a [joined](crate::join::joined) model.
     pub fn first_foreign_pair(&self) -> usize {
         self.pairs.first_foreign()
     }

@@ -181,7 +181,7 @@ impl Pairs {
         self.of_couple(between(pair)).find(found)
     }
 
-    /// Returns the lowest number of the pairs between bodies of two parties.
+    /// Returns the number of the first pair between bodies of two parties.
     pub(crate) fn first_foreign(&self) -> usize {
         match self {
             Self::Listed { pairs, .. } | Self::Joined { pairs, .. } => pairs.len(),

@@ -327,8 +327,8 @@ impl<S: Space<Real = f64>> Stepper<S> {
     /// Sets the force from outside the model on a body; it replaces an earlier force on this body. The force is held
     /// during the next steps; setting force and moment to zero removes it.
     ///
-    /// Only the difference from the earlier force is added to the forces of the current state, so an unchanged force
-    /// leaves every bit unchanged.
+    /// Only the difference from the earlier force is added to the forces of the current state. So if the same force is
+    /// set again, the results are bit-identical.
     ///
     /// # Errors
     /// If there is no such body, if the body follows the ground, or if a number is not finite.

@@ -46,8 +46,8 @@ fn a_run_repeated_gives_the_same_bits() {
 
 #[test]
 fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
-    // Continues from the saved state alone: twists, poses, sticks. Times are powers of two, so that the steps are the
-    // same.
+    // Continues from the saved state alone: twists, poses and contact history. Times are powers of two, so that the
+    // steps are the same.
     let (step, half, end) = (1.0 / 4096.0, 0.25, 0.5);
     let drive = Shake::Harmonic { acceleration: 4.0, omega: 7.0 };
     let mut whole = tumbling();
@@ -57,7 +57,7 @@ fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
     let mut resumed = Scene::of(parts.model.clone());
     resumed.state = parts.state.clone();
     resumed.by(Method::RungeKutta4).run(&drive, step, end).unwrap();
-    // Time, positions and velocities of all bodies; the stick history affects them at the next step.
+    // Time, positions and velocities of all bodies; the contact history affects them at the next step.
     let all = 1 + 6 * whole.state.poses.len();
     assert_eq!(bits(&whole.state)[..all], bits(&resumed.state)[..all]);
 }

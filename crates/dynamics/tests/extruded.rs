@@ -1,4 +1,4 @@
-//! A plane stack that is extruded into space moves as it does in the plane.
+//! A plane stack that is extruded into three dimensions moves as it does in the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -104,7 +104,7 @@ fn flat(levels: usize) -> Scene<Planar> {
     Scene::of(Model::new(bodies, vec![laws()], pairs, scene::DOWN).unwrap())
 }
 
-/// Returns the stack in space: all contacts of a rack lie in two planes, each with half of the constants.
+/// Returns the stack in three dimensions: all contacts of a rack lie in two planes, each with half of the constants.
 fn drawn_out(levels: usize) -> Scene<Spatial> {
     let along = yaw(FRAC_PI_2).matrix();
     let upright = Quaternion::turn(Vec3::new(0.0, -FRAC_PI_2, 0.0)).matrix();
@@ -155,7 +155,7 @@ fn drawn_out(levels: usize) -> Scene<Spatial> {
     Scene::of(Model::new(bodies, vec![laws()], pairs, down).unwrap())
 }
 
-/// A plane ground motion in space.
+/// A plane ground motion, applied in three dimensions.
 struct Across(Shake);
 
 impl Drive<Spatial> for Across {
@@ -165,8 +165,8 @@ impl Drive<Spatial> for Across {
     }
 }
 
-/// Results of a comparison: the largest distance (m) of the two stacks until a fall or the end, the distance (m) of the
-/// spatial stack from its plane, and displacement (m) and time (s) of a fall.
+/// Results of a comparison: the largest distance (m) of the two stacks until a fall or the end, the distance (m) by
+/// which the three-dimensional stack leaves its plane, and the displacement (m) and time (s) of a fall.
 struct Apart {
     off: f64,
     aside: f64,
@@ -175,8 +175,8 @@ struct Apart {
     fell: bool,
 }
 
-/// Compares the stack in the plane and in space. Both start from the same unloaded positions, since friction at rest
-/// depends on the path to it, and settling takes another path in space.
+/// Compares the stack in the plane with the stack in three dimensions. Both start from the same unloaded positions,
+/// since friction at rest depends on how rest was reached, and settling takes another path in three dimensions.
 fn compare(levels: usize, shake: Shake, most: f64) -> Apart {
     let (mut plane, mut space) = (flat(levels), drawn_out(levels));
     let start: Vec<Vec2> = plane.state.poses.iter().map(|pose| pose.position).collect();

@@ -162,8 +162,8 @@ fn a_profile_rests_on_the_head_of_an_equal_one() {
     }
 }
 
-/// Asserts that stacked blocks in space, each at a position and rotation, come to rest; returns their settlements
-/// (m).
+/// Asserts that stacked three-dimensional blocks, each at a position and rotation, come to rest; returns their
+/// settlements (m).
 fn blocks_rest(
     what: &str,
     hull: Hull,

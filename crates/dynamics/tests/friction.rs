@@ -81,7 +81,8 @@ fn what_rests_is_held_by_the_static_coefficient_and_what_slides_by_the_kinetic()
     let (speed, end) = run(&mut thrown, 5.0, 2e-4);
     assert!(speed.abs() < 1e-12 && (end - place).abs() < 1e-12, "{speed:e} {:e}", end - place);
     let slow_down = GRAVITY * (libm::sin(slope) + 0.3 * libm::cos(slope));
-    // Sticks stretched uphill release and stretch downhill by the weight component of the block.
+    // Tangential springs that are stretched uphill relax, and the weight component of the block stretches them
+    // downhill.
     let back = MASS * slow_down / (2.0 * STIFFNESS);
     assert_close("way uphill", -end, 0.25 / (2.0 * slow_down) - back, 5e-3); // measured 2.4e-3
 }

@@ -148,7 +148,7 @@ proptest! {
     #[test]
     fn a_scene_four_times_as_large_moves_alike_bit_for_bit(seed in any::<u64>()) {
         // Time ×2, mass ×64, forces ×64, equal gravity; all factors are powers of two. The margin of the near list is
-        // in meters and does not scale: it must not change a single bit.
+        // in meters and does not scale: the results must be bit-identical nevertheless.
         let ground = Shake::Swing { amplitude: 0.03, omega: 9.0 };
         let larger_ground = Shake::Swing { amplitude: 4.0 * 0.03, omega: 4.5 };
         for method in [Method::SemiImplicitEuler, Method::VelocityVerlet, Method::RungeKutta4] {

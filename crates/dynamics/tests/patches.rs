@@ -1,4 +1,4 @@
-//! Line and face contacts of solids: forces and sticks vary as smoothly as the poses.
+//! Line and face contacts of solids: forces and tangential springs vary as smoothly as the poses.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -39,13 +39,13 @@ struct Couple {
 }
 
 /// Contact of the two bodies at a pose: force and moment, expressed as depths (m), and positions and load shares of the
-/// sticks.
+/// tangential springs.
 #[derive(Clone, Debug)]
 struct Seen {
     force: Vec3,
     moment: Vec3,
     energy: f64,
-    /// Position (m) of every stick and its force, expressed as a depth (m).
+    /// Position (m) of every tangential spring, and its force, expressed as a depth (m).
     sticks: Vec<(Vec3, f64)>,
 }
 
@@ -83,8 +83,8 @@ impl Couple {
 }
 
 impl Seen {
-    /// Returns the difference (m) of two contacts: of forces and moments as depths, and of the positions of sticks.
-    /// Positions are weighted by load, since an unloaded stick has no history.
+    /// Returns the difference (m) of two contacts: of forces and moments as depths, and of the positions of tangential
+    /// springs. Positions are weighted by load, since an unloaded spring has no history.
     fn jump(&self, other: &Self) -> f64 {
         let mut jump =
             (self.force - other.force).length().max((self.moment - other.moment).length());
@@ -101,7 +101,7 @@ impl Seen {
 const ELASTIC: NormalLaw = NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 0.0 };
 
 /// Returns the largest jump (m) along a path, as far as bisection can distinguish it from a slope: where the change
-/// between two samples is largest, the path is bisected until they are at the resolution of the motion.
+/// between two samples is largest, the path is bisected until the two samples are at the resolution of the motion.
 fn largest_jump(couple: &mut Couple, path: &dyn Fn(f64) -> (Vec3, Quaternion)) -> f64 {
     largest_jump_where(couple, path, &mut |_| true)
 }
@@ -188,7 +188,7 @@ struct Lying {
     hull: Hull,
     /// Normal out of the target.
     outward: Vec3,
-    /// Orientation of the body, and the point of it (m) about which it is rotated.
+    /// Orientation of the body, and the point (m) of the body about which it is rotated.
     base: (Quaternion, Vec3),
     /// Maximum lateral displacement (m) and rotation (rad).
     ways: (Vec3, Vec3),

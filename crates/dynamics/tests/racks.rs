@@ -1,4 +1,4 @@
-//! Barrels on racks of tubes in space: at rest, mirrored, in any order, and compared with the plane.
+//! Barrels on racks of tubes in three dimensions: at rest, mirrored, in any order, and compared with the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -164,7 +164,7 @@ fn a_barrel_thrown_to_the_other_side_does_the_mirrored_bit_for_bit() {
     assert_eq!(run(1.0), run(-1.0));
 }
 
-/// The reflections at the planes through the origin across `x` and across `y`.
+/// The reflections in the planes through the origin that are perpendicular to `x` and to `y`.
 const REFLECTIONS: [Vec3; 2] = [Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0)];
 
 /// Mirrors a rotation vector, whose components change sign where those of an ordinary vector do not.

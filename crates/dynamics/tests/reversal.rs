@@ -1,4 +1,4 @@
-//! Effect of elastic sticks on reversing slip, compared with rigid friction.
+//! Effect of the tangential springs of sticking contacts on slip that reverses, compared with rigid friction.
 
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
@@ -58,8 +58,8 @@ fn rigid_slip(drive: &Swing) -> f64 {
     slip
 }
 
-/// Returns the slip (m) of the block on elastic sticks, from the total stiffness (N/m) of both corners and the fraction
-/// of critical damping.
+/// Returns the slip (m) of the block with tangential springs, from the total stiffness (N/m) of both corners and the
+/// fraction of critical damping.
 fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     let gravity = gravity_on_slope(SLOPE);
     let normal = NormalLaw::KelvinVoigt { stiffness: 1e7, damping: 3e4 };
@@ -75,7 +75,7 @@ fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     scene.state.poses[1].position.x - start
 }
 
-/// Returns the bias of the slip, divided by the square root of the yield displacement over the amplitude.
+/// Returns the bias of the slip, divided by the square root of the ratio of the yield displacement to the amplitude.
 fn bias(amplitude: f64, stiffness: f64, damped: f64) -> (f64, f64) {
     let drive = Swing(amplitude);
     let bias = elastic_slip(&drive, stiffness, damped) / rigid_slip(&drive) - 1.0;
@@ -85,7 +85,7 @@ fn bias(amplitude: f64, stiffness: f64, damped: f64) -> (f64, f64) {
 
 #[test]
 fn where_slip_reverses_at_once_its_bias_is_the_root_of_the_stretch_at_which_the_stick_yields() {
-    // 0.97 g against a friction of 0.3: the block never stops to stick. A full reversal of friction takes the time in
+    // 0.97 g against a friction of 0.3: the block never sticks. A full reversal of friction takes the time in
     // which it slips back by twice the yield displacement, √(4 yield / a).
     for (damped, expected) in [(0.0, 0.82), (0.1, 0.71), (1.0, 0.257)] {
         for stiffness in [1e6, 1e7, 1e8, 1e9] {
@@ -103,7 +103,7 @@ fn where_slip_reverses_at_once_its_bias_is_the_root_of_the_stretch_at_which_the_
 
 #[test]
 fn where_the_block_sticks_in_between_its_bias_falls_with_the_stretch_itself() {
-    // 0.32 g: it is held for most of the cycle.
+    // 0.32 g: friction holds the block for most of the cycle.
     for stiffness in [1e7, 1e8, 1e9] {
         let (bias, share) = bias(0.02, stiffness, 1.0);
         let factor = bias / share;

@@ -1,4 +1,4 @@
-//! Solids in space: distances compared with exact distances, and invariants at any pose.
+//! Three-dimensional solids: distances compared with exact distances, and invariants at any pose.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -309,7 +309,7 @@ fn a_barrel_settles_on_its_head_and_stays() {
     let scene = scene.settled(1e-9).unwrap();
     let forces: Vec<f64> = scene.scratch.contacts.iter().map(|c| c.normal_force).collect();
     let weight: f64 = forces.iter().sum();
-    // All friction acts on the four sticks about the center of pressure, which is the middle of the head.
+    // All friction acts on the four tangential springs around the center of pressure, which is the middle of the head.
     for force in &forces[1..] {
         assert!((force / weight - 0.25).abs() < 1e-6, "{forces:?}");
     }

@@ -1,5 +1,5 @@
-//! Exports cases for comparison with another physics engine: stacks in space at rest before the motion, and the outcome
-//! that this program computes for each.
+//! Exports cases for comparison with another physics engine: three-dimensional stacks at rest before the motion, and
+//! the outcome that this program computes for each.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example cases -- 50 cases "stack.levels=3+motion.scale.factor=0.5"
@@ -15,8 +15,8 @@
 //! Files such as `motion-1.json` have the velocity of the ground, files such as `0001.json` one case each: bodies at
 //! rest with their masses, solids and seats; the pairs of solids that may touch, with their laws; the thresholds; and
 //! two outcomes. `outcome` is that of the case as stated. `alike` is that of seats as in MuJoCo, whose friction holds
-//! without an elastic stick and whose damper acts in both directions, with the same restitution. All values are in SI
-//! units; rotations are quaternions `w`, `x`, `y`, `z` from the body frame to the inertial frame.
+//! without a tangential spring and whose damper acts in both directions, with the same restitution. All values are in
+//! SI units; rotations are quaternions `w`, `x`, `y`, `z` from the body frame to the inertial frame.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -44,8 +44,8 @@ const COMMON: [&str; 3] =
 /// Interfaces of seats.
 const SEATS: [&str; 2] = ["barrel-rack", "rack-ground"];
 
-/// Seats as in MuJoCo: a stick that is a hundred times as stiff as the normal spring, and a damper that acts in both
-/// directions.
+/// Seats as in MuJoCo: a tangential spring that is a hundred times as stiff as the normal spring, and a damper that
+/// acts in both directions.
 const ALIKE: [&str; 3] = [
     "law='kelvin-voigt'",
     "friction.tangential_stiffness_ratio=100",

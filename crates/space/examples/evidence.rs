@@ -1,5 +1,5 @@
 //! Compares the same stacks, motions and imperfections in the plane across the barrels, in the plane along them, and in
-//! space, to show when a verdict of a plane is enough and on which side it errs.
+//! three dimensions, to show when a verdict of a plane is enough and on which side it errs.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example evidence -- 200 shares.svg "four levels: stack.levels=4"

@@ -1,4 +1,4 @@
-//! Measures how fast a stack in space is computed on one core, relative to real time.
+//! Measures how fast a three-dimensional stack is computed on one core, relative to real time.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example speed -- stack.levels=4

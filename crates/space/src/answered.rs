@@ -30,7 +30,7 @@ pub enum AnyAnswer {
     Space(Box<Answer>),
 }
 
-/// Evaluates the same expression for the results in planes and for the results in three dimensions.
+/// Evaluates an expression for the results of a scenario, whether they are in planes or in three dimensions.
 macro_rules! either {
     ($of:expr, $one:pat => $value:expr) => {
         match $of {
@@ -204,7 +204,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Returns the output files by name, with the report in a language.
+    /// Returns the output files, each with its name. The report is written in the given language.
     ///
     /// # Errors
     /// When an archive cannot be written.
@@ -218,7 +218,7 @@ impl AnyAnswer {
         }
     }
 
-    /// Writes the parts of a rendering of the shown run.
+    /// Renders the shown run into a folder, and returns what was rendered.
     ///
     /// # Errors
     /// When a file cannot be written.

@@ -15,8 +15,8 @@ use crate::part::{Part, Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, reach_along, tubes};
 use crate::stack::Stack;
 
-/// Tributary length (m) of a contact, which converts constants per meter of contact; the same value as in the plane
-/// models.
+/// Tributary length (m) of a contact: the factor by which contact constants per meter are multiplied. The plane models
+/// use the same value.
 pub(crate) const TRIBUTARY: f64 = 0.01;
 
 /// A stack under construction.
@@ -38,13 +38,14 @@ pub(crate) struct Builder<'a> {
     pub(crate) raised: f64,
 }
 
-/// Contact laws, and the indices of the laws of devices.
+/// Contact laws, and the indices of the contact laws that devices define.
 pub(crate) struct Laws {
-    /// All laws: those of [`StackPair::ALL`] at their indices, followed by the laws of devices.
+    /// All contact laws: those of [`StackPair::ALL`] at their indices, followed by those of the devices.
     pub(crate) all: Vec<Interface<Spatial>>,
-    /// Index of the law between a barrel and its cradle.
+    /// Index of the contact law between a barrel and its cradle.
     cradle: InterfaceId,
-    /// Index of the law of one bearing; a platform has a bearing at each corner. `None` without platforms.
+    /// Index of the contact law of a bearing; a platform has one bearing at each corner. `None` if there are no
+    /// platforms.
     pub(crate) bearing: Option<InterfaceId>,
 }
 
@@ -57,8 +58,8 @@ impl Laws {
         };
         let pad = spec.devices.pad.law();
         let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", law));
-        // The contact law of a plane model is for an end of a platform, which has two corners in three dimensions, so
-        // each corner has half of the constants.
+        // In a plane model, the contact law belongs to one end of a platform. In three dimensions an end has two
+        // corners, so each corner has half of the constants.
         let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
         let bearing = isolator.map(|isolator| add("isolator-ground", isolator.law(0.5)));
         Self { all, cradle, bearing }
@@ -251,7 +252,7 @@ impl<'a> Builder<'a> {
         self.add(body, part)
     }
 
-    /// Returns a position (m); in a mirrored stack, its mirror image.
+    /// Returns a position (m), or its mirror image if the stack is mirrored.
     pub(crate) fn mirrored(&self, place: Vec3) -> Vec3 {
         let side = if self.spec.mirror { -1.0 } else { 1.0 };
         Vec3::new(side * place.x, place.y, place.z)

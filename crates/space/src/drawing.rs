@@ -1,4 +1,4 @@
-//! Flat drawings of a three-dimensional run: viewed across the barrels, along the barrels, and from above.
+//! Flat drawings of a three-dimensional run, in three views: across the barrels, along the barrels, and from above.
 //!
 //! In a flat scene, every body has a fixed outline that moves in the plane of the drawing. The outline of a
 //! three-dimensional body depends on the direction, in the body frame, from which the body is viewed. A body therefore
@@ -34,11 +34,11 @@ use crate::words::leaves;
 /// View direction of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sight {
-    /// Toward the heads of the barrels: `x` to the right, `z` up.
+    /// The plane across the barrels, viewed toward their heads: `x` to the right, `z` up.
     Across,
-    /// Toward the sides of the barrels: `y` to the right, `z` up.
+    /// The plane along the barrels, viewed toward their sides: `y` to the right, `z` up.
     Along,
-    /// From above: `x` to the right, `y` up the page.
+    /// The floor, viewed from above: `x` to the right, `y` up the page.
     Above,
 }
 
@@ -90,10 +90,10 @@ pub(crate) const PLATE: f64 = 0.012;
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
-/// Number of steps per right angle to which the direction from which a body is viewed is rounded.
+/// Resolution of the view directions of bodies in a [`scene`], in steps per right angle.
 const STEPS: f64 = 6.0;
 
-/// Number of steps per right angle to which the direction from which a body is viewed is rounded in a [`coarse_scene`].
+/// Resolution of the view directions of bodies in a [`coarse_scene`], in steps per right angle.
 const COARSE_STEPS: f64 = 3.0;
 
 /// Returns the drawing of a run in a view direction.
@@ -101,8 +101,9 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     Arc::new(drawn(run, sight, STEPS))
 }
 
-/// Returns the drawing of a run across the barrels in a form that makes a smaller file. The three-dimensional scene is
-/// the same as that of [`scene`], but the flat drawings of rotating bodies change in coarser steps.
+/// Returns the drawing of a run in the view across the barrels, in a form that makes a smaller file. The
+/// three-dimensional scene is the same as that of [`scene`], but the flat drawings of rotating bodies change in coarser
+/// steps.
 pub fn coarse_scene(run: &Run) -> Scene {
     drawn(run, Sight::Across, COARSE_STEPS)
 }
@@ -167,7 +168,7 @@ fn drawn(run: &Run, sight: Sight, steps: f64) -> Scene {
 }
 
 /// Adds a drawing of a body for every view direction that occurs along its path, and the poses of the body in all
-/// frames. `steps` is the number of steps per right angle to which view directions are rounded.
+/// frames. View directions are rounded to `steps` steps per right angle.
 fn enter(
     (part, body): (&Part, &Body<Spatial>),
     path: impl Iterator<Item = [f64; 7]>,
@@ -206,7 +207,7 @@ pub struct Shown<'a> {
 }
 
 /// Returns the drawing of many bodies on one floor, such as all stacks of a room, at the times (s) of their frames. The
-/// scene across the barrels also has all bodies in three dimensions.
+/// drawing in the view across the barrels also contains the three-dimensional scene of all bodies.
 pub fn together(bodies: &[Shown<'_>], times: &[f64], sight: Sight) -> Scene {
     let [right, up] = sight.page();
     let toward = right.cross(up);

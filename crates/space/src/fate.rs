@@ -282,7 +282,7 @@ impl Fates {
         fate.fell_at.map(|_| (Loss::Dropped, Heading::of(fate.moved)))
     }
 
-    /// Returns the current direction of the axis that was up at rest.
+    /// Returns the current direction of the body axis that points up at rest.
     fn up(&self, i: BodyId) -> Vec3 {
         self.turned[i].apply(self.upward[i])
     }

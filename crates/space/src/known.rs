@@ -5,8 +5,10 @@ use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
-/// Returns the barrel of a stack; returns an error if the stack has a feature that is not supported in three
-/// dimensions.
+/// Returns the shape of the barrels of a stack.
+///
+/// # Errors
+/// If the stack has a feature that is not supported in three dimensions.
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;

@@ -76,7 +76,7 @@ fn floor(run: &Run) -> f64 {
 }
 
 /// Returns the mesh of a body in the body frame. Half-spaces are drawn as squares; `floor` is half the side (m) of a
-/// square. The `lines` of the parts of devices on the body are drawn as bars.
+/// square. The `lines`, which represent parts of devices on the body, are drawn as bars.
 fn surface(body: &Body<Spatial>, lines: &[Vec<Vec3>], floor: f64) -> Mesh {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for placed in &body.surfaces {
@@ -231,7 +231,7 @@ mod tests {
         let ball = 4.0 / 3.0 * PI * 0.027;
         for (mesh, exact, near) in [
             (cuboid(Vec3::new(0.5, 1.0, 1.5)), 6.0, 1e-12),
-            // measured 0.023 below: the polyhedra are inscribed
+            // Measured 2.3 % below the exact volume, because the polyhedra are inscribed.
             (revolved(&rounded(0.0, 0.3, FINE), FINE), ball, 0.03),
             (revolved(&rounded(0.4, 0.3, FINE), FINE), ball + PI * 0.09 * 0.8, 0.03),
             // A prism of twelve sides has 0.955 times the cross-sectional area of the bar, and the round ends add 0.016

@@ -42,7 +42,7 @@ pub(crate) struct Heights {
     pub(crate) underside: f64,
 }
 
-/// Returns the distance (m) from the axis of a barrel to the surface that lies `distance` (m) outside of the stave, at
+/// Returns the radius (m) of the surface of revolution that lies `distance` (m) outside of the staves of a barrel, at
 /// the position `along` (m) on the axis.
 fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding + distance;

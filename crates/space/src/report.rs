@@ -21,8 +21,8 @@ use crate::summary::Summary;
 use crate::variants::Answer;
 use crate::words::{headline, rows, sentences, tone};
 
-/// Returns the player of a run, in a view that can be turned. `scene` is the drawing of the run across the barrels,
-/// which also contains the three-dimensional scene.
+/// Returns the player of a run, with a view that the reader can rotate. `scene` is the drawing of the run in the view
+/// across the barrels; it also contains the three-dimensional scene.
 pub fn player(run: &Run, scene: Scene) -> Player {
     Player {
         id: "player".into(),
@@ -148,7 +148,7 @@ fn numbers(run: &Run, summary: &Summary) -> Block {
     Block::Table(numbers)
 }
 
-/// Returns the collapsed section for engineers.
+/// Returns the section for engineers, which is closed until the reader opens it.
 fn for_engineers(answer: &Answer) -> Block {
     let mut blocks = Vec::new();
     if let Some(balance) = &answer.summary.energy {

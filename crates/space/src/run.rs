@@ -44,7 +44,7 @@ pub struct Frames {
     /// For every frame and body, the velocity of the center of mass (m/s) and the spin (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
     /// For every frame, all pairs of surfaces that touch. For each pair: its index in the model, the center of pressure
-    /// (m), and the contact force (N) on that body of the two which the force pushes upward.
+    /// (m), and the contact force (N). Of the two opposite forces, the one that pushes its body upward is given.
     pub forces: Vec<Vec<(usize, [f64; 6])>>,
 }
 
@@ -171,7 +171,8 @@ pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
     run_on(scenario, ground, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Returns the latest end (s) of a run; rejects a run that would not finish within a day or would not fit into memory.
+/// Returns the latest time (s) at which a run can end, or an error if the run would not finish within a day or would
+/// not fit into memory.
 pub(crate) fn affordable(
     scenario: &Scenario,
     stack: &Stack,

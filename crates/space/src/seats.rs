@@ -77,8 +77,8 @@ impl Seats {
         seats
     }
 
-    /// Records an accepted step of a lane at a time (s); `stands` is `true` if no body had left its seat before this
-    /// step.
+    /// Records the forces in one lane after an accepted step, at a time (s). `stands` is `true` if no body had left its
+    /// seat before this step.
     pub fn observe<R: Real>(
         &mut self,
         (lane, time): (usize, f64),

@@ -345,7 +345,7 @@ impl Watch {
             };
             self.frames.twists.push(state.twists.iter().map(twist).collect());
             let push = |(pair, center): (PairForce<Spatial>, Vec3)| {
-                // The recorded force is the one on that body of the pair which is pushed upward.
+                // Of the two opposite forces of a pair, the one that pushes its body upward is recorded.
                 let force = if pair.force.z < 0.0 { -pair.force } else { pair.force };
                 let numbers = [center.x, center.y, center.z, force.x, force.y, force.z];
                 (pair.pair, numbers)

@@ -32,8 +32,8 @@ pub struct Stack {
     pub levels: u32,
     /// Radius (m) of a barrel at its bilge, the widest part, on which it lies on the ground; zero for a free scene.
     pub bilge_radius: f64,
-    /// Displacements (m) of a rack on the barrels below, across and along the barrels, beyond which the rack is no
-    /// longer supported. The values are those of the respective plane models.
+    /// Displacements (m) of a rack, across and along the barrels below, beyond which these barrels no longer support
+    /// the rack. The values are those of the respective plane models.
     pub reach: [f64; 2],
     /// Vertical force (N) that the staves of a barrel can bear between two racks; zero for a free scene.
     pub stave_capacity: f64,
@@ -167,8 +167,8 @@ impl Pace {
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                // Contact laws are matched by name, because a plane model that represents several seats by one numbers
-                // its contact laws differently.
+                // Contact laws are matched by name, because their indices are different in a plane model that merges
+                // several seats into one.
                 for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
                     let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);

@@ -119,8 +119,8 @@ fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     }
 }
 
-/// Returns the largest ratio (1/kg), over the principal axes, of the square of the longest lever to the moment of
-/// inertia.
+/// Divides the square of the longest lever by the moment of inertia, for each principal axis of a body, and returns the
+/// largest result (1/kg).
 fn turned(body: &Body<Spatial>) -> f64 {
     let upright = Rotation3::identity();
     let mut most: Vec3 = Vec3::default();

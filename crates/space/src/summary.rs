@@ -57,7 +57,7 @@ pub fn of(run: &Run, stated: &Scenario) -> Summary {
 pub(crate) fn outcome(run: &Run) -> OutcomeInSpace {
     let counts = [run.fallen().count(), run.stack.of_kind(PartKind::Barrel).count()];
     let common = OutcomeSummary::of(&run.outcome, run.first_fall, counts);
-    // For an interrupted run, events before the stop are listed with the bodies only.
+    // In the summary of an interrupted run, events before the stop appear only in the list of bodies.
     let ended = common.barrels_fallen.is_some();
     OutcomeInSpace { common, heading: run.heading.map(Heading::name).filter(|_| ended) }
 }
@@ -76,8 +76,8 @@ fn settings(run: &Run) -> RunInSpace {
     }
 }
 
-/// Counts, for each direction, the variants whose first body leaves its seat in this direction and the barrels that
-/// fall in it.
+/// Counts, for each direction, the variants in which the first body leaves its seat in this direction, and the barrels
+/// that fall in this direction.
 pub fn directions(cases: &[Case]) -> Directions {
     let first = |heading| count(cases, |case| usize::from(case.first == Some(heading)));
     let debris =

@@ -1,4 +1,4 @@
-//! Devices and seats in space compared with closed forms, across the barrels, along them and at an angle.
+//! Devices and seats in three dimensions, compared with closed forms: across the barrels, along them and at an angle.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 

@@ -1,7 +1,7 @@
-//! A run in space has the recorded bits and the recorded amount of work.
+//! A three-dimensional run has the recorded bits and the recorded amount of work.
 //!
-//! An intended change of bits requires a new `ensemble::VERSION`, since studies keep cases in space, the new bits
-//! here, and an entry in CHANGELOG.md under *Results change*.
+//! An intended change of bits requires a new `ensemble::VERSION`, since studies keep three-dimensional cases; the new
+//! bits here; and an entry in CHANGELOG.md under *Results change*.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 

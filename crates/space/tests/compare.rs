@@ -1,4 +1,4 @@
-//! Comparisons and repeats of stacks in space, through the same code as in planes.
+//! Comparisons and repeats of three-dimensional stacks, through the same code as for plane stacks.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

@@ -1,5 +1,5 @@
-//! Devices in space: tensions of straps at rest, idle devices without effect, all devices on the demo and its mirror
-//! image, and straps that hold or tear.
+//! Devices in three dimensions: tensions of straps at rest, idle devices without effect, all devices on the demo and
+//! its mirror image, and straps that hold or tear.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 

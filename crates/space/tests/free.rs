@@ -1,4 +1,4 @@
-//! Free scenes in space from a file, against closed forms.
+//! Three-dimensional free scenes from a file, compared with closed forms.
 
 use barrelstack::Scenario;
 use barrelstack_dynamics::{Linear as _, Spatial, Vec3, space::Space as _};
@@ -49,7 +49,7 @@ fn a_ball_thrown_along_the_floor_goes_on_at_five_sevenths() {
 fn a_block_thrown_askew_stops_after_the_way_that_friction_takes() {
     let run = ran("sliding-block-in-space", &[]);
     let moved = run.fates[1].moved;
-    // measured 1.0e-4 below: the stick springs back
+    // Measured 1.0e-4 below, because the tangential spring relaxes.
     assert_near(moved.length(), 1.0 / (2.0 * 0.3 * G), 2e-4);
     // measured 5.4e-7
     assert!((0.6 * moved.y - 0.8 * moved.x).abs() < 2e-6, "{moved:?}");
@@ -190,7 +190,7 @@ fn what_is_not_there_is_told_at_its_field() {
     let (field, told) = refused(&["body.ball.position=['0 m', '0 m', '0.2 m']"]);
     assert_eq!(field, "body.ground.position");
     assert!(told.contains("overlap"), "{told}");
-    // A plane does not support bodies in space.
+    // Three-dimensional bodies are not supported in a plane.
     let error = Scenario::builtin("rolling-ball", &[]).unwrap().run().unwrap_err();
     assert_eq!(error.fields(), ["kind"]);
 }

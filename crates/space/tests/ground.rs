@@ -1,5 +1,5 @@
-//! Ground motion in space: directions of its components, rotation of the stack, and largest values over all steps and
-//! of the record.
+//! Ground motion in three dimensions: directions of its components, rotation of the stack, and largest values over all
+//! steps and of the record.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -67,7 +67,7 @@ fn components_of_unknown_directions_are_said_to_be_taken() {
     assert!(told.iter().any(|told| told.contains("does not state the directions")), "{told:?}");
 }
 
-/// Returns one level on its rack in space under a motion, until a time (s), with further changes.
+/// Runs a three-dimensional stack of one level under a motion, with further changes, and returns the result.
 fn one_level(changes: &[String], record: Option<&Record>) -> Run {
     let own = ["stack.view=spatial", "stack.levels=1"].map(str::to_owned);
     let scenario = soft_demo(&[&own, changes].concat());

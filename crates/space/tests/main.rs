@@ -1,6 +1,7 @@
-//! Stacks in space: against those of the plane, at rest, turned, under every device and ground.
+//! Three-dimensional stacks: compared with plane stacks, at rest, rotated, with every device and under every ground
+//! motion.
 //!
-//! One program, since each would compile and link what it tests anew.
+//! All tests form one program, since each further program would compile and link the tested crates again.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

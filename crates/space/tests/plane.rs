@@ -1,4 +1,4 @@
-//! A stack of right cylinders that is shaken across their axes moves in space as in the plane.
+//! A stack of right cylinders that is shaken across their axes moves in three dimensions as in the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -9,8 +9,8 @@ use barrelstack_space::{Ground, run};
 
 use crate::common::soft_demo;
 
-/// Returns the displacement (m) of the top barrels in the plane, its largest difference in space over the run and
-/// over the first three seconds, and the displacement out of the plane.
+/// Returns the displacement (m) of the top barrels in the plane; its largest difference from the displacement in three
+/// dimensions, over the run and over the first three seconds; and the displacement out of the plane.
 fn apart(view: [&str; 2]) -> [f64; 4] {
     let scenario = |view: &str| {
         let changes = [

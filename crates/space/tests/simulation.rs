@@ -1,4 +1,5 @@
-//! Simulations in space that advance step by step: the bits of a run, copies, and forces from outside.
+//! Three-dimensional simulations that advance step by step: results bit-identical to those of a run, copies, and forces
+//! from outside.
 
 use barrelstack::Scenario;
 use barrelstack_dynamics::{Applied, Vec3};

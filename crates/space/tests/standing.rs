@@ -1,4 +1,5 @@
-//! Stacks in space come to rest on seats that carry their weight, stay at rest, and conserve energy when shaken.
+//! Three-dimensional stacks come to rest on seats that carry their weight, stay at rest, and conserve energy when
+//! shaken.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -175,7 +176,7 @@ fn what_is_not_known_in_space_is_refused_with_its_field() {
     }
     let two = demo(&["stack.columns=4", "stack.gap='1 cm'"]);
     assert_eq!(Stack::of(&two).unwrap_err().fields(), ["stack.gap"]);
-    // Functions of a plane reject a stack in space.
+    // Functions for plane models reject a three-dimensional stack.
     let error = demo(&[]).run().unwrap_err();
     assert_eq!(error.fields(), ["stack.view"], "{error}");
 }

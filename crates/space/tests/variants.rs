@@ -1,4 +1,4 @@
-//! Variants in space: sampled as in the plane, equal when mirrored, and with directions of falls.
+//! Variants in three dimensions: sampled as in the plane, equal when mirrored, and with directions of falls.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 

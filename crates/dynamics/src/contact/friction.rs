@@ -17,8 +17,8 @@ pub enum FrictionLaw<R = f64> {
     /// f_t     = spring + c_t v_t held within ± μ fₙ
     /// ```
     ///
-    /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state, with the slip
-    /// rate as its rate of change, and is limited to the capacity of the spring only when a step is accepted
+    /// `s` is the displacement of the spring. It is integrated like any other coordinate of the state; its rate of
+    /// change is the slip rate. It is limited to the capacity of the spring only when a step is accepted
     /// ([`Stick::commit`]). So a body at rest on a slope does not creep. The law `f_t = μ fₙ` of Candia et al. (2008)
     /// is the sliding part of this law. μ is the static coefficient until the force exceeds the static limit, and then
     /// the kinetic coefficient until the slip reverses.
@@ -165,7 +165,7 @@ impl<S: Space> Stick<S> {
         let limit = static_coefficient * normal_force;
         let limit = S::Real::select(self.slipping, kinetic, limit);
         let broken = (limit * limit).lt(trial.dot(trial));
-        // A slipping node sticks again when the slip turns against the stretched spring.
+        // A slipping node sticks again when its slip reverses, so that the slip relaxes the stretched spring.
         let follows = S::Real::zero().le(spring.dot(slip_rate));
         let slipping = broken | (self.slipping & follows);
         let held = S::Real::select(slipping, kinetic, limit);

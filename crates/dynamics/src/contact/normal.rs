@@ -130,8 +130,8 @@ impl<R: Real> NormalForce<R> {
     /// ```
     ///
     /// So a linear spring that engages at a steady rate absorbs exactly the energy that it stores, at whatever time
-    /// within the step it engages, and the energy error of a rebound decreases by orders of magnitude. With a step of
-    /// zero, the force is unchanged.
+    /// within the step it engages. The energy error of a rebound decreases by orders of magnitude. With a step of zero,
+    /// the force is unchanged.
     #[inline(always)]
     #[must_use]
     pub fn within_step(self, bend: f64, depth: R, rate: R, step: R) -> Self {

@@ -1,7 +1,7 @@
 //! Coefficient of restitution of a contact as a function of its damping, and the inverse function.
 //!
 //! For a mass `m` that strikes a node of stiffness `k` and damping `c` without gravity, ζ = c / (2 √(k m)) is the
-//! damping ratio, and the restitution e is the ratio of the speeds after and before the impact.
+//! damping ratio, and the restitution e is the speed after the impact divided by the speed before the impact.
 
 use crate::math;
 

@@ -78,7 +78,8 @@ impl<S: Space> Guide<S> {
         Self { place: along, reach: self.reach + away.dot(away).sqrt(), ..self }
     }
 
-    /// Returns `free`, the stiffness or damping of the guide, plus `stop`, that of its stops, if the guide has stops.
+    /// Returns the sum of `free` and `stop` for a guide with stops, and `free` for a guide without stops. `free` is the
+    /// stiffness or damping of the guide itself, and `stop` that of the stops.
     fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
         free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
     }

@@ -159,7 +159,7 @@ pub struct Pressed<S: Space> {
     tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero in lanes without contact.
     pub normal_force: S::Real,
-    /// Factor by which the constants of the laws are multiplied.
+    /// Factor by which the constants of the contact laws are multiplied.
     pub weight: S::Real,
 }
 

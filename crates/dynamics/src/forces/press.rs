@@ -186,7 +186,7 @@ fn leads<S: Space>(model: &Model<S>, pair: &ContactPair) -> <S::Real as Real>::M
     if pair.contactor < pair.target { other.le(own) } else { other.lt(own) }
 }
 
-/// Accumulator for the nodes of a pair that press into a surface.
+/// Accumulator for the contact forces of one pair, whose nodes press into a surface.
 struct Press<'a, S: Space, L> {
     /// Copy of [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) for the interface; `None`
     /// if it is infinite.

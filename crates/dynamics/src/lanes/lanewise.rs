@@ -145,7 +145,7 @@ impl<T: Clone> Lanewise for PerLane<T> {
 /// - `struct Name<R> { a, b }` for structs that are generic over a scalar, and `struct Name<S> { a, b }` for structs
 ///   that are generic over a space; all fields are lanewise, except those after `masks`, which are truth values;
 /// - `enum Name<R> { One { a, b }, Two(a), Three }` for enums; the variant is part of the topology;
-/// - `same Name, Other;` for types that are equal in all lanes.
+/// - `same Name, Other;` for types whose values are equal in all lanes.
 #[macro_export]
 macro_rules! lanewise {
     (struct $name:ident<R> $($rest:tt)*) => {

@@ -46,7 +46,8 @@ struct Held<R> {
 }
 
 impl<R: Real> Held<R> {
-    /// Adds the stiffness of a spring (N/m) that acts at a vector (m) from the center of mass.
+    /// Adds a spring, given by its stiffness (N/m) and by the vector (m) from the center of mass to the point at which
+    /// it acts.
     #[inline(always)]
     fn by(&mut self, stiffness: R, arm: impl Linear<R>) {
         self.translation += stiffness;
@@ -351,8 +352,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// For every contact that began in this step, adds the tangential displacement since it began to its stick
-    /// displacement.
+    /// For every contact that began in this step, adds to its stick displacement the tangential displacement since the
+    /// contact began.
     #[inline(always)]
     fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);

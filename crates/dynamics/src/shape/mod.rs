@@ -65,8 +65,8 @@ impl<S: Space> Nearest<S> {
 pub struct Facing<S: Space> {
     /// Unit vectors with the meaning of [`Round::limits`], in the frame of the other body's surface.
     pub limits: [S::Vector; 2],
-    /// Maximum component, along either limit, of the direction toward a piece of the other surface; the point cannot
-    /// bear on pieces with a larger component.
+    /// The point can bear on a piece of the other surface only if the direction toward the piece has a component of at
+    /// most this value along each limit.
     pub most: f64,
     /// Maximum distance (m) by which the point may lie outside of the sides that it does not face.
     pub slack: f64,
@@ -131,8 +131,8 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     /// boundary; elsewhere returns `nearest`.
     ///
     /// A point inside does not always press into the nearest piece: a corner of a box that stands flush on an equal box
-    /// lies on a side of the lower box, but presses on its top. So the directions in which the boundary of the other
-    /// body faces at this point decide.
+    /// lies on a side of the lower box, but presses on its top. So the result depends on the directions in which the
+    /// boundary of the other body faces at this point.
     #[inline(always)]
     fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
         nearest

@@ -14,7 +14,7 @@ use crate::space::{Linear, Planar, Vec2};
 /// rounding errors would decide whether they touch.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Maximum angle (rad) of one part of a rounded corner that is divided into parts.
+/// A rounded corner is divided into parts that turn by at most this angle (rad).
 const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
@@ -141,8 +141,8 @@ impl<R: Real> Polygon<R> {
         Nearest { gap, round, to_end, toward_end, core }
     }
 
-    /// Returns the nearest side on which a point of another body inside the core can bear; see
-    /// [`Surface::bearing`](super::Surface::bearing).
+    /// Returns, for a point inside the core, the nearest side on which the point can bear as part of another body's
+    /// boundary; elsewhere returns `nearest`. See [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,

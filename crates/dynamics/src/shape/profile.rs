@@ -65,7 +65,7 @@ impl<R: Real> BarrelProfile<R> {
         let corner_distance = from_corner.length();
         let safe = R::select(corner_distance.le(zero), one, corner_distance);
 
-        // Inside, the stave or the head, whichever is nearer; outside, that in front of which the point lies.
+        // Inside, the nearer of the stave and the head decides; outside, the one that faces the point.
         let inside_by_head = arc_distance.lt(head_distance);
         let by_head = (outside & beyond_arc) | (!outside & inside_by_head);
         let flat = Vec2::new(one, zero);
@@ -90,8 +90,9 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// Returns the stave or the head on which a point of another body inside the core can bear, whichever is nearer;
-    /// see [`Surface::bearing`](super::Surface::bearing).
+    /// Returns, for a point inside the core, the nearest part of the boundary, stave or head, on which the point can
+    /// bear as part of another body's boundary; elsewhere returns `nearest`. See
+    /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,

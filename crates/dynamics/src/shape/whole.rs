@@ -85,8 +85,8 @@ pub struct Points<S: Space> {
     pub axes: [S::Vector; 4],
 }
 
-/// Maximum number of bearing points: the up to 8 corners of the polygon that two rectangles share, computed once from
-/// each body, and the deepest point.
+/// Maximum number of bearing points. The polygon that two rectangles share has up to 8 corners and is computed twice,
+/// once from each body; the deepest point is added.
 pub const MOST_POINTS: usize = 17;
 
 /// A point of [`Points`].
@@ -138,11 +138,12 @@ pub struct Spread<S: Space> {
 /// mass (1/rad), stored in [`Wrench::moment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Derivative of δ₀ (m), without the part that is due to the motion of the two bodies at the middle of the patch.
+    /// Derivative of the depth δ₀ (m) of the middle of the patch, without the part that is due to the motion of the two
+    /// bodies at this point.
     pub middle: Wrench<S>,
-    /// Derivative of `a`.
+    /// Derivative of `a`, the weight of the deepest point.
     pub deepest: Wrench<S>,
-    /// Derivative of `b`.
+    /// Derivative of `b`, the weight of the other parts of the patch.
     pub others: Wrench<S>,
 }
 
@@ -157,9 +158,10 @@ impl<S: Space> Default for Slopes<S> {
 /// Weights of the parts of a patch, each between 0 and 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shares<R> {
-    /// `a` of [`Spread`].
+    /// Weight of the deepest point, `a` in [`Spread`].
     pub deepest: R,
-    /// `b` of [`Spread`]; less than `a` only if the bodies are rotated out of the plane of the patch.
+    /// Weight of the other parts, `b` in [`Spread`]; less than `a` only if the bodies are rotated out of the plane of
+    /// the patch.
     pub others: R,
     /// Share of the friction that may act at a distance from the center of pressure; zero for a contact at a point.
     pub aside: R,
@@ -184,7 +186,7 @@ impl<S: Space> Axes<S> {
         }
     }
 
-    /// Returns `n` of [`Spread`].
+    /// Returns the number of springs in the middle of the patch, `n` in [`Spread`].
     #[inline(always)]
     pub(crate) fn in_the_middle(&self) -> f64 {
         match self {

@@ -297,8 +297,8 @@ const MOST_HELP: u32 = 40;
 
 /// Returns the closest points of two barrels; the target is at the origin.
 ///
-/// The normal is the direction `n` that maximizes the distance between the supporting planes of the cores, `g(n) = n ·
-/// c − h₁(n) − h₂(−n)`, and the maximum is the distance between the cores; `g` is concave where the cores are separate.
+/// The normal is the direction `n` that maximizes `g(n) = n · c − h₁(n) − h₂(−n)`, the distance between the supporting
+/// planes of the cores. The maximum is the distance between the cores; `g` is concave where the cores are separate.
 /// Where the closest point lies on a head, `g` has a kink, so heads are tested first; otherwise Newton's method runs on
 /// the sphere of directions. It starts from projections from one core to the other and back. Projections also take over
 /// where Newton's method does not ascend, since they always approach the solution.

@@ -78,8 +78,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         + 'static;
     /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
     type Tangent: Linear<Self::Real> + Lanewise<Single = <Self::Single as Space>::Tangent>;
-    /// Data stored with a tangent, so that it can be transported along a curved surface: the normal in three
-    /// dimensions, and nothing in the plane, where a tangent is a scalar.
+    /// Data stored with a tangent, so that the tangent can be transported along a curved surface: the normal in three
+    /// dimensions; nothing in the plane, where a tangent is a scalar.
     type TangentPlane: Copy
         + Debug
         + Default
@@ -199,7 +199,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         rotation: Self::Rotation,
         spins: [Self::Spin; 2],
     ) -> Self::Tangent;
-    /// Adds the rate returned by [`Space::stick_turn`] to a tangent, in lanes of the mask.
+    /// Adds the rate returned by [`Space::stick_turn`] to a tangent, in lanes where the mask is set.
     fn add_turn(
         mask: <Self::Real as Real>::Mask,
         tangent: Self::Tangent,

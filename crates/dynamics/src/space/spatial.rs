@@ -130,11 +130,11 @@ impl<R: Real> Space for Spatial<R> {
     /// T = ½ (Π₁²/I₁ + (Π₂² + Π₃²)/I₂) + ½ Π₃² (1/I₃ − 1/I₂)      Π = Rᵀ L
     /// ```
     ///
-    /// is the sum of the kinetic energy of a body of revolution, whose motion has an exact solution (rotation about
-    /// **L** at `L/I₂` and about its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates the body about
-    /// its third axis. A step applies half of the remainder, the motion of the body of revolution, and the other half
-    /// of the remainder. This splitting is symplectic, reversible, of second order, and exact for a body of revolution
-    /// (after Touma and Wisdom 1994, and Fassò 2003).
+    /// has two terms. The first term is the kinetic energy of a body of revolution, whose motion has an exact solution:
+    /// rotation about **L** at `L/I₂`, and about its own axis at `Π₁ (1/I₁ − 1/I₂)`. The second term is the remainder,
+    /// which rotates the body about its third axis. A step applies half of the remainder, the motion of the body of
+    /// revolution, and the other half of the remainder. This splitting is symplectic, reversible, of second order, and
+    /// exact for a body of revolution (after Touma and Wisdom 1994, and Fassò 2003).
     #[inline(always)]
     fn coast(
         inertia: Vec3<R>,

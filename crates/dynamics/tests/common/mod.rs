@@ -18,7 +18,7 @@ pub fn every_method(tolerance: f64) -> [Method; 4] {
     ]
 }
 
-/// Returns the bits of the poses, twists and sticks of a state.
+/// Returns the bits of the poses, twists and contact history of a state.
 pub fn bits(state: &State<Planar>) -> Vec<u64> {
     let mut bits = vec![state.time.to_bits()];
     for (pose, twist) in state.poses.iter().zip(&state.twists) {

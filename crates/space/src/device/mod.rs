@@ -96,7 +96,8 @@ impl Builder<'_> {
         if self.spec.mirror { [right, left, near, away] } else { [left, right, near, away] }
     }
 
-    /// Returns the rack on the same level that is a number of columns and rows away from another rack.
+    /// Returns the rack that is on the same level as `rack`, at a distance of the given numbers of columns and rows;
+    /// `None` if there is no such rack.
     fn beside(&self, rack: BodyId, [columns, rows]: [i64; 2]) -> Option<BodyId> {
         let at = |id: BodyId| {
             let part = &self.parts[id];

@@ -68,8 +68,9 @@ pub(super) fn of_bodies<'a>(
     }
 }
 
-/// Returns the contact forces in the given frames, each as its point and its components. A contact pair keeps its place
-/// in the list while it touches; a place without a contact pair has a force of zero.
+/// Returns, for each of the given frames, the list of contact forces: the point (m) and the components (N) of each
+/// force. A contact pair keeps its place in the lists while it touches; at a place without a contact pair, the force is
+/// zero.
 fn forces(run: &Run, frames: &[usize]) -> Vec<Vec<[Point3; 2]>> {
     let mut places: Vec<Option<usize>> = Vec::new();
     let list = |frame: &usize| {

@@ -19,8 +19,8 @@ pub(super) struct BodyView {
 }
 
 impl BodyView {
-    /// Creates the view of a body. `page` holds the axes of the page that point right and up, in the body frame;
-    /// `steps` is the number of steps per right angle to which the view direction is rounded.
+    /// Creates the view of a body. `page` holds the axes of the page that point right and up, in the body frame. The
+    /// view direction is rounded to `steps` steps per right angle.
     pub(super) fn of(kind: PartKind, page: [Vec3; 2], steps: f64) -> Self {
         let toward = page[0].cross(page[1]);
         let axis = Vec3::new(1.0, 0.0, 0.0);
@@ -132,7 +132,8 @@ impl BodyView {
                             (axes[one] * cos + axes[other] * sin) * ball.radius
                         };
                         let near = |at: &u32| placed.rotation.apply(on(*at)).dot(from) >= -1e-9;
-                        // The visible half is one stretch, which starts after a hidden point.
+                        // The visible half is one contiguous arc, which starts at the first visible point after a
+                        // hidden point.
                         let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
                         let start = start.unwrap_or(0);
                         let visible = (0..=32).map(|at| (start + at) % 32).take_while(near);

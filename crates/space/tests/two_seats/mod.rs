@@ -1,7 +1,8 @@
 //! The smallest model of a rack that walks: a rigid block on two seats, on oscillating ground. Each seat is a spring
-//! with a damper that acts on approach, and friction with an elastic stick.
+//! with a damper that acts on approach, and friction with a tangential spring.
 //!
-//! It shares no line with the program; its integrator is the semi-implicit one of Euler with steps of a microsecond.
+//! The model shares no line with the program. Its integrator is the semi-implicit Euler method with steps of a
+//! microsecond.
 
 /// Acceleration of gravity (m/s²).
 pub(crate) const GRAVITY: f64 = 9.806_65;
@@ -63,7 +64,7 @@ pub(crate) struct TwoSeats {
     /// Stiffness (N/m) and damping on approach (N·s/m) of a seat.
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
-    /// Friction of a seat, and the stiffness of its stick over the normal one.
+    /// Friction of a seat, and its tangential stiffness divided by its normal stiffness.
     pub(crate) friction: f64,
     pub(crate) stick: f64,
 }

@@ -9,7 +9,7 @@ use crate::shape::Gap;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-/// Relative kinematics of two bodies in the frame of a surface of one of them.
+/// Relative kinematics of the two bodies of a contact pair, in the frame of the target's surface.
 #[derive(Clone, Debug)]
 pub(crate) struct PairKinematics<S: Space> {
     /// The contactor, the target, and the index of the target's surface.

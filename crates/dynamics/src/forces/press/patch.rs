@@ -57,7 +57,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let Some(fast) = self.fast else { return };
         let approach = -self.meeting.velocity(node).dot(gap.normal);
         let travel = self.lookahead * approach.abs();
-        // As in `look_ahead`, elements farther apart are not tested in every run.
+        // As in `look_ahead`, wider gaps are ignored, since not every run tests elements with wider gaps.
         let near = gap.distance.lt(travel) & gap.distance.lt(self.foreseen_gap);
         self.needs_substeps = self.needs_substeps | (near & fast.whole_step_way.lt(travel));
         self.is_hard = self.is_hard | (near & fast.hard.lt(approach));

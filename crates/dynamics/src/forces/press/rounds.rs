@@ -14,8 +14,8 @@ const SLACK: f64 = 1e-9;
 /// to the end may share its contact with the other body's corner at that end.
 const COMPANION: f64 = 0.01;
 
-/// Sine of the largest angle, 45°, by which the direction toward a side may lie outside the limits of a round piece
-/// that still faces the side.
+/// A round piece faces a side if the direction toward the side is within the limits of the piece, or outside of them by
+/// at most about 45°. This constant is the sine of that angle.
 const FACES: f64 = 0.7;
 
 /// Distance (m) outside the other body's core up to which the center of a round piece is treated like a center inside
@@ -23,7 +23,8 @@ const FACES: f64 = 0.7;
 /// flush, one of two nearly coincident corners lies within this distance.
 const NEARLY_INSIDE: f64 = 1e-5;
 
-/// Tolerance by which the direction toward another round piece may lie outside the limits of a round piece.
+/// Tolerance, as the sine of an angle, for contacts between two round pieces: the direction toward the other piece may
+/// lie outside the limits of a piece by this angle.
 const LIMIT: f64 = 2e-7;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
@@ -115,12 +116,13 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Returns the share, from 0 to 1, with which a corner bears on a side of the other body. The share is below 1 only
     /// near the end of that side, where the other body's corner may bear on a side of this body as well.
     ///
-    /// Where two faces overlap slightly, both corners at the ends of the overlap are inside the other body. They are
-    /// one contact, which splits into two as the overlap grows. The corner nearer to the end of the side that it bears
-    /// on, which is the shallower of the two, has a share that decreases to zero toward that end, and the other corner
-    /// counts in full. So neither contact begins or ends with a jump in force, at any depth. Where two faces end
-    /// together to within rounding, their corners coincide. The contact is then the corner that lies further inside the
-    /// other face or, if neither does, that of the leading body.
+    /// Where two faces overlap slightly, a corner of each body is inside the other body, one at each end of the
+    /// overlap. They are one contact, which splits into two as the overlap grows. Of the two corners, the one nearer to
+    /// the end of the side that it bears on is the shallower; its share decreases to zero toward that end. The other
+    /// corner counts in full. So neither contact begins or ends with a jump in force, at any depth. Where two faces end
+    /// at the same place to within rounding, the two corners coincide, and only one of them counts: the corner that is
+    /// farther from the end of the side that it bears on or, if both are equally far from it, the corner of the leading
+    /// body.
     #[inline(always)]
     fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
