@@ -9,7 +9,8 @@ use super::cases::{Cases, JudgedCase, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Cases in which a factor has one value, or a value in one third of its values.
+/// Cases in which a factor has the same value or, for a factor with many values, one third of the cases in the order of
+/// these values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.

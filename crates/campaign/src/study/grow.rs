@@ -11,8 +11,8 @@ use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
-// The number of samples and the motions are not included: they identify cases and are part of the key of a chunk.
-// Further samples and motions come after the existing ones.
+// The motions and the number of samples are not among these inputs, since a study grows by further motions and samples.
+// These come after the existing ones, and the key of a chunk covers the cases and motions of the chunk.
 described! {
     /// An input on which every case of a study depends.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
