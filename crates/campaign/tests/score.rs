@@ -177,8 +177,8 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
-/// The published tables, from runs in planes and from three-dimensional runs, list every rack and device of the catalog,
-/// with a score or with the reason why there is none.
+/// The published tables, from runs in planes and from three-dimensional runs, list every rack and device of the
+/// catalog, with a score or with the reason why there is none.
 #[test]
 fn every_rack_and_device_is_in_the_published_tables() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/league");

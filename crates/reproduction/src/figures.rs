@@ -103,8 +103,8 @@ const ARROW_END: f64 = 0.5;
 /// since the rack is too flat for it.
 const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 
-/// Draws the stack at rest with the paper's body numbers. As in the paper, an arrow points from each contact body, which
-/// has the contact nodes, to the target body, which has the contact surface.
+/// Draws the stack at rest with the paper's body numbers. As in the paper, an arrow points from each contact body,
+/// which has the contact nodes, to the target body, which has the contact surface.
 pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     let assembly = &run.assembly;
     let parts = &assembly.parts;
@@ -209,8 +209,8 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     channel.values.get(at).copied()
 }
 
-/// Returns two lengths (m) along the boundary of the upper or lower half of a barrel: the length that is loaded at rest,
-/// and the length that is loaded at any time until the first loss of seat.
+/// Returns two lengths (m) along the boundary of the upper or lower half of a barrel: the length that is loaded at
+/// rest, and the length that is loaded at any time until the first loss of seat.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;

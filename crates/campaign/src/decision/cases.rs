@@ -440,9 +440,9 @@ impl Cases {
     /// Groups the cases by intensity, ascending.
     ///
     /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
-    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least 24 cases
-    /// (or all cases, if there are fewer), because the fraction of failures in a smaller bin would be too uncertain.
-    /// There are at most 16 bins, because a trend is clearest in about a dozen bins.
+    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least 24
+    /// cases (or all cases, if there are fewer), because the fraction of failures in a smaller bin would be too
+    /// uncertain. There are at most 16 bins, because a trend is clearest in about a dozen bins.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all

@@ -147,8 +147,8 @@ impl Distribution {
     /// Returns the standard deviation of the natural logarithm of the value, without truncation if the distribution is
     /// lognormal.
     ///
-    /// For any other distribution, the result is that of the lognormal distribution with the same 16 % and 84 %
-    /// fractiles; NaN if the distribution is discrete.
+    /// For any other distribution, the result is the dispersion of the lognormal distribution with the same 16 % and
+    /// 84 % fractiles; NaN if the distribution is discrete.
     pub(crate) fn dispersion(&self) -> f64 {
         if let Shape::Lognormal { dispersion, .. } = &self.shape {
             return *dispersion;

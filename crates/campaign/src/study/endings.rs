@@ -165,8 +165,8 @@ impl Study {
                     Shaking::Synthetic(made) => Some(&**made),
                     Shaking::Base | Shaking::Spec(_) => None,
                 };
-                // An ensemble may have a hundred thousand realizations, all with the same duration, so only the first is
-                // made.
+                // An ensemble may have a hundred thousand realizations, all with the same duration, so only the first
+                // is made.
                 let end = match (made, last) {
                     (Some(made), Some((other, end))) if made.is_of_ensemble(other) => end,
                     _ => cache.unscaled(motion, &base.motion, run.similitude)?.ground.end(),
