@@ -95,7 +95,8 @@ fn ranges_over_constants_are_the_same_wherever_they_are_stated() {
     assert!(highest(0).fold(0.0, f64::max) < highest(5).fold(0.0, f64::max));
 }
 
-/// Three-dimensional studies of heights have the same statistics as studies in planes; each run draws its horizontal direction.
+/// Three-dimensional studies of heights have the same statistics as studies in planes; each run draws its horizontal
+/// direction.
 #[test]
 fn heights_in_space_have_ranges_over_constants() {
     let folder = tempfile::tempdir().unwrap();
