@@ -137,8 +137,8 @@ pub struct Ranked {
     /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients. A draw
     /// has the same constants for all protections. Empty if `range` is `None` or if there are no uncertain constants.
     pub draws: Vec<f64>,
-    /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack; a draw
-    /// with equal numbers counts as one half.
+    /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack; a
+    /// draw with equal numbers counts as one half.
     pub better_than_as_it_is: Option<f64>,
     /// Share of the draws of the uncertain constants in which fewer barrels fall than with the next protection of the
     /// ranking.
