@@ -66,8 +66,8 @@ pub struct Request {
 pub struct Decision {
     /// Cases with a verdict.
     pub cases: Cases,
-    /// Fragility curve of each limit state against the intensity measure of the study. The first limit state
-    /// is the loss of the first seat.
+    /// Fragility curve of each limit state against the intensity measure of the study. The first curve is that of
+    /// collapse: at least one barrel or rack loses its seat.
     pub curves: Vec<LimitCurve>,
     /// Cumulative incidence of each collapse mode against the intensity measure of the study, the most
     /// frequent mode first.
@@ -90,7 +90,7 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// Returns the results as a document for programs, in SI units.
+    /// Returns the results as a machine-readable document, in SI units.
     pub fn to_document(&self) -> DecisionDocument {
         DecisionDocument::of(self)
     }

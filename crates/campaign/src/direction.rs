@@ -23,7 +23,7 @@ impl Direction {
         Some(if scenario.is_spatial() { Self::Space } else { Self::Plane(view) })
     }
 
-    /// Returns the name in files: "transverse", "longitudinal" or "spatial".
+    /// Returns the name that files use: "transverse", "longitudinal" or "spatial".
     pub fn name(self) -> &'static str {
         match self {
             Self::Plane(view) => view.name(),

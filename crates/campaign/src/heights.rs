@@ -121,7 +121,7 @@ pub struct AtLevel {
 
 /// Returns the lower and upper bound of the probability of collapse, each with 95 % confidence.
 ///
-/// The bounds are one-sided, so that a headline can state the upper one by itself.
+/// The bounds are one-sided, so that a headline can state the upper bound alone.
 fn known(stripe: &Stripe) -> Interval {
     clopper_pearson(stripe.failures, stripe.cases, 0.90)
 }
@@ -203,7 +203,7 @@ impl Heights {
         self.heights.iter().find(same)
     }
 
-    /// Returns the results as a document for programs, in SI units.
+    /// Returns the results as a machine-readable document, in SI units.
     pub fn to_document(&self) -> HeightsDocument {
         HeightsDocument::of(self)
     }
@@ -288,8 +288,6 @@ pub fn heights(
 }
 
 /// Evaluates the tables of the studies; `stop` may cancel the evaluation.
-///
-/// `stop` may cancel.
 fn gather(
     request: &Request,
     found: &[(Direction, &Study, Collected)],

@@ -33,7 +33,7 @@ pub use direction::Direction;
 pub use study::Study;
 pub use uncertain::Fitted;
 
-// Modules of other crates, under their names there.
+// Modules of other crates, which keep their names.
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};
 use barrelstack_input::{measured, system};
 

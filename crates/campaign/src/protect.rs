@@ -130,17 +130,18 @@ pub struct Ranked {
     /// Description of the worst state of maintenance, and the number of barrels that fall in it; `None` if no
     /// such state was tried.
     pub worn: Option<(String, Estimate)>,
-    /// Range that contains, with a probability of 95 %, the probability of collapse, or its annual rate, given the
-    /// uncertain constants of the seats and the sampling error. `None` if it is unknown, or if the protection was not
-    /// run in all rounds.
+    /// Range that contains, with a probability of 95 %, the probability of collapse (for a site, the annual rate of
+    /// collapse), given the uncertain constants of the seats and the sampling error. `None` if it is unknown, or if the
+    /// protection was not run in all rounds.
     pub range: Option<[f64; 2]>,
     /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients. A draw
     /// has the same constants for all protections. Empty if `range` is `None` or if there are no uncertain constants.
     pub draws: Vec<f64>,
-    /// Share of the draws in which fewer barrels fall than with the unprotected stack; a draw with equal numbers counts
-    /// as one half.
+    /// Share of the draws of the uncertain constants in which fewer barrels fall than with the unprotected stack; a
+    /// draw with equal numbers counts as one half.
     pub better_than_as_it_is: Option<f64>,
-    /// Share of the draws in which fewer barrels fall than with the next protection of the ranking.
+    /// Share of the draws of the uncertain constants in which fewer barrels fall than with the next protection of the
+    /// ranking.
     pub better_than_next: Option<f64>,
 }
 
@@ -193,7 +194,7 @@ impl Ranking {
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
-    /// Returns the results as a document for programs, in SI units.
+    /// Returns the results as a machine-readable document, in SI units.
     pub fn to_document(&self) -> ProtectDocument {
         ProtectDocument::of(self)
     }

@@ -211,7 +211,7 @@ impl Sheet {
         self.weakest()?.effect.as_ref()?.decisive()
     }
 
-    /// Returns the results as a document for programs, in SI units.
+    /// Returns the results as a machine-readable document, in SI units.
     pub fn to_document(&self) -> ScoreDocument {
         ScoreDocument::of(self)
     }

@@ -30,7 +30,7 @@ const CONSTANTS: [(&str, &str); 12] = [
     ("interface.rack-rack.restitution", "damping of racks on racks"),
 ];
 
-/// Units of the constants, as in tables and in reports.
+/// Units of the constants: as written in tables, and as written in reports.
 const UNITS: [(&str, &str); 7] = [
     ("", "1"),
     ("N/m", "N/m"),

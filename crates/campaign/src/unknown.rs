@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 
 use crate::scenario::{Scenario, Scene, Setting};
 
-/// Interfaces of seats, each with the interface that applies between the same materials once a body has fallen, if
-/// there is one.
+/// Interfaces of seats, each with the interface of the same materials for bodies that have fallen; `None` if there is
+/// no such interface.
 const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-ground", Some("fallen-rack-ground")),
     ("barrel-rack", Some("fallen-barrel-rack")),

@@ -28,7 +28,7 @@ fn every_height_direction_motion_and_level_is_a_run() {
     assert_eq!(usize::try_from(runs).unwrap(), stacks * (VELOCITIES.len() * 5 + 2));
     let (_, fewer) = stopped_at_once(&Request { highest: 2, ..request.clone() });
     assert_eq!(5 * fewer, runs);
-    // In space there is one direction instead of two.
+    // In three dimensions there is one direction instead of two.
     let (_, in_space) = stopped_at_once(&Request { in_space: true, ..request });
     assert_eq!(2 * in_space, runs);
 }
@@ -95,7 +95,8 @@ fn ranges_over_constants_are_the_same_wherever_they_are_stated() {
     assert!(highest(0).fold(0.0, f64::max) < highest(5).fold(0.0, f64::max));
 }
 
-/// In space the heights have the same statistics, from runs in one direction that is drawn for every run.
+/// Three-dimensional studies of heights have the same statistics as studies in planes; each run draws its horizontal
+/// direction.
 #[test]
 fn heights_in_space_have_ranges_over_constants() {
     let folder = tempfile::tempdir().unwrap();

@@ -209,7 +209,7 @@ fn the_order_over_constants_is_counted_in_draws_that_all_protections_share() {
     }
 }
 
-/// In space the losses of the stack as it is are the means of its cases, in all directions at once.
+/// In three dimensions the losses of the unprotected stack are the means of its cases.
 #[test]
 fn a_ranking_in_space_rests_on_cases_in_space() {
     let changes = ["stack.levels=2", "stack.view=spatial", "motion.scale.factor=1"];

@@ -177,8 +177,8 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
-/// The published tables, in planes and in space, have every rack and device of the catalog, with a score or with the reason
-/// why there is none.
+/// The published tables, from runs in planes and from three-dimensional runs, list every rack and device of the
+/// catalog, with a score or with the reason why there is none.
 #[test]
 fn every_rack_and_device_is_in_the_published_tables() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/league");
@@ -215,7 +215,7 @@ fn fields(column: &str) -> Vec<String> {
     }
 }
 
-/// In space a score rests on runs that are those of their scenarios to the last bit.
+/// The runs behind a three-dimensional score are bit-identical to single runs of their scenarios.
 #[test]
 fn a_score_in_space_is_that_of_direct_runs() {
     let protocol = Protocol { periods: Vec::new(), ..brief(&[0.5, 1.4]) };

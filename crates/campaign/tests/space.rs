@@ -1,4 +1,5 @@
-//! Studies of stacks in space: each case is one run whatever the number of threads, with columns for directions.
+//! Studies of three-dimensional stacks: each case is one run whatever the number of threads, with columns for
+//! directions.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -11,7 +12,7 @@ use barrelstack_campaign::study::{Progress, RunOptions, Study, StudyError, Study
 use barrelstack_space::variants::Case;
 use barrelstack_space::{Heading, run::run};
 
-/// A short run in space, after [`HEAD`].
+/// A short three-dimensional run, after [`HEAD`].
 const RUN: &str = "\
 duration = \"1.5 s\"
 stop_after_collapse = \"0.01 s\"
@@ -21,7 +22,7 @@ levels = 2
 columns = 2
 ";
 
-/// Returns a study of short runs in space.
+/// Returns a study of short three-dimensional runs.
 fn study(rest: &str) -> Study {
     let head = HEAD.replace("[base.stack]\nlevels = 2\ncolumns = 2\n", "");
     let text = format!("{head}{RUN}{rest}");
@@ -140,7 +141,7 @@ fn beside_a_plane_space_adds_columns_and_changes_no_row_of_it() {
     };
     let (plane, both) = (views("\"transverse\""), views("\"transverse\", \"spatial\""));
     assert!(plane.column("heading").is_none() && plane.column("debris_away").is_none());
-    // The case in space is in a separate chunk.
+    // The three-dimensional case is in a separate chunk.
     for column in plane.columns() {
         let other = both.column(&column.spec.name).unwrap();
         assert_eq!(other.values.get(0), column.values.get(0), "{}", column.spec.name);

@@ -55,7 +55,7 @@ impl Motion {
     }
 }
 
-/// The five cases.
+/// The five cases of the paper.
 #[derive(Clone, Debug)]
 pub(super) struct PaperCases {
     /// Six barrels, rack–ground friction 0.4.

@@ -101,7 +101,7 @@ fn sentence(words: &str) -> String {
     format!("{}{end}", capital(words))
 }
 
-/// Wider band of a number that the project accepts: from, to, and description.
+/// Wider band that the project accepts for a number: lower limit, upper limit, and description.
 pub(super) type Band = (f64, f64, &'static str);
 
 /// Compares our number with the published one, in the same unit; `ours` is `None` if the event does not occur.

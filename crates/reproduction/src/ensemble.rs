@@ -87,8 +87,8 @@ pub(super) fn top_falls_first(summary: &Summary) -> bool {
     first.is_some_and(|(_, level)| level == top)
 }
 
-/// Builds the tables of outcomes: one for parameters changed one at a time, and a folded one for all parameters changed
-/// at once.
+/// Builds the tables of outcomes: one for parameters changed one at a time, and a collapsible one for all parameters
+/// changed at once.
 pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
     let names: Vec<String> = self::members().into_iter().map(name).collect();
     let all: Vec<_> = names.iter().map(String::as_str).zip(members).collect();

@@ -103,8 +103,8 @@ const ARROW_END: f64 = 0.5;
 /// since the rack is too flat for it.
 const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 
-/// Draws the stack at rest with the paper's body numbers, and an arrow from every contact body to its target body,
-/// as in the paper.
+/// Draws the stack at rest with the paper's body numbers. As in the paper, an arrow points from each contact body,
+/// which has the contact nodes, to the target body, which has the contact surface.
 pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     let assembly = &run.assembly;
     let parts = &assembly.parts;
@@ -209,9 +209,8 @@ pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
     channel.values.get(at).copied()
 }
 
-/// Returns two lengths (m) of the loaded boundary on the upper or lower half of a barrel: of the
-/// part that is loaded at rest, and of the part that is loaded at any time until the first loss of
-/// seat.
+/// Returns two lengths (m) along the boundary of the upper or lower half of a barrel: the length that is loaded at
+/// rest, and the length that is loaded at any time until the first loss of seat.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
     let envelope = run.stresses.of(body)?;
@@ -228,7 +227,8 @@ pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> 
     Some(lengths)
 }
 
-/// Builds the folded table of contact and target bodies of all pairs that touch by design.
+/// Builds a collapsible table of all pairs of bodies that touch by design. It states which body of a pair has the
+/// contact nodes (contact body) and which has the contact surface (target body).
 pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     let table = Table::of(
         caption,
@@ -250,7 +250,7 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     Block::details_on_screen(summary, vec![Block::Table(table)])
 }
 
-/// Returns contactor, target and force at rest (N) of all pairs that touch by design.
+/// Returns, for each pair of bodies that touch by design, the contact body, the target body, and the force at rest (N).
 fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     let joints = run.recording.joints.iter().map(|history| &history.joint);
     joints.filter(|joint| joint.by_design).filter_map(|joint| {
@@ -262,7 +262,7 @@ fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     })
 }
 
-/// Returns `true` if one body rests on the other.
+/// Returns `true` if the body `one` rests on the body `other`.
 fn is_above(run: &Run, one: usize, other: usize) -> bool {
     run.recording
         .joints
@@ -270,7 +270,7 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// Returns `true` if the contactor is a rack in every pair that touches by design.
+/// Returns `true` if the body with the contact nodes is a rack in every pair of bodies that touch by design.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)

@@ -35,7 +35,7 @@ pub(super) type Kept = [Option<bool>; 5];
 /// Returns a coordinate of a sample, between −1 and 1.
 ///
 /// Coordinates are fractional parts of multiples of square roots of primes (Richtmyer 1951), so
-/// that the samples fill the box evenly and are the same on every machine.
+/// that the samples cover the range of every coordinate evenly and are the same on every machine.
 fn draw(index: usize, dimension: usize) -> f64 {
     const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
     2.0 * ((index + 1) as f64 * PRIMES[dimension].sqrt()).fract() - 1.0

@@ -235,7 +235,7 @@ fn stand_in(results: &Results) -> String {
     )
 }
 
-/// Converts the instants of a sequence at full scale to half scale.
+/// Converts the instants of a sequence at full scale to the equivalent instants at half scale.
 fn equivalent(panels: &[(f64, String)]) -> Vec<(f64, String)> {
     let root = 2.0_f64.sqrt();
     panels.iter().map(|(time, note)| (time / root, note.clone())).collect()

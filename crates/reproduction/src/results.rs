@@ -54,7 +54,7 @@ pub(super) struct Results {
     pub(super) ensemble: Vec<Summary>,
     /// Other racks that reproduce the paper's numbers.
     pub(super) racks: Vec<Tried>,
-    /// Findings of the paper that racks near the reconstructed one reproduce.
+    /// For each sampled rack near the reconstructed rack, the findings of the paper that it reproduces.
     pub(super) neighborhood: Vec<Kept>,
     /// Effects of single quantities on each case.
     pub(super) studies: Vec<Study>,

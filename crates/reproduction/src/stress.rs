@@ -15,7 +15,7 @@ pub(super) fn envelope(run: &Run, number: u32) -> Option<&StressEnvelope> {
 }
 
 /// Returns the largest vertical force on barrel 1 until the first loss of seat, divided by the force at rest. The force
-/// is that of the rack above the barrel if `above` is `true`, and otherwise that of the rack below it.
+/// comes from the rack above the barrel if `above` is `true`, and otherwise from the rack below it.
 fn of_boundary(run: &Run, above: bool) -> Option<f64> {
     let body = envelope(run, 1)?.body;
     let joint =

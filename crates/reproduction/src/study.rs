@@ -69,7 +69,7 @@ pub(super) type Effect = Factor<Summary>;
 pub(super) struct Study {
     /// The case.
     pub(super) subject: Subject,
-    /// Result of the case as stated.
+    /// Result of the case without any change.
     pub(super) base: Summary,
     /// Effects of all factors, sorted by their effect on the time, the largest first.
     pub(super) effects: Vec<Effect>,

@@ -57,7 +57,7 @@ impl Ground {
         Self { motion, warnings: self.warnings.clone() }
     }
 
-    /// Returns the time (s) from which no acceleration exceeds a limit (m/s²).
+    /// Returns the time (s) after which no acceleration exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.calm_from(limit))
     }
@@ -67,7 +67,7 @@ impl Ground {
         self.motion.as_ref().map(|motion| motion.duration)
     }
 
-    /// Returns the time (s) from which the ground is still: the end of the motion, or zero if there is no motion.
+    /// Returns the time (s) after which the ground is still: the end of the motion, or zero if there is no motion.
     pub fn end(&self) -> f64 {
         self.motion_end().unwrap_or(0.0)
     }

@@ -15,8 +15,7 @@ use crate::watch::Ending;
 /// Intensity measure, with the name and unit in which it is displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the measure: that of its column in the table or, if the table has no column for it, that in the study
-    /// file.
+    /// Name of the measure: the name of its column in the table or, without such a column, its name in the study file.
     pub name: String,
     /// SI unit.
     pub unit: String,
@@ -172,7 +171,7 @@ pub struct Cases {
     pub sampled: bool,
     /// Names of the factors whose values are drawn at random, so that even cases of the same motion differ in them.
     pub drawn: Vec<String>,
-    /// Numbers of cases by the way in which they ended.
+    /// Numbers of cases by how they ended.
     pub endings: Endings,
     /// All cases. They are reference-counted, since there may be a million of them, and subsets share them.
     pub all: Vec<Arc<JudgedCase>>,
@@ -411,13 +410,13 @@ impl Cases {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// Returns the number of curves. There is one curve for each motion and each combination of values of the
-    /// factors that are not drawn for each case.
+    /// Returns the number of curves. There is one curve for each combination of a motion with values of those factors
+    /// that are not drawn for each case.
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// Returns what the curves are called in a sentence: "motions", or a longer phrase if a motion has several curves.
+    /// Returns the phrase for the curves in a sentence: "motions", or a longer phrase if a motion has several curves.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"
@@ -441,9 +440,9 @@ impl Cases {
     /// Groups the cases by intensity, ascending.
     ///
     /// If cases share levels, the groups are the levels of the study. Otherwise the groups are bins with equal numbers
-    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. Unless there are
-    /// fewer cases, a bin has at least two dozen, because the fraction of failures in a smaller bin would be too
-    /// uncertain. There are at most sixteen bins, because a trend is clearest in about a dozen.
+    /// of neighboring cases, and the intensity of a bin is the geometric mean over its cases. A bin has at least 24
+    /// cases (or all cases, if there are fewer), because the fraction of failures in a smaller bin would be too
+    /// uncertain. There are at most 16 bins, because a trend is clearest in about a dozen bins.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&JudgedCase>)> {
         let mut sorted: Vec<(f64, &JudgedCase)> = self
             .all

@@ -26,7 +26,7 @@ pub enum BandKind {
     Records,
     /// Profile likelihood of independent cases, used if all cases are of one record.
     Likelihood,
-    /// No band: with one of the records left out, the remaining cases determine no curve.
+    /// No band: without one of the records, the remaining cases determine no curve.
     None,
 }
 
@@ -228,7 +228,7 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     }
     let step = libm::log(last / first) / 7.0;
     (0..8)
-        // The last level is used exactly: rounded down, it would miss the failures there.
+        // The last level is taken as it is: a value that is rounded down would miss the failures at this level.
         .map(|i| if i == 7 { last } else { first * libm::exp(step * f64::from(i)) })
         .map(|intensity| {
             let failures = bounds.iter().map(|(_, high)| u32::from(*high <= intensity)).sum();

@@ -39,7 +39,7 @@ impl LimitState {
         }
     }
 
-    /// Returns a short name for programs.
+    /// Returns a short, machine-readable name.
     pub fn name(&self) -> String {
         match self {
             Self::SeatLost => "collapse".to_owned(),

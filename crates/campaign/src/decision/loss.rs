@@ -31,8 +31,8 @@ pub struct Loss {
     pub interval: Interval,
     /// Expected number of barrels that burst, under each of the three assumptions in [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Expected loss of wine (m³), under each of the three assumptions in [`Breakage::RANGE`]: the contents of the
-    /// barrels that burst. Leaks from the bungs of intact barrels are not counted.
+    /// Expected loss of wine (m³) from barrels that burst, under each of the three assumptions in [`Breakage::RANGE`].
+    /// Leaks from the bungs of intact barrels are not counted.
     pub wine: [f64; 3],
     /// Expected number of barrels that burst, estimated from the largest force on each barrel; `None` if the study does
     /// not record forces.

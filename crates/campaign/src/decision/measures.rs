@@ -9,7 +9,7 @@ use super::cases::Cases;
 pub struct MeasureRow {
     /// Index of the measure in [`Cases::measures`].
     pub measure: usize,
-    /// Index of the other measure against which sufficiency is tested.
+    /// Index of the measure against which sufficiency is tested; `None` if there is no other measure for this test.
     pub beside: Option<usize>,
     /// Fit of collapse against the measure, or the reason why there is no curve.
     pub collapse: Result<Measured, FitError>,
@@ -17,7 +17,8 @@ pub struct MeasureRow {
     pub drift: Option<Demanded>,
 }
 
-/// Compares all measures. The measure that gives the observed collapses the largest likelihood comes first.
+/// Compares all measures. They are sorted by the likelihood of the observed outcomes under their fitted curves, the
+/// largest first.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())

@@ -84,7 +84,8 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     if let Some(site) = &decision.site {
         blocks.extend(at_site(site, measure));
     }
-    // Effects are not shown for hunts, since their shares of collapse depend on the levels that were tried.
+    // No effects are shown for an incremental dynamic analysis, since its shares of collapse depend on the levels that
+    // the hunts chose.
     if !decision.sensitivities.is_empty() {
         blocks.push(heading("Influence of the varied quantities"));
         blocks.push(Block::Table(tables::indices(&decision.sensitivities)));

@@ -9,7 +9,8 @@ use super::cases::{Cases, JudgedCase, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
-/// Cases in which a factor has one value, or a value in one third of its values.
+/// Group of cases: those in which a factor has a certain value or, if the factor has many numbers as values, one third
+/// of the cases in ascending order of the value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Value or range of values, for display.

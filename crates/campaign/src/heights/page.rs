@@ -185,9 +185,10 @@ fn widest(all: &Heights, levels: u32, velocity: f64) -> Option<(&Height, AtLevel
     found.into_iter().max_by(|a, b| a.2[1].total_cmp(&b.2[1]))
 }
 
-/// Returns the largest number of levels for which the probability of collapse at a given PGV (m/s), with its 95 % range
-/// over the uncertain constants, stays below the limit for the rating "low". All smaller numbers of levels must stay
-/// below it as well.
+/// Returns the largest number of levels with a low risk at a given PGV (m/s), allowing for the uncertain constants.
+///
+/// The risk is low if the upper end of the 95 % range of the probability of collapse does not exceed the limit for the
+/// rating "low". The risk must be low for all smaller numbers of levels as well.
 fn highest_over_constants(all: &Heights, velocity: f64) -> Option<u32> {
     let low =
         |levels: &u32| widest(all, *levels, velocity).is_some_and(|(.., range)| range[1] <= LOW.1);
@@ -276,7 +277,8 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     )
 }
 
-/// Formats a bound as a whole percentage, so that rounding may understate the bound by half a percent.
+/// Formats a bound as a whole percentage, so that rounding may understate the bound by up to half a percentage
+/// point.
 fn bound(high: f64) -> String {
     format!("{:.0} %", 100.0 * high)
 }

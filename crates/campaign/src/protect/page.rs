@@ -313,7 +313,7 @@ fn chart(all: &Ranking) -> Figure {
     let mut front: Vec<&Ranked> =
         all.all.iter().filter(|one| one.on_front && Some(one.round) == last).collect();
     front.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
-    // Between two protections the cheaper one is the best that the money buys, so the frontier has steps.
+    // The front is drawn with steps: a budget between the costs of two protections buys only the cheaper one.
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (at, one) in front.iter().enumerate() {
         if let Some(before) = at.checked_sub(1).map(|before| &front[before]) {

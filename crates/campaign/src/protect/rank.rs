@@ -51,7 +51,7 @@ pub(super) struct Runs {
 /// Effect of the uncertain constants on a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Over {
-    /// Range that contains, with a probability of 95 %, the probability of collapse, or its annual rate.
+    /// Range that contains, with a probability of 95 %, the probability of collapse or the annual rate of collapse.
     pub(super) range: Option<[f64; 2]>,
     /// Number of barrels that fall, for every draw of the uncertain constants and the regression coefficients; empty if
     /// unknown.

@@ -107,9 +107,10 @@ pub(super) enum Cases {
     /// Cases with the base values or with a single change of them. The motion varies slowest, then the draw, then the
     /// level, and the change varies fastest.
     OneAtATime {
-        /// Changes: each has the index of a factor and a value.
+        /// Changes, each given by the index of a factor and the new value of that factor.
         changes: Vec<(usize, Setting)>,
-        /// Number of draws per motion of all other factors; all changes and levels use the same draws.
+        /// Number of times that all other factors are drawn for each motion; all changes and levels use the same
+        /// draws.
         draws: u64,
     },
     /// Points of the unit cube, whose axes are the motion, the level and the factors.

@@ -144,8 +144,11 @@ impl Distribution {
         Some(value).filter(|_| !matches!(self.shape, Shape::Discrete(_)))
     }
 
-    /// Returns the standard deviation of the logarithm of a lognormal distribution, without truncation; for another
-    /// distribution, that of the lognormal distribution with the same 16 and 84 % fractiles.
+    /// Returns the standard deviation of the natural logarithm of the value, without truncation if the distribution is
+    /// lognormal.
+    ///
+    /// For any other distribution, the result is the dispersion of the lognormal distribution with the same 16 % and
+    /// 84 % fractiles; NaN if the distribution is discrete.
     pub(crate) fn dispersion(&self) -> f64 {
         if let Shape::Lognormal { dispersion, .. } = &self.shape {
             return *dispersion;
@@ -187,7 +190,8 @@ impl Cut {
     /// Converts a cumulative probability of the truncated distribution to the cumulative probability of the
     /// same value in the untruncated distribution.
     fn uncut(&self, u: f64) -> f64 {
-        // The result stays away from 0 and 1, where quantiles are infinite; no draw of 53 bits is changed.
+        // The result stays away from 0 and 1, where quantiles are infinite. A draw with a resolution of 53 bits is not
+        // changed.
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)
     }
 

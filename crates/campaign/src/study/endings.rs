@@ -14,7 +14,7 @@ use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::{Ending, after_collapse};
 
-/// Numbers of cases with a verdict, by the way in which they ended.
+/// Numbers of cases with a verdict, by how they ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Endings {
     /// Number of all cases with a verdict.
@@ -27,14 +27,13 @@ pub struct Endings {
     /// Number of cases that were stopped a fixed time after their collapse, because the study states such a
     /// time.
     pub stopped: u64,
-    /// Number of cases that were ended by the duration that the study states.
+    /// Number of cases that ended at the duration that the study states.
     pub short: u64,
-    /// Number of cases that were ended by the duration while the ground still moved.
+    /// Number of cases that ended at the stated duration while the ground still moved.
     pub cut: u64,
-    /// Number of cases that were ended by the duration while the ground still moved and the stack still
-    /// stood.
+    /// Number of cases that ended at the stated duration while the ground still moved and the stack still stood.
     pub open: u64,
-    /// Longest part (s) of a motion that was not run because of the duration.
+    /// Longest part (s) of a motion that was not run because it lies after the stated duration.
     pub longest_cut: f64,
     /// Number of cases in which something still moved at the time limit of the study.
     pub moving: u64,
@@ -166,7 +165,8 @@ impl Study {
                     Shaking::Synthetic(made) => Some(&**made),
                     Shaking::Base | Shaking::Spec(_) => None,
                 };
-                // Realizations of one ensemble have equal durations and may be a hundred thousand, so only the first is made.
+                // An ensemble may have a hundred thousand realizations, all with the same duration, so only the first
+                // is made.
                 let end = match (made, last) {
                     (Some(made), Some((other, end))) if made.is_of_ensemble(other) => end,
                     _ => cache.unscaled(motion, &base.motion, run.similitude)?.ground.end(),

@@ -39,8 +39,8 @@ pub(super) fn read(
         set.skip(table);
     }
     if let Some(synthetic) = set.optional_section("synthetic")? {
-        // Only the scale is read here, with a formula as a placeholder motion, so that scaling that needs a record is
-        // refused.
+        // Only the scale is needed here. It is read together with a placeholder motion, a formula, so that scaling that
+        // needs a record is refused.
         let stand_in = "{ amplitude = \"1 g\", period = \"1 s\", cycles = 1 }";
         let stand_in = parse_value(stand_in, set.origin_of("synthetic")).value;
         let scale = motion_of(set, opened, number, &[("sine", stand_in)])?.scale;

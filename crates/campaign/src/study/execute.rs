@@ -139,7 +139,7 @@ impl Study {
         report: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
     ) -> Result<(), StudyError> {
         let cache = MotionCache::default();
-        // Motions are tried before the folder is created, so that a study that cannot run leaves no folder behind.
+        // All motions are read before the folder is created, so that a study that cannot run leaves no folder behind.
         self.try_motions(&cache)?;
         let place = Folder::open(folder, self, true)?;
         place.clean()?;

@@ -152,7 +152,8 @@ impl Folder {
             system::folder_below(path, Path::new(SHARDS))
                 .map_err(StudyError::system("write in", &shards))?;
         }
-        // The folder is listed before the manifest is looked for: another run writes its manifest before any other file.
+        // The folder is listed before the search for the manifest. A concurrent run writes its manifest before any
+        // other file, so that its files are never mistaken for foreign ones.
         let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {
             let known = match manifest::read(path)? {

@@ -11,8 +11,8 @@ use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
-// The number of samples and the motions are not included: they identify cases and are part of the key of a chunk.
-// Further samples and motions come after the existing ones.
+// The motions and the number of samples are not inputs of this kind, since a study grows by further motions and
+// samples, which come after the existing ones. The key of a chunk covers the cases of the chunk and their motions.
 described! {
     /// An input on which every case of a study depends.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]

@@ -28,7 +28,7 @@ pub(super) type LevelResult = (f64, Option<bool>);
 impl Hunt {
     /// Returns the next level to run, given the results so far; `None` if the hunt is over.
     pub(super) fn next(&self, results: &[LevelResult]) -> Option<f64> {
-        // The hunt ends with a run without a verdict, which would fail again at the next level.
+        // A run without a verdict ends the hunt, since a run at the next level would fail as well.
         let known: Vec<(f64, bool)> = results
             .iter()
             .map(|(level, fell)| fell.map(|fell| (*level, fell)))

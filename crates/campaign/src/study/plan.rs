@@ -40,7 +40,7 @@ const ALIKE: u64 = 512;
 /// eight doublings.
 const DOUBLINGS: u64 = 40;
 
-/// Number of cases of the first chunks.
+/// Number of cases in each chunk before the size doubles for the first time.
 const FIRST: u64 = 64;
 
 impl Sizes {

@@ -239,7 +239,7 @@ impl Study {
         let scenario = self.scenario(&[])?;
         let mut tried: Option<&Synthetic> = None;
         for motion in &self.motions {
-            // Realizations of an ensemble differ only in their seeds, so the first is tried for all.
+            // Realizations of an ensemble differ only in their seeds, so it is enough to generate the first.
             if let Shaking::Synthetic(synthetic) = &motion.shaking {
                 if tried.is_some_and(|tried| {
                     Synthetic { seed: tried.seed, ..(**synthetic).clone() } == *tried

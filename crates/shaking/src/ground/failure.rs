@@ -10,7 +10,7 @@ pub enum GroundError {
     /// The file of a record cannot be opened.
     #[error("cannot read the record {path}: {reason}{obtain}", path = path.display())]
     Unreadable {
-        /// The path that was tried.
+        /// Path of the file that cannot be opened.
         path: PathBuf,
         /// Message of the operating system.
         reason: String,

@@ -158,7 +158,7 @@ fn is_outside(file: &FileRef) -> bool {
     let folder = if file.folder.as_os_str().is_empty() { Path::new(".") } else { &file.folder };
     match (file.resolve().canonicalize(), folder.canonicalize()) {
         (Ok(path), Ok(folder)) => !path.starts_with(folder),
-        // A file given by value has no path.
+        // A file that is held in memory need not exist on the disk; then the path as written decides.
         _ => Path::new(&file.path)
             .components()
             .any(|part| !matches!(part, Component::Normal(_) | Component::CurDir)),

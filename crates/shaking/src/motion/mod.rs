@@ -133,9 +133,9 @@ pub enum PulseKind {
         /// Phase (rad).
         phase: f64,
     },
-    /// Cycloidal pulse of type A (Jacobsen and Ayre): one forward displacement.
+    /// Cycloidal pulse of type A (Jacobsen and Ayre): the ground moves forward and ends displaced.
     CycloidA,
-    /// Cycloidal pulse of type B: one displacement forward and back.
+    /// Cycloidal pulse of type B: the ground moves forward and returns to its initial position.
     CycloidB,
     /// Cycloidal pulse of type C: several cycles that start and end at rest.
     CycloidC {

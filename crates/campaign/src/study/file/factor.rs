@@ -119,7 +119,8 @@ pub(super) fn read_factor(
         room.take(&reader, values)?;
     }
     reader.finish();
-    // Every value is tried by itself, so that a value that the scenario refuses is reported at its place before any run.
+    // Each value is tested on its own before any run, so that an error states the place of the invalid value in the
+    // file.
     let ends: Vec<Setting> = match &variation {
         Variation::Values(values) => values.clone(),
         Variation::Distribution(distribution) => match distribution.settings() {
